@@ -34,8 +34,9 @@
 //!    be late for it: the one that first takes up a brush that changes topology, which makes room
 //!    by the number of pages, and one with an undo, which finishes what was carried over, some
 //!    twenty milliseconds at most.
-//!    Four more exceptions: an edit of face sets looks at every vertex in its tick, and dynamic
-//!    topology on an object that has some allocates two bytes a vertex that it writes; the end of a
+//!    Four more exceptions: an edit of face sets looks at every vertex in its tick, as a mask of a
+//!    region does, and dynamic topology on an object that has some, as a stroke that draws them,
+//!    allocates two bytes a vertex that it writes; the end of a
 //!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface
 //!    while layers are still being summed up finishes them in its tick; and in a shared sculpture
 //!    (feature `network`) ticks allocate, and each replica builds a mesh that a command brings on

@@ -47,6 +47,7 @@ pub const TEXTS: &[(&str, &str)] = texts![
     "surface-smooth",
     "boundary",
     "erase-layer",
+    "draw-face-sets",
 ];
 
 /// The embedded presets, read once.

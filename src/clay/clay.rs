@@ -225,6 +225,12 @@ impl Clay {
         }
     }
 
+    /// The greatest number of a face set; 0: there is none. Costs a look at each chunk of
+    /// pages, and at each page of those that changed since the last snapshot.
+    pub fn highest_set(&self) -> u16 {
+        self.spines.highest_set(&self.pages, &self.stale)
+    }
+
     /// The clay as it is now, for others to read. Costs as much as what changed since the last one.
     pub fn snapshot(&mut self) -> Snapshot {
         let now = self.clock.unwrap_or(|| 0);

@@ -9,7 +9,9 @@
 //!    pool.
 //!
 //! Each array element is written by one task, and each task reads only what earlier phases wrote:
-//! the same bits with any number of workers. All memory is kept from dab to dab.
+//! the same bits with any number of workers. All memory is kept from dab to dab; only a dab that
+//! puts vertices into other face sets allocates for pages whose sets nobody has let go of yet, two
+//! bytes a vertex.
 
 use std::sync::Arc;
 
@@ -17,9 +19,10 @@ use super::clay::Clay;
 use super::dab_buffers::{DabBuffers, HaloPart, PageOutput, PageTask};
 use super::kernel::{Kernel, PageIn, PageOut};
 use super::layers::LayerStack;
-use super::normals::{LAYERED, MOVED, PAINTED, TURNED, around_moved};
+use super::normals::{GROUPED, LAYERED, MOVED, PAINTED, TURNED, around_moved};
 use super::page::{BLOCK, Page, block_of};
 use super::page_sets::HIDDEN;
+use super::pool::Pool;
 use super::reach::Reach;
 use super::workers::Workers;
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
@@ -32,7 +35,7 @@ const PARALLEL: usize = 6 * 1024;
 pub struct DabReport {
     /// Vertices that the kernel counted.
     pub affected: usize,
-    /// Vertices with a new position, mask or colour.
+    /// Vertices with a new position, mask, colour or face set.
     pub moved: usize,
     /// Pages written anew.
     pub pages: usize,
@@ -137,7 +140,7 @@ impl Clay {
                 kernel.displace(slot, side, &Was { old, before, stack: stack.as_deref() });
             });
         }
-        add_neighbours(self, selected, MOVED | PAINTED);
+        add_neighbours(self, selected, MOVED | PAINTED | GROUPED);
         let t2 = now();
         {
             let Clay { buffers, pages, .. } = self;
@@ -152,7 +155,7 @@ impl Clay {
                     *s,
                     &pages[slots[*s as usize].index as usize],
                     side,
-                    MOVED | PAINTED,
+                    MOVED | PAINTED | GROUPED,
                 );
             });
             self.order = indices;
@@ -210,6 +213,11 @@ impl Clay {
         let changes = buffers.slots.iter().any(|s| s.any != 0);
         *revision += u64::from(changes);
         let retired = buffers.slots.len();
+        for s in 0..buffers.slots.len() {
+            if buffers.slots[s].any & GROUPED != 0 {
+                regroup(buffers, s, pages, pool);
+            }
+        }
         for (mut slot, side) in buffers.slots.drain(..).zip(buffers.sides.drain(..)) {
             buffers.slot_of[slot.index as usize] = 0;
             report.affected += slot.affected;
@@ -227,7 +235,9 @@ impl Clay {
                         Some(layers) => layers,
                         None => pages[slot.index as usize].layers.clone(),
                     };
-                    page.sets.clone_from(&pages[slot.index as usize].sets);
+                    if slot.any & GROUPED == 0 {
+                        page.sets.clone_from(&pages[slot.index as usize].sets);
+                    }
                     top.set_leaf(slot.index as usize, page.lo, page.hi);
                 }
                 stale.add(slot.index);
@@ -293,6 +303,7 @@ fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>
         points: &mut page.points[..own],
         marks: &mut slot.marks,
         colours: &mut side.colours,
+        sets: &mut slot.sets,
         affected: 0,
         layers: None,
     };
@@ -312,6 +323,42 @@ fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>
     }
     tally(slot);
     slot.any |= if slot.layers.is_some() { LAYERED } else { 0 };
+}
+
+/// Gives the new page of slot `s` its face sets: those of before, and where marks say so the new
+/// ones, at home and in the halo.
+fn regroup(buffers: &mut DabBuffers, s: usize, pages: &[Arc<Page>], pool: &mut Pool) {
+    let DabBuffers { slots, slot_of, .. } = buffers;
+    let old = &pages[slots[s].index as usize];
+    let mut fresh = pool.take_sets();
+    let Some(sets) = Arc::get_mut(&mut fresh) else { return };
+    sets.rows.clear();
+    sets.rows.extend((0..old.points.len()).map(|v| old.set_bits(v)));
+    let new = |slot: &PageOutput, l: usize, was: u16| match slot.marks.get(l) {
+        Some(marks) if marks & GROUPED != 0 => was & HIDDEN | slot.sets[l],
+        _ => was,
+    };
+    let (own, halo) = sets.rows.split_at_mut(old.own());
+    if !slots[s].sets.is_empty() {
+        own.iter_mut().enumerate().for_each(|(v, row)| *row = new(&slots[s], v, *row));
+    }
+    for (home, part) in old.topology.halo_parts() {
+        let Some(from) = DabBuffers::changed(slots, slot_of, home, GROUPED) else { continue };
+        let sources = &old.topology.halo_sources[part.clone()];
+        for (row, &l) in halo[part].iter_mut().zip(sources) {
+            *row = new(&slots[from], usize::from(l), *row);
+        }
+    }
+    let any = sets.index();
+    if let Some(page) = Arc::get_mut(&mut slots[s].page) {
+        page.sets = match any {
+            true => Some(fresh),
+            false => {
+                pool.give_back_sets(fresh);
+                None
+            }
+        };
+    }
 }
 
 /// Joins all marks, counts them, and finds the blocks in which something moved.

@@ -42,6 +42,9 @@ pub(super) struct PageOutput {
     pub(super) affected: usize,
     /// The page holds the old page's normals and tree already.
     pub(super) complete: bool,
+    /// The new face sets, one an own vertex, where marks say [`GROUPED`](super::normals::GROUPED);
+    /// empty where none do.
+    pub(super) sets: Vec<u16>,
     /// What the page has of the layers from now on; `None`: what the old page has.
     pub(super) layers: Option<Option<Arc<PageLayers>>>,
     pub(super) normals_ns: u64,
@@ -114,6 +117,7 @@ impl DabBuffers {
             moved: 0,
             affected: 0,
             complete: false,
+            sets: Vec::new(),
             layers: None,
             normals_ns: 0,
             bvh_ns: 0,
@@ -149,6 +153,7 @@ impl DabBuffers {
         (slot.any, slot.touched, slot.moved, slot.affected, slot.complete) = (0, 0, 0, 0, false);
         (slot.normals_ns, slot.bvh_ns) = (0, 0);
         slot.layers = None;
+        slot.sets.clear();
         side.incoming.clear();
         side.rows.clear();
         side.colours.clear();

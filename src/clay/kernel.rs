@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{BVec4A, Vec3, Vec4};
 
 use super::layers::{LayerStack, LayerSum, PageLayers};
-use super::normals::{MOVED, PAINTED};
+use super::normals::{GROUPED, MOVED, PAINTED};
 use super::page::{BLOCK, BREAK, Page, Points, Ring};
 use sculptd_geometry::simd::cotangents;
 
@@ -152,6 +152,12 @@ impl<'a> PageIn<'a> {
         self.page.face_set(local)
     }
 
+    /// The face set when the open undo step began, of an own or a halo vertex; 0: none.
+    #[inline(always)]
+    pub fn face_set_before(&self, local: usize) -> u16 {
+        self.before.face_set(local)
+    }
+
     /// Whether an own vertex lies on the border of the surface, or on a non-manifold edge.
     #[inline(always)]
     pub fn is_border(&self, own: usize) -> bool {
@@ -216,6 +222,8 @@ pub struct PageOut<'a> {
     pub(super) points: &'a mut [Vec4],
     pub(super) marks: &'a mut [u8],
     pub(super) colours: &'a mut Vec<(u16, [u8; 4])>,
+    /// See [`super::dab_buffers::PageOutput::sets`].
+    pub(super) sets: &'a mut Vec<u16>,
     pub(super) affected: usize,
     /// What the page has of the layers from now on; `None`: what it has.
     pub(super) layers: Option<Option<Arc<PageLayers>>>,
@@ -267,6 +275,16 @@ impl PageOut<'_> {
     pub fn set_colour(&mut self, v: usize, colour: [u8; 4]) {
         self.colours.push((v as u16, colour));
         self.marks[v] |= PAINTED;
+    }
+
+    /// Puts own vertex `v` into another face set; 0: into none.
+    #[inline(always)]
+    pub fn set_face_set(&mut self, v: usize, set: u16) {
+        if self.sets.is_empty() {
+            self.sets.resize(self.marks.len(), 0);
+        }
+        self.sets[v] = set;
+        self.marks[v] |= GROUPED;
     }
 
     /// Adds `by`, one a vertex, to the own vertices from `first` on. A sum that is not finite, or

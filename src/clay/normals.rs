@@ -18,6 +18,8 @@ pub(super) const MOVED: u8 = 1;
 pub(super) const TURNED: u8 = 2;
 /// A vertex whose mask or colour changed.
 pub(super) const PAINTED: u8 = 4;
+/// A vertex that is in another face set now.
+pub(super) const GROUPED: u8 = 16;
 /// The page has other layers; of a page, never of a vertex.
 pub(super) const LAYERED: u8 = 8;
 

@@ -427,6 +427,11 @@ impl Page {
         self.sets.as_deref()
     }
 
+    /// The greatest number of a set in it; 0: none is in one.
+    pub(crate) fn highest_set(&self) -> u16 {
+        self.sets().map_or(0, |s| s.highest)
+    }
+
     /// The number of the set and [`HIDDEN`], of an own or a halo vertex.
     #[inline]
     pub(crate) fn set_bits(&self, local: usize) -> u16 {

@@ -8,19 +8,28 @@ pub const HIDDEN: u16 = 0x8000;
 pub const MOST_SETS: u16 = 0x7fff;
 
 /// The face sets of a page.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct PageSets {
     /// Own, then halo.
     pub(crate) rows: Vec<u16>,
     /// Whether any of them is hidden.
     pub(crate) any_hidden: bool,
+    /// The greatest number of a set among them.
+    pub(crate) highest: u16,
 }
 
 impl PageSets {
     /// One number a row, own and halo; `None` where all are 0.
     pub(crate) fn shared(rows: Vec<u16>) -> Option<Arc<PageSets>> {
-        let any_hidden = rows.iter().any(|r| r & HIDDEN != 0);
-        rows.iter().any(|r| *r != 0).then(|| Arc::new(PageSets { rows, any_hidden }))
+        let mut sets = PageSets { rows, any_hidden: false, highest: 0 };
+        sets.index().then(|| Arc::new(sets))
+    }
+
+    /// Fills in what follows from the rows; false where all are 0.
+    pub(crate) fn index(&mut self) -> bool {
+        self.any_hidden = self.rows.iter().any(|r| r & HIDDEN != 0);
+        self.highest = self.rows.iter().map(|r| r & !HIDDEN).max().unwrap_or(0);
+        self.any_hidden || self.highest > 0
     }
 
     /// Own and halo: the number of the set, and [`HIDDEN`].

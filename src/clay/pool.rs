@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
 use super::page::{Page, PageTopology};
+use super::page_sets::PageSets;
 use super::page_supply::{PageSupply, SparePage};
 use crate::assembly::PAGE_VERTICES;
 
@@ -22,6 +23,8 @@ pub(super) struct Pool {
     waiting: VecDeque<Arc<Page>>,
     /// Topologies that nobody holds any more; their contents are old.
     topologies: Vec<Arc<PageTopology>>,
+    /// Face sets of pages that nobody holds any more; their contents are old.
+    sets: Vec<Arc<PageSets>>,
     /// What a page holds that has none.
     blank: Arc<PageTopology>,
     /// The page that stands where there was none before: one for all.
@@ -46,6 +49,7 @@ impl Pool {
             rows,
             leaves,
             topologies: Vec::with_capacity(KEPT),
+            sets: Vec::with_capacity(KEPT),
             blank: Arc::default(),
             nothing: Arc::new(Page::nothing()),
             roomy: false,
@@ -124,6 +128,18 @@ impl Pool {
         page
     }
 
+    /// Face sets that nobody else holds; their contents are old. Where none are ready they are
+    /// made.
+    pub(super) fn take_sets(&mut self) -> Arc<PageSets> {
+        let fresh = || PageSets { rows: Vec::with_capacity(self.rows), ..PageSets::default() };
+        self.sets.pop().unwrap_or_else(|| Arc::new(fresh()))
+    }
+
+    /// Gives back face sets that nobody else holds.
+    pub(super) fn give_back_sets(&mut self, sets: Arc<PageSets>) {
+        self.sets.push(sets);
+    }
+
     /// The page that stands where there was none before.
     pub(super) fn nothing(&self) -> Arc<Page> {
         self.nothing.clone()
@@ -150,8 +166,13 @@ impl Pool {
                 if let Some(layers) = free.layers.take() {
                     self.sink.discard(Garbage::Shared(layers));
                 }
-                if let Some(sets) = free.sets.take() {
-                    self.sink.discard(Garbage::Shared(sets));
+                if let Some(mut sets) = free.sets.take() {
+                    // Pages that were only displaced share them with those that took their place.
+                    if Arc::get_mut(&mut sets).is_some() && self.sets.len() < KEPT {
+                        self.sets.push(sets);
+                    } else {
+                        self.sink.discard(Garbage::Shared(sets));
+                    }
                 }
                 // The last page that lets go of a topology leaves it here.
                 let mut topology = std::mem::replace(&mut free.topology, self.blank.clone());
@@ -183,5 +204,6 @@ impl Pool {
         self.free.iter().map(|p| p.bytes()).sum::<usize>()
             + self.waiting.iter().map(|p| p.bytes()).sum::<usize>()
             + self.topologies.iter().map(|t| t.bytes()).sum::<usize>()
+            + self.sets.iter().map(|s| s.weight()).sum::<usize>()
     }
 }

@@ -115,6 +115,16 @@ impl SpinePool {
         }
     }
 
+    /// The greatest number of a face set in the clay. Costs a look at each chunk, and at each page
+    /// of those that changed since they were last shown.
+    pub(super) fn highest_set(&self, pages: &[Arc<Page>], stale: &Stale) -> u16 {
+        let of = |(c, pages): (usize, &[Arc<Page>])| match self.shown.get(c) {
+            Some(chunk) if !stale.chunk_is[c] => chunk.highest_set,
+            _ => pages.iter().map(|p| p.highest_set()).max().unwrap_or(0),
+        };
+        pages.chunks(CHUNK).enumerate().map(of).max().unwrap_or(0)
+    }
+
     pub(super) fn publish(
         &mut self,
         pages: &[Arc<Page>],

@@ -24,6 +24,8 @@ pub(super) struct Chunk {
     pub(super) pages: Vec<Arc<Page>>,
     pub(super) lo: Vec3,
     pub(super) hi: Vec3,
+    /// The greatest number of a face set in it.
+    pub(super) highest_set: u16,
 }
 
 impl Chunk {
@@ -32,6 +34,7 @@ impl Chunk {
         self.pages.extend_from_slice(pages);
         let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         (self.lo, self.hi) = pages.iter().fold(none, |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)));
+        self.highest_set = pages.iter().map(|p| p.highest_set()).max().unwrap_or(0);
     }
 }
 

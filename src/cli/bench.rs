@@ -422,6 +422,7 @@ fn one_dab<'a>(
         travelled: 0.2 * radius * i as f32,
         stroke: (i / STROKE) as u32 + 1,
         set: 0,
+        draws: None,
     };
     Dab { pace: dab.pace_of(settings.strength), ..dab }
 }

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::brush::ViewRegion;
+
 /// Reply of `sets.list`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -101,6 +103,33 @@ pub struct FaceSetExtractParams {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
+}
+
+/// What is done with what is seen in a region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum FaceSetRegionAction {
+    /// What of it is not hidden becomes a new face set.
+    Make,
+    /// It is hidden.
+    Hide,
+    /// All but it is hidden.
+    Isolate,
+}
+
+/// Parameters of `sets.region`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FaceSetRegionParams {
+    /// Where, all the way through.
+    pub region: ViewRegion,
+    /// What is done with it.
+    pub action: FaceSetRegionAction,
+    /// Only what faces the eye.
+    #[serde(default)]
+    pub front_faces: bool,
 }
 
 /// Reply of a method that changes face sets.

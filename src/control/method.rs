@@ -21,8 +21,8 @@ use crate::edit::{
 };
 use crate::event::SubscribeReply;
 use crate::face_sets::{
-    FaceSetExtractParams, FaceSetMakeParams, FaceSetParams, FaceSetReply, FaceSetShowParams,
-    FaceSetsReply,
+    FaceSetExtractParams, FaceSetMakeParams, FaceSetParams, FaceSetRegionParams, FaceSetReply,
+    FaceSetShowParams, FaceSetsReply,
 };
 use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
@@ -301,6 +301,9 @@ methods! {
     "sets.invert" SetsInvert sets_invert(NoParams) -> FaceSetReply;
     /// Hides all but one face set.
     "sets.isolate" SetsIsolate sets_isolate(FaceSetParams) -> FaceSetReply;
+    /// Makes a face set of what is seen in a region of the view, all the way through, or hides it,
+    /// or hides all but it: one step of undo.
+    "sets.region" SetsRegion sets_region(FaceSetRegionParams) -> FaceSetReply;
     /// Adds an object: what is masked, or a face set, as a closed shell of a thickness.
     "sets.extract" SetsExtract sets_extract(FaceSetExtractParams) -> ObjectReply;
     /// How far the Boolean is that is under way.

@@ -23,4 +23,5 @@ pub mod payload;
 pub mod scene;
 pub mod stroke;
 mod topology_work;
+pub mod view_region;
 pub mod world;

@@ -1,28 +1,10 @@
-//! Masking what is seen within a region of the view: a box, one side of a line, or a polygon.
+//! Masking what is seen within a region of the view.
 
-use std::sync::Arc;
-
-use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-use crate::camera::Camera;
 use crate::scene::ObjectTransform;
+use crate::view_region::{RegionSeen, ViewRegion};
 use sculptd_clay::{Kernel, PageIn, PageOut};
-
-/// Corners of a polygon at most.
-pub const MOST_CORNERS: usize = 1000;
-
-/// A region of the view, (0, 0) top left to (1, 1) bottom right.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum ViewRegion {
-    /// Between two opposite corners.
-    Box([Vec2; 2]),
-    /// What lies to the left of the line from the first point to the second, as it is seen.
-    Line([Vec2; 2]),
-    /// A closed polygon, as a lasso draws it freely or a polyline sets it point by point; 3 to
-    /// [`MOST_CORNERS`] corners. Where it crosses itself, what lies inside an odd number of times.
-    Polygon(Arc<Vec<Vec2>>),
-}
 
 /// Sets the mask of what is seen in a region, all the way through the object.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,100 +20,27 @@ pub struct MaskRegion {
 impl MaskRegion {
     /// Whether every number is finite and in range.
     pub fn is_sane(&self) -> bool {
-        let finite = match &self.region {
-            ViewRegion::Box(ends) => ends.iter().all(|p| p.is_finite()),
-            ViewRegion::Line([a, b]) => a.is_finite() && b.is_finite() && a != b,
-            ViewRegion::Polygon(all) => {
-                (3..=MOST_CORNERS).contains(&all.len()) && all.iter().all(|p| p.is_finite())
-            }
-        };
-        finite && (0.0..=1.0).contains(&self.mask)
-    }
-}
-
-impl ViewRegion {
-    /// Whether a place of the view lies in it. `aspect`: the view's width over its height.
-    fn holds(&self, at: Vec2, aspect: f32) -> bool {
-        match self {
-            ViewRegion::Box([a, b]) => at.cmpge(a.min(*b)).all() && at.cmple(a.max(*b)).all(),
-            ViewRegion::Line([a, b]) => {
-                // The view's y goes down: what lies to the left has a cross product below 0.
-                let wide = Vec2::new(aspect, 1.0);
-                ((*b - *a) * wide).perp_dot((at - *a) * wide) < 0.0
-            }
-            ViewRegion::Polygon(corners) => {
-                let next = corners.iter().cycle().skip(1);
-                let crossed = corners.iter().zip(next).filter(|(a, b)| {
-                    (a.y > at.y) != (b.y > at.y)
-                        && at.x < a.x + (b.x - a.x) * ((at.y - a.y) / (b.y - a.y))
-                });
-                crossed.count() % 2 == 1
-            }
-        }
+        self.region.is_sane() && (0.0..=1.0).contains(&self.mask)
     }
 }
 
 /// A region before a camera, as a kernel over the clay.
 pub(crate) struct MaskSeen<'a> {
-    pub(crate) region: &'a MaskRegion,
-    pub(crate) camera: &'a Camera,
+    pub(crate) seen: RegionSeen<'a>,
+    /// The mask there, 0 to 1.
+    pub(crate) mask: f32,
     /// From the clay to the world.
     pub(crate) transform: ObjectTransform,
 }
 
 impl Kernel for MaskSeen<'_> {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
-        let MaskSeen { region, camera, transform } = self;
-        let (eye, back) = (camera.eye(), camera.backward());
         for v in 0..page.own() {
-            let p = transform.point(page.positions.get(v));
-            let to_eye = if camera.orthographic { back } else { eye - p };
-            let normal = transform.direction(page.normals.get(v));
-            if region.front_faces && !(normal.dot(to_eye) > 0.0) {
-                continue;
-            }
-            let seen = camera.project(p);
-            if seen.is_some_and(|at| region.region.holds(at, camera.aspect)) {
+            let p = self.transform.point(page.positions.get(v));
+            if self.seen.holds(p, self.transform.direction(page.normals.get(v))) {
                 out.visit();
-                out.set_mask(v, region.mask);
+                out.set_mask(v, self.mask);
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn held(region: &ViewRegion, x: f32, y: f32) -> bool {
-        region.holds(Vec2::new(x, y), 1.6)
-    }
-
-    #[test]
-    fn a_region_holds_what_lies_in_it() {
-        let at = Vec2::new;
-        let corners = ViewRegion::Box([at(0.6, 0.2), at(0.2, 0.4)]);
-        assert!(held(&corners, 0.3, 0.3) && !held(&corners, 0.3, 0.5));
-        // Upwards through the middle: what is left of it is the left half.
-        let line = ViewRegion::Line([at(0.5, 0.9), at(0.5, 0.1)]);
-        assert!(held(&line, 0.4, 0.3) && !held(&line, 0.6, 0.3));
-        // An L, whose notch is outside.
-        let l = [(0.1, 0.1), (0.3, 0.1), (0.3, 0.5), (0.7, 0.5), (0.7, 0.7), (0.1, 0.7)];
-        let l = ViewRegion::Polygon(Arc::new(l.map(|(x, y)| at(x, y)).to_vec()));
-        assert!(held(&l, 0.2, 0.2) && held(&l, 0.6, 0.6) && !held(&l, 0.5, 0.3));
-        // A star drawn in one line is hollow in its middle.
-        let star = [(0.5, 0.1), (0.7, 0.9), (0.1, 0.4), (0.9, 0.4), (0.3, 0.9)];
-        let star = ViewRegion::Polygon(Arc::new(star.map(|(x, y)| at(x, y)).to_vec()));
-        assert!(held(&star, 0.5, 0.25) && !held(&star, 0.5, 0.5));
-    }
-
-    #[test]
-    fn what_is_no_region_is_told() {
-        let sane = |region| MaskRegion { region, mask: 1.0, front_faces: false }.is_sane();
-        let at = Vec2::new;
-        assert!(sane(ViewRegion::Box([Vec2::ZERO, Vec2::ONE])));
-        assert!(!sane(ViewRegion::Line([Vec2::ONE, Vec2::ONE])));
-        assert!(!sane(ViewRegion::Polygon(Arc::new(vec![Vec2::ZERO, Vec2::ONE]))));
-        assert!(!sane(ViewRegion::Box([at(f32::NAN, 0.0), Vec2::ONE])));
     }
 }

@@ -10,6 +10,7 @@
 mod face_sets;
 mod hands;
 mod held;
+mod images;
 mod in_hand;
 mod layers;
 mod local_camera;
@@ -34,11 +35,12 @@ use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
-use crate::mask_region::MaskSeen;
+use crate::mask_region::{MaskRegion, MaskSeen};
 use crate::payload::{Payload, PayloadStore};
 use crate::scene::{ObjectId, Scene, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::topology_work::TopologyWork;
+use crate::view_region::RegionSeen;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
@@ -317,7 +319,9 @@ impl World {
             Command::MaskRegion(region) => {
                 let (camera, transform) = (self.camera, self.scene.active().settings.transform);
                 if region.is_sane() {
-                    self.mask(&MaskSeen { region, camera: &camera, transform });
+                    let MaskRegion { region, mask, front_faces } = region;
+                    let seen = RegionSeen { region, camera: &camera, front_faces: *front_faces };
+                    self.mask(&MaskSeen { seen, mask: *mask, transform });
                 }
             }
             Command::Place(place) => {
@@ -537,6 +541,8 @@ fn goes_on_by_time(brush: &BrushSettings) -> bool {
         && (path.continuous || path.method == Method::Airbrush)
 }
 
+#[cfg(test)]
+mod face_set_tests;
 #[cfg(test)]
 mod layer_tests;
 #[cfg(test)]

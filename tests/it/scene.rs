@@ -4,6 +4,7 @@ mod face_sets;
 mod layers;
 
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use serde_json::{Value, json};
 
@@ -12,6 +13,7 @@ use sculptd_clay::Workers;
 use sculptd_daemon::config::{Config, LoopConfig};
 use sculptd_daemon::control::Host;
 use sculptd_daemon::control::handler::call;
+use sculptd_daemon::control::stroke::VirtualPen;
 use sculptd_daemon::live::Live;
 use sculptd_daemon::session;
 use sculptd_daemon::session::writer::WriterThread;
@@ -43,10 +45,14 @@ impl Running {
         let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
         let (factory, receiver) = queue::channel(4096);
         let clock = Clock::monotonic();
+        let pen = Arc::new(Mutex::new(VirtualPen::new(&factory, clock.clone())));
         let live = Live::start(begun.world, receiver, clock, config.r#loop, 4096, journal);
         let live = live.expect("runs");
         let presets = sculptd::presets().clone();
-        let host = Host::new(live.commands.clone(), live.published.clone(), presets);
+        let host = Host {
+            pen: Some(pen),
+            ..Host::new(live.commands.clone(), live.published.clone(), presets)
+        };
         Running { live, host, thread, _senders: factory }
     }
 

@@ -12,6 +12,7 @@ mod first_minutes;
 mod idle;
 mod lost_screen;
 mod presses;
+mod regions;
 mod sessions;
 mod stage;
 mod versions;

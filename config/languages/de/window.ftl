@@ -122,6 +122,8 @@ kind-boundary = Rand
     .about = Der Rand einer offenen Fläche folgt dem Stift, und die Fläche dahinter mit ihm.
 kind-erase-layer = Ebene radieren
     .about = Nimmt weg, was die aktive Ebene bewirkt; die Fläche kehrt zu dem zurück, was darunter liegt.
+kind-draw-face-sets = Gruppen zeichnen
+    .about = Zeichnet Flächengruppen: jeder Strich eine neue; negativ geht die Gruppe weiter, auf der er begann.
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = Nullhöhe
     .about = die Höhe des Alphas, die auf der Fläche bleibt; was tiefer ist, wird eingedrückt
 number-width = Breite
     .about = Breite des Alphas in Pinselbreiten: unter 1 wird es wiederholt, über 1 beschnitten
+number-set = Gruppe
+    .about = Nummer der Flächengruppe, die gezeichnet wird; 0: jeder Strich beginnt eine neue
 
 ## The brush's settings
 
@@ -428,6 +432,8 @@ sets-eye-tip = Flächengruppe zeigen oder verbergen
 sets-colours = Farbig zeigen
 sets-isolate = nur
     .tip = Verbirgt alles außer dieser Flächengruppe
+sets-draw = zeichnen
+    .tip = Nimmt den Pinsel, der diese Flächengruppe zeichnet
 sets-none = in keiner Gruppe: { $count }
 sets-row = Gruppe { $number }: { $count }
 sets-hide-masked = Maskiertes verbergen
@@ -516,6 +522,33 @@ trim-box = Rahmen
 trim-line = Linie
     .tip = Eine Linie über die Ansicht ziehen: was links von ihr liegt, wird abgeschnitten
 trim-note = Über die Ansicht ziehen; Esc bricht ab.
+
+region-heading = Bereich der Ansicht
+region-draw = Bereich:
+region-lasso = Lasso
+    .tip = Um das Gemeinte ziehen
+region-box = Rahmen
+    .tip = Von Ecke zu Ecke ziehen
+region-line = Linie
+    .tip = Eine Linie ziehen: gemeint ist, was links von ihr liegt
+region-polyline = Polygon
+    .tip = Ecke für Ecke klicken
+region-front = Nur Vorderseiten
+    .tip = Nur was zum Auge zeigt; sonst ganz hindurch
+region-mask = Maskieren
+    .tip = Schützt, was im Bereich liegt; mit Strg: gibt es frei
+region-unmask = Freigeben
+    .tip = Gibt frei, was im Bereich liegt; mit Strg: schützt es
+region-hide = Verbergen
+    .tip = Verbirgt, was im Bereich liegt; mit Strg: alles andere
+region-isolate = Nur zeigen
+    .tip = Verbirgt alles andere; mit Strg: was im Bereich liegt
+region-face-set = Gruppe
+    .tip = Was im Bereich liegt, wird eine neue Flächengruppe
+region-done = Fertig
+    .tip = Beendet das Zeichnen von Bereichen (Esc)
+region-note = Über die Ansicht ziehen. Strg kehrt es um, Esc beendet.
+region-polyline-note = Jede Ecke klicken; die erste oder letzte nochmals, oder Enter, schließt.
 
 menu-add = vereinen
 menu-carve = abtragen
@@ -900,6 +933,15 @@ action-mask = Karte der Maske
 action-distance = Karte der Abstände
 action-trim-box = Mit Rahmen zuschneiden
 action-trim-line = Mit Linie zuschneiden
+action-region-lasso = Bereich mit Lasso
+action-region-box = Bereich mit Rahmen
+action-region-line = Bereich mit Linie
+action-region-polyline = Bereich mit Polygon
+action-region-mask = Bereich maskieren
+action-region-unmask = Bereich freigeben
+action-region-hide = Bereich verbergen
+action-region-isolate = Nur einen Bereich zeigen
+action-region-face-set = Flächengruppe aus Bereich
 action-finer = Feinere Stufe
 action-coarser = Gröbere Stufe
 action-remesh = Remesh

@@ -124,6 +124,8 @@ kind-boundary = Boundary
     .about = The border of an open surface follows the pen, and the surface behind it.
 kind-erase-layer = Erase layer
     .about = Takes away what the active layer does; the surface goes back to what is below it.
+kind-draw-face-sets = Draw face sets
+    .about = Draws face sets: each stroke a new one; negative goes on with the set that it began on.
 
 ## Numbers of single brushes
 
@@ -153,6 +155,8 @@ number-floor = floor
     .about = the height of the alpha that stays on the surface; what is lower is pressed in
 number-width = width
     .about = width of the alpha in brush widths: below 1 it repeats, above 1 it is cropped
+number-set = set
+    .about = the number of the face set that is drawn; 0: each stroke begins a new one
 
 ## The brush's settings
 
@@ -430,6 +434,8 @@ sets-eye-tip = Show or hide the face set
 sets-colours = Show by colours
 sets-isolate = only
     .tip = Hides all but this face set
+sets-draw = draw
+    .tip = Takes the brush that draws face sets, for this one
 sets-none = in no set: { $count }
 sets-row = set { $number }: { $count }
 sets-hide-masked = Hide masked
@@ -518,6 +524,33 @@ trim-box = Box
 trim-line = Line
     .tip = Drag a line over the view: what lies to its left is cut off
 trim-note = Drag over the view; Esc cancels.
+
+region-heading = Region over the view
+region-draw = Region:
+region-lasso = Lasso
+    .tip = Drag around what is meant
+region-box = Box
+    .tip = Drag from corner to corner
+region-line = Line
+    .tip = Drag a line: what lies to its left is meant
+region-polyline = Polyline
+    .tip = Press corner by corner
+region-front = Front faces only
+    .tip = Only what faces you; else all the way through
+region-mask = Mask
+    .tip = Protects what is in the region; with Ctrl: frees it
+region-unmask = Unmask
+    .tip = Frees what is in the region; with Ctrl: protects it
+region-hide = Hide
+    .tip = Hides what is in the region; with Ctrl: all but it
+region-isolate = Show only
+    .tip = Hides all but what is in the region; with Ctrl: what is in it
+region-face-set = Face set
+    .tip = What is in the region becomes a new face set
+region-done = Done
+    .tip = Ends drawing regions (Esc)
+region-note = Drag over the view; with Ctrl the other way round. Esc ends.
+region-polyline-note = Press each corner; the first or last once more, or Enter, closes it.
 
 menu-add = add
 menu-carve = carve
@@ -902,6 +935,15 @@ action-mask = Mask map
 action-distance = Distance map
 action-trim-box = Trim by a box
 action-trim-line = Trim by a line
+action-region-lasso = Region by a lasso
+action-region-box = Region by a box
+action-region-line = Region by a line
+action-region-polyline = Region by a polyline
+action-region-mask = Mask a region
+action-region-unmask = Unmask a region
+action-region-hide = Hide a region
+action-region-isolate = Show only a region
+action-region-face-set = Face set of a region
 action-finer = Finer level
 action-coarser = Coarser level
 action-remesh = Remesh

@@ -122,6 +122,8 @@ kind-boundary = Borde
     .about = El borde de una superficie abierta sigue al lápiz, y la superficie tras él.
 kind-erase-layer = Borrar capa
     .about = Quita lo que hace la capa activa; la superficie vuelve a lo que hay debajo.
+kind-draw-face-sets = Dibujar conjuntos
+    .about = Dibuja conjuntos de caras: cada trazo uno nuevo; en negativo sigue el conjunto donde empezó.
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = nivel cero
     .about = la altura del alfa que queda en la superficie; lo más bajo se hunde
 number-width = ancho
     .about = ancho del alfa en anchos del pincel: por debajo de 1 se repite, por encima se recorta
+number-set = conjunto
+    .about = número del conjunto que se dibuja; 0: cada trazo empieza uno nuevo
 
 ## The brush's settings
 
@@ -428,6 +432,8 @@ sets-eye-tip = Mostrar u ocultar el conjunto
 sets-colours = Mostrar con colores
 sets-isolate = solo
     .tip = Oculta todo menos este conjunto
+sets-draw = dibujar
+    .tip = Toma el pincel que dibuja este conjunto
 sets-none = sin conjunto: { $count }
 sets-row = conjunto { $number }: { $count }
 sets-hide-masked = Ocultar lo enmascarado
@@ -516,6 +522,33 @@ trim-box = Caja
 trim-line = Línea
     .tip = Arrastra una línea sobre la vista: lo que queda a su izquierda se corta
 trim-note = Arrastra sobre la vista; Esc cancela.
+
+region-heading = Región de la vista
+region-draw = Región:
+region-lasso = Lazo
+    .tip = Arrastra alrededor de lo que quieras
+region-box = Caja
+    .tip = Arrastra de esquina a esquina
+region-line = Línea
+    .tip = Arrastra una línea: cuenta lo que queda a su izquierda
+region-polyline = Polilínea
+    .tip = Pulsa esquina por esquina
+region-front = Solo caras frontales
+    .tip = Solo lo que mira hacia ti; si no, de lado a lado
+region-mask = Enmascarar
+    .tip = Protege lo que hay en la región; con Ctrl: lo libera
+region-unmask = Desenmascarar
+    .tip = Libera lo que hay en la región; con Ctrl: lo protege
+region-hide = Ocultar
+    .tip = Oculta lo que hay en la región; con Ctrl: todo lo demás
+region-isolate = Mostrar solo
+    .tip = Oculta todo lo demás; con Ctrl: lo que hay en la región
+region-face-set = Conjunto
+    .tip = Lo que hay en la región pasa a ser un conjunto nuevo
+region-done = Listo
+    .tip = Termina de dibujar regiones (Esc)
+region-note = Arrastra sobre la vista. Ctrl invierte, Esc termina.
+region-polyline-note = Pulsa cada esquina; otra vez la primera o la última, o Intro, la cierra.
 
 menu-add = unir
 menu-carve = tallar
@@ -900,6 +933,15 @@ action-mask = Mapa de máscara
 action-distance = Mapa de distancias
 action-trim-box = Recortar con una caja
 action-trim-line = Recortar con una línea
+action-region-lasso = Región con lazo
+action-region-box = Región con una caja
+action-region-line = Región con una línea
+action-region-polyline = Región con polilínea
+action-region-mask = Enmascarar una región
+action-region-unmask = Desenmascarar una región
+action-region-hide = Ocultar una región
+action-region-isolate = Mostrar solo una región
+action-region-face-set = Conjunto de una región
 action-finer = Nivel más fino
 action-coarser = Nivel más basto
 action-remesh = Remallar

@@ -122,6 +122,8 @@ kind-boundary = Bord
     .about = Le bord d'une surface ouverte suit le stylet, et la surface derrière lui.
 kind-erase-layer = Effacer calque
     .about = Enlève ce que fait le calque actif ; la surface revient à ce qui est dessous.
+kind-draw-face-sets = Dessiner groupes
+    .about = Dessine des groupes de faces : un nouveau par trait ; en négatif, prolonge le groupe où il a commencé.
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = niveau zéro
     .about = la hauteur de l'alpha qui reste sur la surface ; ce qui est plus bas est enfoncé
 number-width = largeur
     .about = largeur de l'alpha en largeurs de brosse : sous 1 il se répète, au-dessus il est rogné
+number-set = groupe
+    .about = numéro du groupe dessiné ; 0 : chaque trait en commence un nouveau
 
 ## The brush's settings
 
@@ -428,6 +432,8 @@ sets-eye-tip = Afficher ou masquer le groupe de faces
 sets-colours = Montrer en couleurs
 sets-isolate = seul
     .tip = Cache tout sauf ce groupe
+sets-draw = dessiner
+    .tip = Prend la brosse qui dessine ce groupe
 sets-none = hors groupe : { $count }
 sets-row = groupe { $number } : { $count }
 sets-hide-masked = Cacher le masqué
@@ -516,6 +522,33 @@ trim-box = Cadre
 trim-line = Ligne
     .tip = Glisser une ligne sur la vue : ce qui est à sa gauche est coupé
 trim-note = Glisser sur la vue ; Échap annule.
+
+region-heading = Région de la vue
+region-draw = Région :
+region-lasso = Lasso
+    .tip = Glisser autour de ce qui est visé
+region-box = Cadre
+    .tip = Glisser d’un coin à l’autre
+region-line = Ligne
+    .tip = Glisser une ligne : ce qui est à sa gauche est visé
+region-polyline = Polyligne
+    .tip = Cliquer coin par coin
+region-front = Faces avant seulement
+    .tip = Seulement ce qui vous fait face ; sinon de part en part
+region-mask = Masquer
+    .tip = Protège ce qui est dans la région ; avec Ctrl : le libère
+region-unmask = Démasquer
+    .tip = Libère ce qui est dans la région ; avec Ctrl : le protège
+region-hide = Cacher
+    .tip = Cache ce qui est dans la région ; avec Ctrl : tout le reste
+region-isolate = Montrer seul
+    .tip = Cache tout le reste ; avec Ctrl : ce qui est dans la région
+region-face-set = Groupe
+    .tip = Ce qui est dans la région devient un nouveau groupe
+region-done = Terminé
+    .tip = Arrête le dessin de régions (Échap)
+region-note = Glisser sur la vue. Ctrl inverse, Échap termine.
+region-polyline-note = Cliquer chaque coin ; encore le premier ou le dernier, ou Entrée, ferme.
 
 menu-add = unir
 menu-carve = creuser
@@ -900,6 +933,15 @@ action-mask = Carte du masque
 action-distance = Carte des distances
 action-trim-box = Rogner par un cadre
 action-trim-line = Rogner par une ligne
+action-region-lasso = Région au lasso
+action-region-box = Région par un cadre
+action-region-line = Région par une ligne
+action-region-polyline = Région par une polyligne
+action-region-mask = Masquer une région
+action-region-unmask = Démasquer une région
+action-region-hide = Cacher une région
+action-region-isolate = Montrer seule une région
+action-region-face-set = Groupe d’une région
 action-finer = Niveau plus fin
 action-coarser = Niveau plus grossier
 action-remesh = Remailler

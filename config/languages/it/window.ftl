@@ -122,6 +122,8 @@ kind-boundary = Bordo
     .about = Il bordo di una superficie aperta segue la penna, e con esso la superficie dietro.
 kind-erase-layer = Cancella livello
     .about = Toglie ciò che fa il livello attivo; la superficie torna a ciò che sta sotto.
+kind-draw-face-sets = Disegna insiemi
+    .about = Disegna insiemi di facce: ogni tratto uno nuovo; in negativo continua l’insieme da cui parte.
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = livello zero
     .about = l'altezza dell'alfa che resta sulla superficie; ciò che è più basso viene impresso
 number-width = larghezza
     .about = larghezza dell'alfa in larghezze del pennello: sotto 1 si ripete, sopra 1 è ritagliato
+number-set = insieme
+    .about = numero dell’insieme che si disegna; 0: ogni tratto ne comincia uno nuovo
 
 ## The brush's settings
 
@@ -428,6 +432,8 @@ sets-eye-tip = Mostra o nascondi l’insieme
 sets-colours = Mostra a colori
 sets-isolate = solo
     .tip = Nasconde tutto tranne questo insieme
+sets-draw = disegna
+    .tip = Prende il pennello che disegna questo insieme
 sets-none = in nessun insieme: { $count }
 sets-row = insieme { $number }: { $count }
 sets-hide-masked = Nascondi mascherato
@@ -516,6 +522,33 @@ trim-box = Riquadro
 trim-line = Linea
     .tip = Trascina una linea sulla vista: ciò che sta alla sua sinistra viene tagliato
 trim-note = Trascina sulla vista; Esc annulla.
+
+region-heading = Regione della vista
+region-draw = Regione:
+region-lasso = Lazo
+    .tip = Trascina attorno a ciò che intendi
+region-box = Riquadro
+    .tip = Trascina da angolo ad angolo
+region-line = Linea
+    .tip = Trascina una linea: conta ciò che sta alla sua sinistra
+region-polyline = Polilinea
+    .tip = Premi angolo per angolo
+region-front = Solo facce anteriori
+    .tip = Solo ciò che guarda verso di te; altrimenti da parte a parte
+region-mask = Maschera
+    .tip = Protegge ciò che è nella regione; con Ctrl: lo libera
+region-unmask = Smaschera
+    .tip = Libera ciò che è nella regione; con Ctrl: lo protegge
+region-hide = Nascondi
+    .tip = Nasconde ciò che è nella regione; con Ctrl: tutto il resto
+region-isolate = Mostra solo
+    .tip = Nasconde tutto il resto; con Ctrl: ciò che è nella regione
+region-face-set = Insieme
+    .tip = Ciò che è nella regione diventa un nuovo insieme
+region-done = Fine
+    .tip = Finisce di disegnare regioni (Esc)
+region-note = Trascina sulla vista. Ctrl inverte, Esc termina.
+region-polyline-note = Premi ogni angolo; di nuovo il primo o l’ultimo, o Invio, la chiude.
 
 menu-add = aggiungi
 menu-carve = scava
@@ -900,6 +933,15 @@ action-mask = Mappa della maschera
 action-distance = Mappa delle distanze
 action-trim-box = Taglia con un riquadro
 action-trim-line = Taglia con una linea
+action-region-lasso = Regione con lazo
+action-region-box = Regione con un riquadro
+action-region-line = Regione con una linea
+action-region-polyline = Regione con polilinea
+action-region-mask = Maschera una regione
+action-region-unmask = Smaschera una regione
+action-region-hide = Nascondi una regione
+action-region-isolate = Mostra solo una regione
+action-region-face-set = Insieme da una regione
 action-finer = Livello più fine
 action-coarser = Livello più rado
 action-remesh = Remesh

@@ -122,6 +122,8 @@ kind-boundary = 境界
     .about = 開いた面の境界がペンに付いて動き、その奥の面も動きます。
 kind-erase-layer = レイヤー消去
     .about = アクティブなレイヤーの効果を取り除き、下の面に戻します。
+kind-draw-face-sets = 面セット描画
+    .about = 面セットを描きます。ストロークごとに新しいセット。反転では始点のセットを続けます。
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = 基準
     .about = 面に残るアルファの高さ。それより低い部分はへこみます
 number-width = 幅
     .about = アルファの幅 (ブラシ幅単位): 1 未満で繰り返し、1 を超えると切り取り
+number-set = セット
+    .about = 描く面セットの番号。0: ストロークごとに新しいセット
 
 ## The brush's settings
 
@@ -427,6 +431,8 @@ sets-eye-tip = 面セットの表示を切り替えます
 sets-colours = 色で表示
 sets-isolate = 単独
     .tip = この面セット以外を隠します
+sets-draw = 描く
+    .tip = この面セットを描くブラシを取ります
 sets-none = セットなし: { $count }
 sets-row = セット { $number }: { $count }
 sets-hide-masked = マスク部を隠す
@@ -515,6 +521,33 @@ trim-box = ボックス
 trim-line = ライン
     .tip = ビューの上で線をドラッグ。左側を切り落とします
 trim-note = ビューの上でドラッグ。Esc で中止。
+
+region-heading = ビューの領域
+region-draw = 領域:
+region-lasso = 投げ縄
+    .tip = 対象を囲むようにドラッグ
+region-box = ボックス
+    .tip = 角から角へドラッグ
+region-line = ライン
+    .tip = 線をドラッグ。左側が対象です
+region-polyline = 折れ線
+    .tip = 角を順にクリック
+region-front = 前面のみ
+    .tip = 手前を向く面のみ。オフなら奥まで
+region-mask = マスク
+    .tip = 領域の中を保護。Ctrl で解放
+region-unmask = マスク解除
+    .tip = 領域の中を解放。Ctrl で保護
+region-hide = 隠す
+    .tip = 領域の中を隠します。Ctrl でそれ以外
+region-isolate = これだけ表示
+    .tip = 領域以外を隠します。Ctrl で領域の中
+region-face-set = 面セット
+    .tip = 領域の中を新しい面セットにします
+region-done = 完了
+    .tip = 領域の描画を終えます (Esc)
+region-note = ビューの上でドラッグ。Ctrl で逆、Esc で終了。
+region-polyline-note = 角をクリック。最初か最後の角をもう一度、または Enter で閉じます。
 
 menu-add = 合体
 menu-carve = 彫る
@@ -896,6 +929,15 @@ action-mask = マスクマップ
 action-distance = 距離マップ
 action-trim-box = ボックスでトリム
 action-trim-line = ラインでトリム
+action-region-lasso = 投げ縄で領域
+action-region-box = ボックスで領域
+action-region-line = ラインで領域
+action-region-polyline = 折れ線で領域
+action-region-mask = 領域をマスク
+action-region-unmask = 領域のマスクを解除
+action-region-hide = 領域を隠す
+action-region-isolate = 領域だけを表示
+action-region-face-set = 領域から面セット
 action-finer = 細かいレベル
 action-coarser = 粗いレベル
 action-remesh = リメッシュ

@@ -122,6 +122,8 @@ kind-boundary = 边界
     .about = 开放表面的边界随笔移动, 其后的表面亦然。
 kind-erase-layer = 擦除图层
     .about = 去除活动图层的效果; 表面回到其下方的样子。
+kind-draw-face-sets = 绘制面组
+    .about = 绘制面组: 每笔一个新组; 反向则延续起笔处的面组。
 
 ## Numbers of single brushes
 
@@ -151,6 +153,8 @@ number-floor = 基准
     .about = 留在表面上的 Alpha 高度; 更低的部分被压入
 number-width = 宽度
     .about = Alpha 宽度, 以笔刷宽度计: 小于 1 重复, 大于 1 裁剪
+number-set = 面组
+    .about = 所绘面组的编号; 0: 每笔开始一个新组
 
 ## The brush's settings
 
@@ -427,6 +431,8 @@ sets-eye-tip = 显示或隐藏此面组
 sets-colours = 以颜色显示
 sets-isolate = 仅此
     .tip = 隐藏此面组以外的部分
+sets-draw = 绘制
+    .tip = 取用绘制此面组的笔刷
 sets-none = 不在面组中：{ $count }
 sets-row = 面组 { $number }：{ $count }
 sets-hide-masked = 隐藏遮罩部分
@@ -515,6 +521,33 @@ trim-box = 框
 trim-line = 线
     .tip = 在视图上拖出线: 其左侧被切去
 trim-note = 在视图上拖动; Esc 取消。
+
+region-heading = 视图区域
+region-draw = 区域:
+region-lasso = 套索
+    .tip = 围绕目标拖动
+region-box = 框
+    .tip = 从一角拖到对角
+region-line = 线
+    .tip = 拖出一条线: 其左侧为目标
+region-polyline = 折线
+    .tip = 逐角点击
+region-front = 仅正面
+    .tip = 仅朝向你的面; 否则贯穿
+region-mask = 遮罩
+    .tip = 保护区域内的部分; 按 Ctrl 则解除
+region-unmask = 解除遮罩
+    .tip = 解除区域内的遮罩; 按 Ctrl 则保护
+region-hide = 隐藏
+    .tip = 隐藏区域内的部分; 按 Ctrl 则隐藏其余
+region-isolate = 仅显示
+    .tip = 隐藏区域以外的部分; 按 Ctrl 则隐藏区域内
+region-face-set = 面组
+    .tip = 区域内的部分成为新面组
+region-done = 完成
+    .tip = 结束绘制区域 (Esc)
+region-note = 在视图上拖动。Ctrl 反转, Esc 结束。
+region-polyline-note = 点击各角; 再点首角或末角, 或按 Enter 闭合。
 
 menu-add = 合并
 menu-carve = 雕入
@@ -896,6 +929,15 @@ action-mask = 遮罩图
 action-distance = 距离图
 action-trim-box = 以框修剪
 action-trim-line = 以线修剪
+action-region-lasso = 套索区域
+action-region-box = 框选区域
+action-region-line = 线区域
+action-region-polyline = 折线区域
+action-region-mask = 遮罩一个区域
+action-region-unmask = 解除区域遮罩
+action-region-hide = 隐藏一个区域
+action-region-isolate = 仅显示一个区域
+action-region-face-set = 由区域建面组
 action-finer = 更细级别
 action-coarser = 更粗级别
 action-remesh = 重构网格

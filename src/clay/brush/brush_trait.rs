@@ -123,6 +123,8 @@ pub struct VertexChange {
     pub mask: f32,
     /// The share of the brush's colour that is laid on, 0 to 1.
     pub dye: f32,
+    /// The face set that it is in from now on, 0 for none; `None`: that which it is in.
+    pub set: Option<u16>,
 }
 
 impl VertexChange {

@@ -103,6 +103,8 @@ pub struct Dab<'a> {
     pub stroke: u32,
     /// The face set under the first dab of the stroke, of this image; 0: none.
     pub set: u16,
+    /// The face set that the stroke draws, of all images; `None`: it draws none.
+    pub draws: Option<u16>,
 }
 
 impl Dab<'_> {
@@ -233,6 +235,7 @@ impl<'a> Dab<'a> {
             travelled: 0.0,
             stroke: 1,
             set: 0,
+            draws: None,
         };
         Dab { pace: dab.pace_of(strength), ..dab }
     }

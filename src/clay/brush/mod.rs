@@ -143,6 +143,7 @@ brushes! {
     "surface-smooth" SurfaceSmooth surface_smooth::SurfaceSmoothBrush,
     "boundary" Boundary boundary::BoundaryBrush,
     "erase-layer" EraseLayer erase_layer::EraseLayerBrush,
+    "draw-face-sets" DrawFaceSets draw_face_sets::DrawFaceSetsBrush,
 }
 
 // The variants come from a macro, which marks no default.

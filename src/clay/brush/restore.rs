@@ -27,6 +27,10 @@ impl Kernel for Restore {
                 if colour != page.colour(v) {
                     out.set_colour(v, colour);
                 }
+                let set = page.face_set_before(v);
+                if set != page.face_set(v) {
+                    out.set_face_set(v, set);
+                }
             }
         }
     }

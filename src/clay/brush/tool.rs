@@ -280,6 +280,7 @@ impl<B: Brush> BrushKernel<'_, B> {
                 }
                 sum.mask += c.mask;
                 sum.dye += c.dye;
+                sum.set = sum.set.or(c.set);
             }
             if known.is_none() {
                 if !within {
@@ -295,6 +296,9 @@ impl<B: Brush> BrushKernel<'_, B> {
             }
             if sum.mask != 0.0 {
                 out.set_mask(v, page.mask(v) + sum.mask);
+            }
+            if let Some(set) = sum.set.filter(|set| *set != page.face_set(v)) {
+                out.set_face_set(v, set);
             }
             if sum.dye > 0.0
                 && let Some(Member { dab, .. }) = &self.members[0]
@@ -384,6 +388,7 @@ mod tests {
                 travelled: 0.05 * i as f32,
                 stroke: 1,
                 set: 0,
+                draws: None,
             };
             let dab = Dab { pace: first.pace_of(first.strength), ..first };
             let report = DabReport::default();

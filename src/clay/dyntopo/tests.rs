@@ -126,6 +126,7 @@ fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, worker
         travelled: radius,
         stroke: 1,
         set: 0,
+        draws: None,
     };
     let dab = Dab { pace: dab.pace_of(settings.strength * 0.5), ..dab };
     let mut scratch = Scratch::default();

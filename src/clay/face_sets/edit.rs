@@ -42,11 +42,26 @@ pub enum SetsEdit {
     ShowAll,
 }
 
+/// What is done with a part of the surface that is told vertex by vertex. Plain data: a part of
+/// commands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PartEdit {
+    /// What of it is not hidden becomes a new set.
+    NewSet,
+    /// It is hidden.
+    Hide,
+    /// All but it is hidden.
+    Isolate,
+}
+
 /// Why an edit of the face sets was not carried out. Nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SetsError {
     /// There was nothing to do.
-    #[error("it would change nothing: nothing is masked by half or more, or it is so already")]
+    #[error(
+        "it would change nothing: nothing is masked by half or more, nothing lies there, or it is \
+         so already"
+    )]
     Nothing,
     /// A set that no vertex is in.
     #[error("there is no face set {0}")]
@@ -66,10 +81,11 @@ impl SetsEdit {
     }
 }
 
-/// The greatest number that a vertex has.
-fn highest<'a>(pages: impl Iterator<Item = &'a Arc<Page>>) -> u16 {
-    let of = |p: &Arc<Page>| p.sets().and_then(|s| s.rows.iter().map(|r| r & !HIDDEN).max());
-    pages.filter_map(of).max().unwrap_or(0)
+/// The sets of a page's own vertices by `value`, where one differs from what it is.
+fn differing(page: &Page, value: impl Fn(usize) -> u16) -> Option<Vec<u16>> {
+    let own = 0..page.own();
+    let differs = own.clone().any(|v| value(v) != page.set_bits(v));
+    differs.then(|| own.map(value).collect())
 }
 
 /// The set of the corner that is nearest to a hit, by its weights; of equal ones the first.
@@ -88,7 +104,7 @@ impl Snapshot {
 
     /// The greatest number of a set; 0: there is none.
     pub fn highest_set(&self) -> u16 {
-        highest(self.pages())
+        self.pages().map(|p| p.highest_set()).max().unwrap_or(0)
     }
 
     /// Each set that there is, ascending: its number, how many vertices it has, and how many of
@@ -126,6 +142,13 @@ impl Clay {
         self.pages.iter().any(|p| p.sets.is_some())
     }
 
+    /// The number that the next new set gets: one above the greatest. `None`: all are used up.
+    /// Costs what [`Clay::highest_set`] costs.
+    pub fn next_set(&self) -> Option<u16> {
+        let highest = self.highest_set();
+        (highest < MOST_SETS).then_some(highest + 1)
+    }
+
     /// The face set under a hit of the clay as it is; 0: none.
     pub fn set_at(&self, hit: &Hit) -> u16 {
         self.pages.get(hit.page as usize).map_or(0, |page| set_at(page, hit))
@@ -140,10 +163,7 @@ impl Clay {
         let mut set = 0;
         match edit {
             SetsEdit::FromMask | SetsEdit::FromVisible => {
-                set = highest(self.pages.iter()) + 1;
-                if set > MOST_SETS {
-                    return Err(SetsError::Full);
-                }
+                set = self.next_set().ok_or(SetsError::Full)?;
             }
             SetsEdit::Hide(of) | SetsEdit::Show(of) | SetsEdit::Isolate(of) => {
                 set = *of;
@@ -170,15 +190,14 @@ impl Clay {
             SetsEdit::Assign { pages, .. } => pages.as_slice(),
             _ => &[],
         };
-        let mut changed: Vec<(u32, Vec<u16>)> = Vec::new();
-        for (number, page) in self.pages.iter().enumerate() {
-            let (own, mut assigned) = (page.own(), None);
+        self.change_sets(|number, page| {
+            let mut assigned = None;
             if let Some(((p, sets), rest)) = given.split_first()
-                && *p as usize == number
+                && *p == number
             {
                 (assigned, given) = (Some(sets), rest);
             }
-            let value = |v: usize| {
+            differing(page, |v| {
                 let now = page.set_bits(v);
                 let (of, hidden) = (now & !HIDDEN, now & HIDDEN);
                 match edit {
@@ -195,9 +214,51 @@ impl Clay {
                     SetsEdit::ShowAll => of,
                     _ => now,
                 }
-            };
-            if (0..own).any(|v| value(v) != page.set_bits(v)) {
-                changed.push((number as u32, (0..own).map(value).collect()));
+            })
+        })?;
+        Ok(set)
+    }
+
+    /// Carries out an edit of the part of the surface that `holds` tells, as a part of the open
+    /// undo step. The set that was made; 0 where none was.
+    ///
+    /// # Errors
+    /// Where there is nothing to do, or no number left. Nothing is changed then.
+    pub fn edit_part(
+        &mut self,
+        edit: PartEdit,
+        holds: impl Fn(&Page, usize) -> bool,
+    ) -> Result<u16, SetsError> {
+        let set = match edit {
+            PartEdit::NewSet => self.next_set().ok_or(SetsError::Full)?,
+            PartEdit::Hide | PartEdit::Isolate => 0,
+        };
+        self.change_sets(|_, page| {
+            differing(page, |v| {
+                let now = page.set_bits(v);
+                match edit {
+                    PartEdit::NewSet if now & HIDDEN == 0 && holds(page, v) => set,
+                    PartEdit::Hide if holds(page, v) => now | HIDDEN,
+                    PartEdit::Isolate if !holds(page, v) => now | HIDDEN,
+                    _ => now,
+                }
+            })
+        })?;
+        Ok(set)
+    }
+
+    /// Gives each page the sets of its own vertices that `new` tells, `None` for those that it has.
+    ///
+    /// # Errors
+    /// [`SetsError::Nothing`] where no page gets others.
+    fn change_sets(
+        &mut self,
+        mut new: impl FnMut(u32, &Page) -> Option<Vec<u16>>,
+    ) -> Result<(), SetsError> {
+        let mut changed: Vec<(u32, Vec<u16>)> = Vec::new();
+        for (number, page) in self.pages.iter().enumerate() {
+            if let Some(sets) = new(number as u32, page) {
+                changed.push((number as u32, sets));
             }
         }
         if changed.is_empty() {
@@ -205,7 +266,7 @@ impl Clay {
         }
         self.put_sets(&changed);
         self.history.sink.discard_owned(changed);
-        Ok(set)
+        Ok(())
     }
 
     /// New sets of the own vertices of some pages, ascending; halos follow.

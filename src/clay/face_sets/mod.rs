@@ -17,7 +17,7 @@ mod make;
 mod tests;
 
 pub use crate::page_sets::{HIDDEN, MOST_SETS, PageSets};
-pub use edit::{SetsEdit, SetsError};
+pub use edit::{PartEdit, SetsEdit, SetsError};
 pub use extract::{ExtractError, FaceSetPart, extract};
 pub use make::{Partition, partition};
 

@@ -6,13 +6,14 @@ use glam::Vec2;
 
 use super::host::{Host, failed};
 use super::scene::{QueuedSceneCommand, ask};
+use super::view_region::sets_region;
 use crate::Published;
 use crate::face_set_jobs;
-use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit, partition};
+use sculptd_clay::face_sets::{FaceSetPart, PartEdit, Partition, SetsEdit, partition};
 use sculptd_control::RpcError;
 use sculptd_control::face_sets::{
-    FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetParams, FaceSetReply,
-    FaceSetSource, FaceSetsReply,
+    FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetParams, FaceSetRegionParams,
+    FaceSetReply, FaceSetSource, FaceSetsReply,
 };
 use sculptd_control::scene::ObjectReply;
 use sculptd_engine::payload::Payload;
@@ -67,6 +68,13 @@ pub(super) fn make(host: &Host, p: FaceSetMakeParams) -> SetsDone {
     };
     let made = partition(&host.published.load_full().mesh, by).map_err(failed)?;
     edit(host, made)
+}
+
+pub(super) fn region(host: &Host, p: FaceSetRegionParams) -> SetsDone {
+    let asked = sets_region(p)?;
+    let made = u64::from(asked.edit == PartEdit::NewSet);
+    let done = ask(host, SceneCommand::SetsRegion(asked))?;
+    Ok(FaceSetReply { set: u16::try_from(done.id).ok().filter(|set| *set > 0), made })
 }
 
 /// The set that is meant; `None`: what is masked.

@@ -12,11 +12,11 @@ use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
 use super::layers::{self, LayerDone};
-use super::mask_region::mask_region;
 use super::measurement;
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
+use super::view_region::mask_region;
 use super::{retopology, scene, snap};
 use crate::command_queue::QueuedCommand;
 use crate::remesh_job::Wanted;
@@ -55,6 +55,9 @@ use sculptd_geometry::repair;
 pub const MAX_PICTURE_FILE: u64 = 256 << 20;
 
 const SENT: SentReply = SentReply { sent: true };
+
+/// What a method that is about one object answers.
+type ObjectDone = Result<asked_scene::ObjectReply, RpcError>;
 
 /// Answers one request by its name.
 ///
@@ -308,49 +311,40 @@ impl Handler for Host {
         Ok(scene::list(&self.published.load()))
     }
 
-    fn scene_add(&self, p: asked_scene::AddParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_add(&self, p: asked_scene::AddParams) -> ObjectDone {
         p.path.as_deref().map_or(Ok(()), safe)?;
         scene::add(self, &p)
     }
 
-    fn scene_remove(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_remove(&self, p: ObjectParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Remove(ObjectId(p.id)))
     }
 
-    fn scene_duplicate(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_duplicate(&self, p: ObjectParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Duplicate(ObjectId(p.id)))
     }
 
-    fn scene_rename(
-        &self,
-        p: asked_scene::RenameParams,
-    ) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_rename(&self, p: asked_scene::RenameParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Rename(ObjectId(p.id), p.name))
     }
 
-    fn scene_transform(
-        &self,
-        p: asked_scene::TransformParams,
-    ) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_transform(&self, p: asked_scene::TransformParams) -> ObjectDone {
         scene::transform(self, &p)
     }
 
-    fn scene_activate(&self, p: ObjectParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_activate(&self, p: ObjectParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Activate(ObjectId(p.id)))
     }
 
-    fn scene_show(&self, p: asked_scene::ShowParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_show(&self, p: asked_scene::ShowParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Show(ObjectId(p.id), p.visible))
     }
 
-    fn scene_lock(&self, p: asked_scene::LockParams) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_lock(&self, p: asked_scene::LockParams) -> ObjectDone {
         scene::ask(self, SceneCommand::Lock(ObjectId(p.id), p.locked))
     }
 
-    fn scene_reshape(
-        &self,
-        p: asked_scene::ReshapeParams,
-    ) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn scene_reshape(&self, p: asked_scene::ReshapeParams) -> ObjectDone {
         scene::reshape(self, &p)
     }
 
@@ -445,10 +439,11 @@ impl Handler for Host {
         face_sets::isolate(self, &p)
     }
 
-    fn sets_extract(
-        &self,
-        p: asked_sets::FaceSetExtractParams,
-    ) -> Result<asked_scene::ObjectReply, RpcError> {
+    fn sets_region(&self, p: asked_sets::FaceSetRegionParams) -> SetsDone {
+        face_sets::region(self, p)
+    }
+
+    fn sets_extract(&self, p: asked_sets::FaceSetExtractParams) -> ObjectDone {
         face_sets::extract(self, &p)
     }
 

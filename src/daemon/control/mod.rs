@@ -18,7 +18,6 @@ pub mod handler;
 pub mod host;
 mod layers;
 pub mod loop_link;
-mod mask_region;
 mod measurement;
 mod retopology;
 mod scene;
@@ -26,6 +25,7 @@ pub mod server;
 mod snap;
 mod status_reply;
 pub mod stroke;
+mod view_region;
 
 pub use host::Host;
 pub use sculptd_control::client;

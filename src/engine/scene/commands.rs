@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ObjectId, ObjectTransform, Primitive};
 use crate::payload::PayloadId;
+use crate::view_region::SetsRegion;
 use sculptd_clay::face_sets::{SetsEdit, SetsError};
 use sculptd_clay::{LayerEdit, LayerError};
 use sculptd_geometry::TriMesh;
@@ -44,6 +45,8 @@ pub enum SceneCommand {
     Snap(Box<FlushPlacing>),
     /// Something is done to the face sets of the active object, unless it is locked.
     Sets(SetsEdit),
+    /// Something is done to the face sets of what is seen in a region of the view.
+    SetsRegion(SetsRegion),
 }
 
 impl SceneCommand {
@@ -66,6 +69,7 @@ impl SceneCommand {
                 | SceneCommand::Rename(..)
                 | SceneCommand::Layers(_)
                 | SceneCommand::Snap(_)
+                | SceneCommand::SetsRegion(_)
         ) || matches!(self, SceneCommand::Sets(edit) if edit.owns_memory())
     }
 }
@@ -214,4 +218,7 @@ pub enum SceneError {
     /// What was asked of the face sets cannot be done.
     #[error(transparent)]
     Sets(#[from] SetsError),
+    /// What was meant to be a region of the view is none.
+    #[error("expected a box, a line of two places, or a polygon of 3 to 1000 corners")]
+    Region,
 }

@@ -28,7 +28,10 @@ impl World {
     pub(super) fn apply_scene(&mut self, command: &SceneCommand) {
         let before = self.stance();
         let result = self.scene_command(command);
-        let noted = matches!(command, SceneCommand::Layers(_) | SceneCommand::Sets(_));
+        let noted = matches!(
+            command,
+            SceneCommand::Layers(_) | SceneCommand::Sets(_) | SceneCommand::SetsRegion(_)
+        );
         if result.is_ok() && !noted {
             self.scene.touch();
             self.stand(before);
@@ -122,6 +125,7 @@ impl World {
                 Ok(*id)
             }
             SceneCommand::Sets(edit) => self.edit_sets(edit),
+            SceneCommand::SetsRegion(asked) => self.edit_sets_seen(asked),
             // Carried out above.
             SceneCommand::Layers(_) => Ok(self.scene.active().id),
         }
@@ -444,6 +448,6 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Snap(_) => SceneEvent::Snap,
         SceneCommand::Exchange(exchange) => exchange.event,
         SceneCommand::Layers(_) => SceneEvent::Layers,
-        SceneCommand::Sets(_) => SceneEvent::Sets,
+        SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) => SceneEvent::Sets,
     }
 }

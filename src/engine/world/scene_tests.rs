@@ -12,8 +12,9 @@ use crate::scene::{
     Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, Operand, Primitive,
     PrimitiveShape, SceneCommand, SceneError, SceneEvent,
 };
-use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure, Presets};
-use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit, extract, partition};
+use crate::view_region::{SetsRegion, ViewRegion};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Falloff, MaskAction, Measure, Presets};
+use sculptd_clay::face_sets::{FaceSetPart, PartEdit, Partition, SetsEdit, extract, partition};
 use sculptd_clay::{Clay, Workers};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_geometry::{TriMesh, job::Job, shapes};
@@ -133,7 +134,14 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
         }
         other => panic!("{other:?}"),
     };
-    let edit = match dice.roll(16) {
+    let edit = match dice.roll(18) {
+        16.. => {
+            let region = ViewRegion::Box([dice.view(), dice.view()]);
+            let edit = [PartEdit::NewSet, PartEdit::Hide, PartEdit::Isolate][dice.roll(3)];
+            let asked = SetsRegion { region, edit, front_faces: dice.roll(2) > 0 };
+            let _ = ask(world, SceneCommand::SetsRegion(asked));
+            return;
+        }
         0..=2 => SetsEdit::FromMask,
         3 => SetsEdit::FromVisible,
         4..=5 => parted(Partition::Normals(20.0 + dice.roll(60) as f32)),
@@ -205,7 +213,15 @@ fn operate(world: &mut World, dice: &mut Dice) {
             tell(world, Command::Replace(NewClay::new(plain, true)));
         }
         22 => {
-            let mut brush = Presets::default().of(BrushKind::ALL[dice.roll(6)]);
+            let kind = match dice.roll(8) {
+                6.. => BrushKind::DrawFaceSets,
+                k => BrushKind::ALL[k],
+            };
+            let mut brush = Presets::default().of(kind);
+            if kind == BrushKind::DrawFaceSets {
+                (brush.strength, brush.falloff) = (1.0, Falloff::Constant);
+                brush.negative = dice.roll(3) == 0;
+            }
             brush.radius = 0.3;
             brush.auto.face_sets = dice.roll(2) > 0;
             brush.topology.by = if dice.roll(3) == 0 { Measure::Brush } else { Measure::Off };

@@ -1,17 +1,20 @@
 //! The clay as a stroke sees it: from a place over the view to dabs, with all their images.
 
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::StepReport;
+use super::images::Images;
 use super::local_camera::LocalCamera;
 use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::dab::{HEADING, IMAGES, SHARPEST};
 use sculptd_clay::brush::restore::Restore;
-use sculptd_clay::brush::{BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool};
+use sculptd_clay::brush::{
+    BrushKind, BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool, draw_face_sets,
+};
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
-use sculptd_geometry::portable::{PortableMath, turn_matrix};
+use sculptd_geometry::portable::PortableMath;
 
 /// Of the angle between the two averages of a stroke's direction that still tells of a bend; where
 /// they lie further apart, the stroke turned a corner.
@@ -58,6 +61,9 @@ pub(super) struct Stroke {
     /// The face set under the first dab of each image, where the brush keeps to it.
     #[serde(default)]
     sets: [Option<u16>; IMAGES],
+    /// The face set that the stroke draws, once it is known: `Some(None)` where no number is left.
+    #[serde(default)]
+    draws: Option<Option<u16>>,
 }
 
 /// Where a held brush took hold, and how far it was drawn.
@@ -104,88 +110,6 @@ impl Stroke {
         let course = (heading + turn * one).normalize_or_zero();
         let bend = (turn - course * turn.dot(course)) / (HEADING * radius);
         (course, bend.clamp_length_max(SHARPEST / radius))
-    }
-}
-
-/// A map from the brush to one of its images: `m * p + t`.
-#[derive(Debug, Clone, Copy)]
-struct Image {
-    m: Mat3,
-    t: Vec3,
-    hand: f32,
-}
-
-impl Image {
-    fn about(m: Mat3, point: Vec3) -> Image {
-        Image { m, t: point - m * point, hand: m.determinant().signum() }
-    }
-
-    fn then(&self, next: &Image) -> Image {
-        Image { m: next.m * self.m, t: next.m * self.t + next.t, hand: self.hand * next.hand }
-    }
-
-    fn at(&self, p: Vec3) -> Vec3 {
-        self.m * p + self.t
-    }
-}
-
-/// All images, the brush itself first; [`IMAGES`] at most.
-#[derive(Debug, Clone, Copy)]
-struct Images {
-    list: [Image; IMAGES],
-    count: usize,
-}
-
-impl Images {
-    fn of(brush: &BrushSettings, middle: Vec3, extent: f32) -> Images {
-        let one = Image { m: Mat3::IDENTITY, t: Vec3::ZERO, hand: 1.0 };
-        let mut images = Images { list: [one; IMAGES], count: 1 };
-        for axis in 0..3 {
-            if brush.symmetry[axis] {
-                let mut sign = Vec3::ONE;
-                sign[axis] = -1.0;
-                images.double(&Image::about(Mat3::from_diagonal(sign), middle));
-            }
-        }
-        if let Some(n) = Vec3::from(brush.mirror.plane).try_normalize() {
-            // p - 2 n (n . p): Householder's reflection.
-            let m = Mat3::from_cols(
-                Vec3::X - n * (2.0 * n.x),
-                Vec3::Y - n * (2.0 * n.y),
-                Vec3::Z - n * (2.0 * n.z),
-            );
-            images.double(&Image::about(m, middle + n * (brush.mirror.offset * extent)));
-        }
-        let turns = usize::from(brush.mirror.radial).max(1);
-        let (base, kept) = (images.list, images.count);
-        for k in 1..turns {
-            let angle = std::f32::consts::TAU * k as f32 / turns as f32;
-            let m = match brush.mirror.axis {
-                0 => turn_matrix(Vec3::X, angle),
-                1 => turn_matrix(Vec3::Y, angle),
-                _ => turn_matrix(Vec3::Z, angle),
-            };
-            let turn = Image::about(m, middle);
-            base[..kept].iter().for_each(|i| images.add(i.then(&turn)));
-        }
-        images
-    }
-
-    fn add(&mut self, image: Image) {
-        if self.count < IMAGES {
-            self.list[self.count] = image;
-            self.count += 1;
-        }
-    }
-
-    fn double(&mut self, by: &Image) {
-        for i in 0..self.count {
-            self.add(self.list[i].then(by));
-        }
-    }
-
-    fn each(&self) -> &[Image] {
-        &self.list[..self.count]
     }
 }
 
@@ -259,6 +183,21 @@ impl StrokeContext<'_> {
         }
         let mesh = &*self.mesh;
         *self.stroke.sets[image].get_or_insert_with(|| hit.map_or(0, |h| mesh.set_at(h)))
+    }
+
+    /// The face set that the stroke draws, if its brush does: found at its first dab, `hit`. A new
+    /// one has a number above those of all others, so that no stroke joins another by chance.
+    fn drawn_set(&mut self, at: &PenPoint, hit: &Hit) -> Option<u16> {
+        let s = self.brush;
+        if s.kind != BrushKind::DrawFaceSets {
+            return None;
+        }
+        let mesh = &*self.mesh;
+        *self.stroke.draws.get_or_insert_with(|| match s.extra[draw_face_sets::SET] as u16 {
+            _ if s.negative != at.inverted => Some(mesh.set_at(hit)),
+            0 => mesh.next_set(),
+            set => Some(set),
+        })
     }
 
     /// The stroke goes on to a dab at `centre`: its direction, the pressure that counts, and the
@@ -347,6 +286,7 @@ impl StrokeContext<'_> {
             travelled: self.stroke.travelled,
             stroke: self.stroke.number,
             set: self.first_set(0, Some(hit)),
+            draws: self.drawn_set(at, hit),
         };
         let first = Dab { pace: first.pace_of(strength), ..first };
         let mut dabs = [first; IMAGES];

@@ -210,7 +210,8 @@ fn a_session_that_is_opened_again_has_no_desktop() {
 
 #[test]
 fn what_is_seen_in_a_region_is_masked_as_one_step() {
-    use crate::mask_region::{MaskRegion, ViewRegion};
+    use crate::mask_region::MaskRegion;
+    use crate::view_region::ViewRegion;
     use glam::Vec2;
     let plain = shapes::icosphere(1.0, 8);
     let mut world = world(&plain);

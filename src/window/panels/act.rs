@@ -3,9 +3,8 @@
 use super::cube;
 use super::modal;
 use super::state::action::{self, Action};
-use super::state::{
-    HintsFollowed, ModalSetting, SCALE, SearchBox, Trim, TrimShape, UiRequest, UiState, View,
-};
+use super::state::region::{RegionPurpose, RegionShape};
+use super::state::{HintsFollowed, ModalSetting, SCALE, SearchBox, UiRequest, UiState, View};
 use crate::look::{MATERIALS, Map};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
@@ -63,10 +62,17 @@ pub fn act(
         Action::Grid => ui_state.look.grid = !ui_state.look.grid,
         Action::Thickness => toggle(&mut ui_state.look.map, Map::Thickness),
         Action::Distance => toggle(&mut ui_state.look.map, Map::Distance),
-        Action::TrimBox | Action::TrimLine => {
-            let shape = if action == Action::TrimBox { TrimShape::Box } else { TrimShape::Line };
-            ui_state.trim = Some(Trim { shape, from: None });
-        }
+        Action::TrimBox => ui_state.region.begin(RegionShape::Box, RegionPurpose::Trim),
+        Action::TrimLine => ui_state.region.begin(RegionShape::Line, RegionPurpose::Trim),
+        Action::RegionLasso => ui_state.region.begin_shape(RegionShape::Lasso),
+        Action::RegionBox => ui_state.region.begin_shape(RegionShape::Box),
+        Action::RegionLine => ui_state.region.begin_shape(RegionShape::Line),
+        Action::RegionPolyline => ui_state.region.begin_shape(RegionShape::Polyline),
+        Action::RegionMask => ui_state.region.begin_for(RegionPurpose::Mask),
+        Action::RegionUnmask => ui_state.region.begin_for(RegionPurpose::Unmask),
+        Action::RegionHide => ui_state.region.begin_for(RegionPurpose::Hide),
+        Action::RegionIsolate => ui_state.region.begin_for(RegionPurpose::Isolate),
+        Action::RegionFaceSet => ui_state.region.begin_for(RegionPurpose::FaceSet),
         Action::TryAdd => ui_state.trial.turn(MenuItem::Add),
         Action::TryCut => ui_state.trial.turn(MenuItem::Carve),
         Action::TryKeep => ui_state.trial.turn(MenuItem::Keep),

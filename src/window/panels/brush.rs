@@ -317,7 +317,7 @@ fn profile(kind: BrushKind, d: f32) -> f32 {
         | BrushKind::SnakeHook
         | BrushKind::Thumb
         | BrushKind::Nudge => bell * 0.9 * (1.0 + 0.8 * d),
-        BrushKind::Mask | BrushKind::MaskBlur | BrushKind::Paint => 0.25,
+        BrushKind::Mask | BrushKind::MaskBlur | BrushKind::Paint | BrushKind::DrawFaceSets => 0.25,
         BrushKind::Twist => 0.4 + 0.35 * (d * 6.0).sin() * (1.0 - d * d),
         BrushKind::Texture => 0.3 + 0.2 * (d * 31.0).sin() * step(0.7),
         BrushKind::Topological => 0.5 * bell + 0.3 * (d * 12.0).cos().max(0.0) * step(0.6),

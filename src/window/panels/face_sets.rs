@@ -1,9 +1,13 @@
 //! The face sets of the active object: making them, hiding parts of the surface, and parts of it
 //! as objects of their own.
 
+use super::region;
 use super::rows;
+use super::state::region::RegionPurpose;
 use super::state::{UiRequest, UiState, View};
 use crate::language::tr;
+use crate::look::{Material, with_set};
+use sculptd_clay::brush::{BrushKind, BrushSettings, draw_face_sets};
 use sculptd_clay::face_sets::{FaceSetPart, Partition, SetsEdit};
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::SceneCommand;
@@ -34,11 +38,41 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     ui.separator();
 }
 
+/// A button that is down while it holds, in the same way.
+fn choice(ui: &mut egui::Ui, on: bool, name: &str) -> bool {
+    let button = ui.add(egui::Button::selectable(on, tr!(name)));
+    button.on_hover_text(tr!(&format!("{name}.tip"))).clicked()
+}
+
+/// The colour in which a set is shown on this material.
+fn swatch(ui: &mut egui::Ui, material: &Material, set: u16) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
+    let tint = with_set([u8::MAX; 4], set);
+    let [r, g, b] =
+        std::array::from_fn(|i| (material.base[i].powf(1.0 / 2.2) * f32::from(tint[i])) as u8);
+    ui.painter().rect_filled(rect, 3.0, egui::Color32::from_rgb(r, g, b));
+}
+
+/// The brush that draws a set; where it is `drawn` already, new ones.
+fn drawing(view: &View<'_>, drawn: Option<u16>, set: u16) -> BrushSettings {
+    let (now, kept) = (&view.state.brush, &view.state.kept_brushes);
+    let mut brush = match drawn {
+        Some(_) => *now,
+        None => view.presets.recalled(now, kept, BrushKind::DrawFaceSets),
+    };
+    let goes_on = drawn == Some(set);
+    brush.extra[draw_face_sets::SET] = if goes_on { 0.0 } else { f32::from(set) };
+    brush.clamped()
+}
+
 /// The sets, what is in none first.
 fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let sets = ui_state.face_sets.sets(view.state).to_vec();
     let hidden: u64 = sets.iter().map(|s| s.2).sum();
     let plain = sets.iter().all(|s| s.0 == 0);
+    let brush = &view.state.brush;
+    let drawn =
+        (brush.kind == BrushKind::DrawFaceSets).then(|| brush.extra[draw_face_sets::SET] as u16);
     if !plain {
         ui.checkbox(&mut ui_state.look.sets, tr!("sets-colours"));
         for &(set, vertices, hidden) in sets.iter().take(ROWS) {
@@ -52,11 +86,21 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
                     if button(ui, true, "sets-isolate") {
                         ask(out, SetsEdit::Isolate(set));
                     }
+                    if set > 0 && choice(ui, drawn == Some(set), "sets-draw") {
+                        out.push(UiRequest::World(Command::Brush(drawing(view, drawn, set))));
+                    }
                     let name = match set {
                         0 => tr!("sets-none", count = vertices),
-                        _ => tr!("sets-row", number = set, count = vertices),
+                        _ => {
+                            swatch(ui, ui_state.look.material(), set);
+                            tr!("sets-row", number = set, count = vertices)
+                        }
                     };
-                    ui.add(egui::Label::new(name).truncate());
+                    let short = match set {
+                        0 => name.clone(),
+                        _ => set.to_string(),
+                    };
+                    ui.add(egui::Label::new(short).truncate()).on_hover_text(name);
                 });
             });
         }
@@ -99,6 +143,7 @@ fn make(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     });
     let degrees = egui::Slider::new(&mut ui_state.face_sets.degrees, 1.0..=180.0);
     rows::slider(ui, degrees.suffix("°"), &tr!("sets-degrees"));
+    region::buttons(ui, &mut ui_state.region, RegionPurpose::FaceSet);
 }
 
 fn extract(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {

@@ -5,8 +5,8 @@ use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
     help, hints, history, keys, layers, legend, look, masks, measure, messages, modal, outliner,
-    preferences, pressure_curve, radial, remesh, retopology, rows, scene, search, start, symmetry,
-    tablet_keys, theme, timing, trim,
+    preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search, start,
+    symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -58,7 +58,7 @@ pub fn all(
         }
     }
     let free = ui.available_rect_before_wrap();
-    trim::ui(&ctx, ui_state, free, out);
+    region::ui(&ctx, ui_state, free, out);
     curve_stroke::ui(&ctx, view, ui_state, free, out);
     hand_menu::ui(&ctx, view, free);
     cube::ui(&ctx, view, free, out);
@@ -99,7 +99,7 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     ui.add_space(8.0);
     pressure_curve::ui(ui, view, &ui_state.devices, out);
     ui.add_space(8.0);
-    masks::ui(ui, view, out);
+    masks::ui(ui, view, ui_state, out);
     ui.add_space(8.0);
     history::ui(ui, view, ui_state, out);
 }

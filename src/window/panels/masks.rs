@@ -1,7 +1,9 @@
 //! The mask of the whole object.
 
+use super::region;
 use super::rows;
-use super::state::{Action, UiRequest, View};
+use super::state::region::RegionPurpose;
+use super::state::{Action, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
 use sculptd_clay::brush::MaskAction;
@@ -19,7 +21,7 @@ const ACTIONS: [(MaskAction, &str); 8] = [
     (MaskAction::Cavity(0.05), "mask-cavity"),
 ];
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let title = egui::CollapsingHeader::new(tr!("mask-heading")).id_salt("mask-heading");
     title.default_open(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing = [4.0, 4.0].into();
@@ -31,6 +33,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
                 }
             }
         });
+        region::buttons(ui, &mut ui_state.region, RegionPurpose::Mask);
         let keys = view.keys.text(Action::Mask);
         ui.colored_label(theme::quiet(ui), tr!("mask-note", keys = keys));
     });

@@ -32,6 +32,7 @@ pub mod outliner;
 pub mod preferences;
 pub mod pressure_curve;
 pub mod radial;
+pub mod region;
 pub mod remesh;
 pub mod retopology;
 pub mod rows;

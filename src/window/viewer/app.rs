@@ -127,7 +127,9 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 open.mouse_button(button, state == ElementState::Pressed, wiring);
             }
             WindowEvent::Touch(touch) => open.touched(&touch, wiring),
-            WindowEvent::MouseWheel { delta, .. } if !open.over_panel(open.pointer.at) => {
+            WindowEvent::MouseWheel { delta, .. }
+                if !open.over_panel(open.pointer.at) || open.over_region(open.pointer.at) =>
+            {
                 let steps = match delta {
                     MouseScrollDelta::LineDelta(_, y) => y,
                     MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,

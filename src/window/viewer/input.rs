@@ -11,11 +11,17 @@ use super::objects;
 use super::pointer::{Drag, PLAIN, give_back, lent};
 use super::state::WindowState;
 use super::wiring::Wiring;
+use crate::panels::region;
 use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::{Body, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::stroke::CurveAction;
+
+/// Whether a layer of egui takes presses that would else be for the clay.
+pub(super) fn takes_presses(layer: egui::LayerId) -> bool {
+    layer.order != egui::Order::Background || layer == region::layer()
+}
 
 impl WindowState {
     /// The pointer as a pen: it says all that a pen says.
@@ -86,9 +92,17 @@ impl WindowState {
         let context = self.egui.egui_ctx();
         let at = at / context.pixels_per_point();
         let at = egui::pos2(at.x, at.y);
-        let above = |layer: egui::LayerId| layer.order != egui::Order::Background;
         self.free.is_some_and(|free| !free.contains(at))
-            || context.layer_id_at(at).is_some_and(above)
+            || context.layer_id_at(at).is_some_and(takes_presses)
+    }
+
+    /// Whether a place in the window, pixels, lies where the pointer draws a region. Only the left
+    /// button does.
+    pub(super) fn over_region(&self, at: Vec2) -> bool {
+        let context = self.egui.egui_ctx();
+        let at = at / context.pixels_per_point();
+        let over = context.layer_id_at(egui::pos2(at.x, at.y)) == Some(region::layer());
+        over && self.ui_state.region.drawing.is_some()
     }
 
     /// A press belongs to what is under the pointer at the time of the press, whatever the last
@@ -102,7 +116,9 @@ impl WindowState {
         };
         if down && self.pointer.drag == Drag::None {
             let dragged = self.held_on_panels != 0;
-            if dragged || self.over_panel(self.pointer.at) {
+            let at = self.pointer.at;
+            let turns = button != MouseButton::Left && self.over_region(at);
+            if dragged || self.over_panel(at) && !turns {
                 self.held_on_panels |= bit;
                 return;
             }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::look::with_set;
 use sculptd_clay::{Page, Snapshot};
 
 /// One vertex as the card has it, 24 bytes.
@@ -345,21 +346,6 @@ impl Pages {
         }
         drawn
     }
-}
-
-/// A colour with that of a face set over it: hues of sets that follow each other are a golden angle
-/// apart, so that neighbours differ.
-fn with_set(colour: [u8; 4], set: u16) -> [u8; 4] {
-    if set == 0 {
-        return colour;
-    }
-    let hue = (f32::from(set) * 0.618_034).fract() * 6.0;
-    let [r, g, b, a] = colour;
-    let tint = [(r, 0.0f32), (g, 4.0), (b, 2.0)].map(|(c, turn)| {
-        let wave = (((hue + turn) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0);
-        (f32::from(c) * (0.45 + 0.55 * wave)).round() as u8
-    });
-    [tint[0], tint[1], tint[2], a]
 }
 
 /// The corners of a page's triangles on the card; a hidden triangle is one of no size.

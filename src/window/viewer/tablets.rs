@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2};
 
+use super::input::takes_presses;
 use super::pointer::{Drag, give_back, lent};
 use super::provisional::ProvisionalDabs;
 use super::state::WindowState;
@@ -168,17 +169,16 @@ impl WindowState {
     fn covers(&self) -> Vec<[Vec2; 2]> {
         let context = self.egui.egui_ctx();
         let scale = context.pixels_per_point();
-        let above = |layer: egui::LayerId| layer.order != egui::Order::Background;
         let mut layers: Vec<egui::LayerId> =
             context.memory(|m| m.areas().visible_layer_ids()).into_iter().collect();
         layers.sort_unstable_by_key(|l| (l.order, l.id.value()));
-        let takes_presses =
-            |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(above);
+        let above =
+            |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(takes_presses);
         layers
             .into_iter()
-            .filter(|l| above(*l))
+            .filter(|l| takes_presses(*l))
             .filter_map(|l| context.memory(|m| m.area_rect(l.id)))
-            .filter(takes_presses)
+            .filter(above)
             .map(|r| [Vec2::new(r.min.x, r.min.y) * scale, Vec2::new(r.max.x, r.max.y) * scale])
             .take(MAX_COVERS)
             .collect()

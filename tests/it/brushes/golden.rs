@@ -32,6 +32,9 @@ struct Facts {
     /// Sum of the mask, and vertices with another colour.
     masked: f64,
     coloured: u64,
+    /// Vertices in a face set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    grouped: Option<u64>,
     /// Vertices, where triangles were cut.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     vertices: Option<u64>,
@@ -86,10 +89,11 @@ fn facts_on(
         longest = longest.max(way.length());
         outwards += way.dot(a.as_dvec3().normalize());
     }
-    let mut masked = 0.0;
+    let (mut masked, mut grouped) = (0.0, 0);
     for p in 0..studio.world.mesh().page_count() as u32 {
         let page = studio.world.mesh().page(p);
         masked += (0..page.own()).map(|v| f64::from(page.mask(v))).sum::<f64>();
+        grouped += (0..page.own()).filter(|v| page.face_set(*v) > 0).count() as u64;
     }
     let round = |v: f64| (v * 1e3).round() / 1e3;
     Facts {
@@ -106,6 +110,7 @@ fn facts_on(
         },
         masked: round(masked),
         coloured: end.colours.map_or(0, |c| c.iter().filter(|c| **c != [255; 4]).count() as u64),
+        grouped: (grouped > 0).then_some(grouped),
         vertices: (end.positions.len() != start.positions.len())
             .then_some(end.positions.len() as u64),
         hash: format!("{hash:016x}"),
@@ -147,6 +152,8 @@ fn hold(name: &str, now: &Facts) {
     near(name, "volume", now.volume, then.volume, share(then.volume, 0.01));
     near(name, "masked", now.masked, then.masked, share(then.masked, 5.0));
     let vertices = |f: &Facts| f.vertices.unwrap_or(0) as f64;
+    let grouped = |f: &Facts| f.grouped.unwrap_or(0) as f64;
+    near(name, "grouped", grouped(now), grouped(&then), share(grouped(&then), 0.0));
     near(name, "vertices", vertices(now), vertices(&then), share(vertices(&then), 0.0));
     near(
         name,
@@ -186,7 +193,8 @@ fn every_brush_draws_as_it_did() {
             }
             studio.stroke(&s_curve())
         });
-        let does = now.displaced > 0 || now.masked > 0.0 || now.coloured > 0;
+        let paints = now.masked > 0.0 || now.coloured > 0 || now.grouped.is_some();
+        let does = now.displaced > 0 || paints;
         assert!(now.dabs > 0 && does, "{kind} does nothing: {now:?}");
         hold(kind.name(), &now);
     }

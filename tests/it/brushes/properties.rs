@@ -186,14 +186,15 @@ fn hit(start: &TriMesh, studio: &Studio, view: Vec2) -> Vec3 {
     mesh.pick(studio.world.camera().ray(view)).expect("on the ball").position
 }
 
-/// Which vertices were masked or coloured.
+/// Which vertices were masked, coloured or put into a face set.
 fn changed(studio: &Studio, count: usize) -> Vec<bool> {
     let (mesh, mut all) = (studio.world.mesh(), vec![false; count]);
     for i in 0..mesh.page_count() as u32 {
         let page = mesh.page(i);
         for k in 0..page.own() {
             let v = page.topology().ids[k] as usize;
-            all[v] = page.mask(k) != 0.0 || page.colour(k) != [255; 4];
+            let painted = page.mask(k) != 0.0 || page.colour(k) != [255; 4];
+            all[v] = painted || page.face_set(k) != 0;
         }
     }
     all

@@ -91,6 +91,11 @@ fn cell(kind: BrushKind) -> Picture {
         for _ in 0..2 {
             studio.stroke(&stroke()[15..]);
         }
+    } else if kind == BrushKind::DrawFaceSets {
+        // Two sets, the second over the end of the first.
+        studio.stroke(&stroke());
+        studio.tell(Command::Brush(BrushSettings { radius: 0.25, ..brush }));
+        studio.stroke(&stroke()[22..]);
     } else if kind.grip() == Grip::Surface {
         for _ in 0..if evens { 5 } else { 1 } {
             studio.stroke(&stroke());
@@ -120,6 +125,9 @@ fn cell(kind: BrushKind) -> Picture {
                 let free = 1.0 - 0.7 * page.mask(v);
                 let tint = &mut tints[page.topology().ids[v] as usize];
                 *tint = tint.map(|c| (f32::from(c) * free) as u8);
+                if let Some(set) = usize::from(page.face_set(v)).checked_sub(1) {
+                    *tint = [[205, 110, 95], [90, 140, 200]][set % 2];
+                }
             }
         }
     }

@@ -92,3 +92,53 @@ fn face_sets_are_made_hidden_extracted_by_request_and_come_back_from_a_session()
     assert_eq!((world.hash(), world.verify_invariants()), (hash, Ok(())));
     assert_eq!(world.snapshot().face_sets(), [(0, vertices - half, 0), (1, half, half)]);
 }
+
+#[test]
+fn face_sets_are_drawn_by_strokes_and_made_of_regions_by_request_and_replayed() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let session = dir.path().join("s.sculpt");
+    let run = Running::begin(&[], &session);
+    let start = run.bits();
+    let vertices = run.sets()["sets"][0]["vertices"].as_u64().expect("all are in none");
+    let steps = || run.live.published.load().undo_steps;
+    let stroke = |brush: Value| {
+        let before = steps();
+        let at = |i: u32| json!([0.45 + 0.01 * f64::from(i), 0.5, 1.0, 8 * i]);
+        let points: Vec<Value> = (0..10).map(at).collect();
+        run.ask("stroke", json!({ "points": points, "space": "view", "brush": brush }));
+        until("the stroke is a step", || steps() == before + 1);
+    };
+    stroke(json!({ "kind": "draw-face-sets" }));
+    assert_eq!(run.set_numbers(), [0, 1]);
+    stroke(json!({ "kind": "draw-face-sets", "radius": 0.05 }));
+    assert_eq!(run.set_numbers(), [0, 1, 2]);
+    stroke(json!({ "kind": "draw-face-sets", "extra": [9, 0, 0, 0] }));
+    assert_eq!(run.set_numbers().last(), Some(&9));
+    let lasso = json!({ "polygon": [[0.4, 0.4], [0.6, 0.4], [0.5, 0.7]] });
+    let made = run.ask("sets.region", json!({ "region": lasso, "action": "make" }));
+    assert_eq!(made, json!({ "set": 10, "made": 1 }));
+    let front =
+        json!({ "region": { "box": [0, 0, 0.5, 1] }, "action": "hide", "front_faces": true });
+    assert_eq!(run.ask("sets.region", front), json!({ "set": null, "made": 0 }));
+    let half = run.sets()["hidden"].as_u64().expect("a number");
+    assert!(half > vertices / 8 && half < vertices * 3 / 8, "{half} of {vertices}");
+    run.ask("sets.region", json!({ "region": { "line": [0.5, 1, 0.5, 0] }, "action": "isolate" }));
+    assert!(run.sets()["hidden"].as_u64() > Some(vertices / 2));
+    let none = json!({ "region": { "line": [0.5, 0, 0.5, 0] }, "action": "hide" });
+    assert!(run.refused("sets.region", none).contains("a line of two places"));
+    let all = steps();
+    for _ in 0..all {
+        run.ask("undo", json!({}));
+    }
+    assert_eq!(run.bits(), start, "undo of everything");
+    for _ in 0..all {
+        run.ask("redo", json!({}));
+    }
+    run.objects();
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+    let quick = session::reopen(&session, &opened, None, 1, &Job::default()).expect("a checkpoint");
+    assert_eq!(quick.replayed.world.hash(), hash);
+}

@@ -14,9 +14,10 @@ use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::projection::PlaneRegion;
 use sculptd_window::language::Translations;
 use sculptd_window::look::Map;
+use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
-    ThicknessSummary, ThinSpot, TrialStatus, Trim, TrimShape,
+    ThicknessSummary, ThinSpot, TrialStatus,
 };
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
@@ -409,7 +410,7 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     h.run_steps(3);
     h.get_all_by_label("Box").last().expect("a button").click();
     h.run_steps(3);
-    assert!(h.state().ui_state.trim.is_some());
+    assert!(h.state().ui_state.region.drawing.is_some());
     h.drag_at(egui::pos2(480.0, 180.0));
     h.run_steps(2);
     h.hover_at(egui::pos2(640.0, 360.0));
@@ -423,13 +424,13 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     let (left, width) = (PANEL + 8.0, 1280.0 - 2.0 * (PANEL + 8.0));
     let want = [(480.0 - left) / width, (180.0 - 8.0) / 704.0, 0.5, 0.5];
     assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-2), "{part:?}");
-    assert!(h.state().ui_state.trim.is_none());
+    assert!(h.state().ui_state.region.drawing.is_none());
     // Escape leaves the work as it is.
-    h.state_mut().ui_state.trim = Some(Trim { shape: TrimShape::Line, from: None });
+    h.state_mut().ui_state.region.begin(RegionShape::Line, RegionPurpose::Trim);
     h.run_steps(2);
     h.key_press(Key::Escape);
     h.run_steps(2);
-    assert!(h.state().ui_state.trim.is_none());
+    assert!(h.state().ui_state.region.drawing.is_none());
 }
 
 #[test]

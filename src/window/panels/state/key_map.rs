@@ -81,6 +81,7 @@ const BLENDER: &[(Action, Option<KeyCombination>)] = &[
     (Action::Finer, key(Key::PageUp)),
     (Action::Coarser, key(Key::PageDown)),
     (Action::Search, key(Key::F3)),
+    (Action::RegionLasso, None),
 ];
 
 /// The keys of ZBrush's manual ("Keyboard shortcuts by category").

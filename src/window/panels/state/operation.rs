@@ -1,5 +1,5 @@
 //! Operations that are prepared in the window before they are sent: a Boolean that is previewed, a
-//! trim that is drawn, a setting that is dragged.
+//! setting that is dragged.
 
 use egui::Pos2;
 use sculptd_clay::brush::BrushSettings;
@@ -27,20 +27,6 @@ pub enum TrialStatus {
     /// Triangles that the held object has made.
     Shown(usize),
     Wrong(String),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TrimShape {
-    Box,
-    Line,
-}
-
-/// A trim that is being drawn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trim {
-    pub shape: TrimShape,
-    /// Where the pointer went down, points.
-    pub from: Option<Pos2>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,11 +8,12 @@ use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::layers::LayerPanel;
 use super::messages::Message;
-use super::operation::{BooleanTrial, Modal, Trim};
+use super::operation::{BooleanTrial, Modal};
 use super::outliner::Outliner;
 use super::pens::PenTrace;
 use super::preferences::Hint;
 use super::preferences::Preferences;
+use super::region::RegionTool;
 use super::retopology::Retopology;
 use super::search::SearchBox;
 use super::sizes::SizesPage;
@@ -60,7 +61,7 @@ pub struct UiState {
     pub remesh: Wanted,
     /// Quads and decimation.
     pub retopology: Retopology,
-    pub trim: Option<Trim>,
+    pub region: RegionTool,
     /// The handle of a curve that was held last.
     pub handle: Option<usize>,
     pub sizes: SizesPage,
