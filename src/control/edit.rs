@@ -187,6 +187,9 @@ pub struct RemeshReply {
     pub volume_before: f64,
     /// The volume after. Parts thinner than a voxel or two are lost or grow together.
     pub volume: f64,
+    /// Pairs of triangles that cross each other.
+    #[serde(default)]
+    pub self_intersections: u64,
     /// How long it took, seconds.
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.

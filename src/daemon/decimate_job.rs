@@ -64,6 +64,7 @@ pub fn decimated(
         let target = DecimationTarget {
             triangles: wanted.triangles,
             error: wanted.max_error.map_or(f64::INFINITY, f64::from),
+            single: true,
         };
         let done = decimate(&old.to_poly(), marked.as_deref(), target, job)?;
         let mut new = done.mesh.triangulate().0;

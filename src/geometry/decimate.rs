@@ -31,6 +31,9 @@ pub struct DecimationTarget {
     /// And before the mean square distance to the planes that a vertex stands for exceeds this one
     /// squared, in the mesh's unit; infinity for no bound.
     pub error: f64,
+    /// Places are rounded to single precision, in which clay keeps them, before crossings are
+    /// looked for.
+    pub single: bool,
 }
 
 /// Rounds of the search for a result without new crossings.
@@ -265,6 +268,9 @@ fn collapsed(
     }
     // Crossings are looked for in the numbers that go out.
     s.positions.iter_mut().for_each(|p| *p += middle);
+    if target.single {
+        s.positions.iter_mut().for_each(|p| *p = p.as_vec3().as_dvec3());
+    }
     Ok(s)
 }
 

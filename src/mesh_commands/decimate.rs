@@ -30,8 +30,11 @@ pub fn run(args: &DecimateArgs, json: bool) -> Outcome {
     let job = Job::default();
     let loaded = read_mesh(&args.mesh, &job)?;
     let mut warnings = loaded.warnings;
-    let target =
-        DecimationTarget { triangles: args.faces, error: args.max_error.unwrap_or(f64::INFINITY) };
+    let target = DecimationTarget {
+        triangles: args.faces,
+        error: args.max_error.unwrap_or(f64::INFINITY),
+        single: false,
+    };
     let done = decimate(&loaded.mesh, None, target, &job).map_err(interrupted)?;
     let made = done.mesh;
     if done.new_crossings > 0 {

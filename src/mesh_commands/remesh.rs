@@ -94,9 +94,13 @@ pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
     }
     let job = Job::default();
     writable_format(&args.out)?;
-    let Ready { part, solid, warnings } = solid(&args.mesh, &job)?;
+    let Ready { part, solid, mut warnings } = solid(&args.mesh, &job)?;
     let settings = RemeshSettings { side: args.how.side, sharp: args.sharp };
     let (made, seconds) = timed(|| remesh(&part.mesh, &solid, settings, &job));
+    let made = made?;
+    if made.crossings > 0 {
+        warnings.push(format!("the new mesh crosses itself {} times", made.crossings));
+    }
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made?, part.centre, seconds, warnings, json)
+    finish(&args.out, &made.mesh, part.centre, seconds, warnings, json)
 }

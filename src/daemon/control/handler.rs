@@ -19,11 +19,10 @@ use super::stroke::LentBrush;
 use super::view_region::mask_region;
 use super::{retopology, scene, snap};
 use crate::command_queue::QueuedCommand;
-use crate::remesh_job::Wanted;
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
-use crate::{Published, boolean_jobs, remesh_job, scene_jobs, startup, trim};
+use crate::{Published, boolean_jobs, scene_jobs, startup, trim};
 use sculptd_clay::brush::{self, BrushKind, Picture};
 use sculptd_clay::face_sets::SetsEdit;
 use sculptd_clay::{LayerEdit, LayerId};
@@ -498,24 +497,7 @@ impl Handler for Host {
     }
 
     fn remesh(&self, params: edit::RemeshParams) -> Result<edit::RemeshReply, RpcError> {
-        let place = self.begin_boolean()?;
-        let clock = Clock::monotonic();
-        let begun = clock.now_us();
-        let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
-        let (command, made) =
-            remesh_job::remeshed(&self.published, &wanted, &place.job).map_err(failed)?;
-        let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
-        self.send(command)?;
-        Ok(edit::RemeshReply {
-            layers_baked,
-            sets_dropped,
-            voxel: made.voxel,
-            vertices: made.vertices as u64,
-            triangles: made.triangles as u64,
-            volume_before: made.volume[0],
-            volume: made.volume[1],
-            seconds: (clock.now_us() - begun) as f64 * 1e-6,
-        })
+        retopology::remesh(self, params)
     }
 
     fn remesh_quads(&self, params: RemeshQuadsParams) -> Result<RemeshQuadsReply, RpcError> {

@@ -3,12 +3,35 @@
 use glam::DVec3;
 
 use super::host::{Host, failed};
-use super::layers;
+use super::{face_sets, layers};
 use crate::decimate_job::{DecimateWanted, decimated};
 use crate::quad_job::{QuadsWanted, quads};
+use crate::remesh_job::{Wanted, remeshed};
 use sculptd_control::RpcError;
+use sculptd_control::edit::{RemeshParams, RemeshReply};
 use sculptd_control::retopology as asked;
 use sculptd_devices::Clock;
+
+pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, RpcError> {
+    let place = host.begin_boolean()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
+    let (command, made) = remeshed(&host.published, &wanted, &place.job).map_err(failed)?;
+    let (layers_baked, sets_dropped) = (layers::count(host), face_sets::count(host));
+    host.send(command)?;
+    Ok(RemeshReply {
+        layers_baked,
+        sets_dropped,
+        voxel: made.voxel,
+        vertices: made.vertices as u64,
+        triangles: made.triangles as u64,
+        volume_before: made.volume[0],
+        volume: made.volume[1],
+        self_intersections: made.crossings as u64,
+        seconds: (clock.now_us() - begun) as f64 * 1e-6,
+    })
+}
 
 pub(super) fn remesh_quads(
     host: &Host,

@@ -4,7 +4,7 @@ use crate::shapes::{cuboid, grid, icosphere, torus};
 use crate::subdivide::loop_;
 
 fn down(mesh: &PolyMesh, triangles: usize, error: f64) -> PolyMesh {
-    quadric(mesh, DecimationTarget { triangles, error }, &Job::default()).unwrap()
+    quadric(mesh, DecimationTarget { triangles, error, single: false }, &Job::default()).unwrap()
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn two_sheets_close_to_each_other_do_not_cross() {
         let turned: Vec<u32> = face.iter().rev().map(|&v| v + n).collect();
         both.push_face(&turned);
     }
-    let target = DecimationTarget { triangles: 800, error: f64::INFINITY };
+    let target = DecimationTarget { triangles: 800, error: f64::INFINITY, single: false };
     let out = decimate(&both, None, target, &Job::default()).unwrap();
     assert!(out.repeated > 0, "the bound was not needed: {out:?}");
     let facts = report(&out.mesh, true, &Job::default()).unwrap();
@@ -85,7 +85,7 @@ fn what_crossed_before_is_not_counted_as_new() {
         let moved: Vec<u32> = face.iter().map(|&v| v + n).collect();
         both.push_face(&moved);
     }
-    let target = DecimationTarget { triangles: 1000, error: f64::INFINITY };
+    let target = DecimationTarget { triangles: 1000, error: f64::INFINITY, single: false };
     let out = decimate(&both, None, target, &Job::default()).unwrap();
     assert_eq!((out.new_crossings, out.mesh.face_count() <= 1000), (0, true));
 }
@@ -97,7 +97,7 @@ fn the_border_of_a_mask_and_of_groups_stays_where_it_is() {
     let is_marked = |f: &[u32]| f.iter().filter(|&&v| marked[v as usize]).count() >= 2;
     let groups: Vec<u32> = ball.faces().map(|f| u32::from(is_marked(f))).collect();
     let grouped = PolyMesh { groups: Some(groups), ..ball };
-    let target = DecimationTarget { triangles: 500, error: f64::INFINITY };
+    let target = DecimationTarget { triangles: 500, error: f64::INFINITY, single: false };
     let area = |m: &PolyMesh| -> f64 {
         let groups = m.groups.as_ref().unwrap();
         let each = m.faces().zip(groups).filter(|(_, g)| **g == 1).map(|(f, _)| {
@@ -119,4 +119,21 @@ fn the_border_of_a_mask_and_of_groups_stays_where_it_is() {
     let border: Vec<f64> =
         (0..sides.len()).filter(|&v| sides[v] == [true; 2]).map(|v| out.positions[v].z).collect();
     assert!(border.len() > 10 && border.iter().all(|z| (z - 0.3).abs() < 0.05), "{border:?}");
+}
+
+/// Sixteen million from the origin single precision knows whole numbers only: a ball of radius 1
+/// crosses itself once it is rounded, and that must be told.
+#[test]
+fn crossings_are_counted_in_the_precision_that_is_kept() {
+    let mut ball = icosphere(1.0, 12).to_poly();
+    ball.positions.iter_mut().for_each(|p| *p += DVec3::new(1.6e7, 0.0, 0.0));
+    let job = Job::default();
+    let target = DecimationTarget { triangles: 200, error: f64::INFINITY, single: true };
+    let done = decimate(&ball, None, target, &job).unwrap();
+    assert!(done.mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p));
+    let triangles = done.mesh.triangles().0;
+    let found = self_intersection::pairs(&done.mesh.positions, &triangles, &job).unwrap().len();
+    assert!(found > 0 && found == done.new_crossings, "{found} and {}", done.new_crossings);
+    let exact = decimate(&ball, None, DecimationTarget { single: false, ..target }, &job).unwrap();
+    assert_eq!(exact.new_crossings, 0);
 }

@@ -1,9 +1,11 @@
 //! Voxel remeshing: a new mesh from the sampled distance to an old one, even triangles, one closed
 //! surface, whatever the old one was. The surface is extracted by dual marching cubes (Nielson
 //! 2004, see [`dual`]) and projected onto the old one; with sharp edges its vertices are placed as
-//! dual contouring does (Ju et al. 2002).
+//! dual contouring does (Ju et al. 2002). Where it would cross itself, vertices go back into their
+//! cells.
 
 pub mod dual;
+mod untangle;
 
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
@@ -13,6 +15,7 @@ use super::grid::{DistanceGrid, MAX_SAMPLES};
 use crate::TriMesh;
 use crate::bvh::REACH;
 use crate::job::{Cancelled, Job};
+use untangle::{CalmPlaces, untangle};
 
 /// How fine the new mesh is, and whether edges stay sharp.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +81,15 @@ pub(super) fn layout(
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
 }
 
+/// What came of a remeshing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remade {
+    /// The new mesh.
+    pub mesh: TriMesh,
+    /// Pairs of its triangles that cross each other.
+    pub crossings: usize,
+}
+
 /// Voxel remeshing: one closed 2-manifold around everything that is inside `mesh`, its vertices on
 /// the old surface (or, where a hole was closed, between its rims), with the old colours. `solid`
 /// was built from `mesh`.
@@ -86,21 +98,31 @@ pub fn remesh(
     solid: &DistanceSolid,
     settings: RemeshSettings,
     job: &Job,
-) -> Result<TriMesh, RemeshError> {
-    let grid = DistanceGrid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
+) -> Result<Remade, RemeshError> {
+    let mut grid = DistanceGrid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
     let h = grid.spacing;
     let place = |points: &[DVec3]| {
-        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+        let middle = middle(points);
         let start = if settings.sharp { corner(solid, points, middle, h) } else { middle };
         onto(solid, start, h)
     };
-    let (positions, triangles) = dual::extract(&grid, place, job)?;
+    let (mut positions, triangles) = dual::extract(&grid, place, job)?;
     if triangles.is_empty() {
         return Err(RemeshError::Empty);
     }
+    let calm = || {
+        let middles = dual::extract(&grid, middle, job)?.0;
+        grid.values.par_iter_mut().for_each(|v| *v = if *v < 0.0 { -1.0 } else { 1.0 });
+        Ok(CalmPlaces { middles, halves: dual::extract(&grid, middle, job)?.0 })
+    };
+    let crossings = untangle(&mut positions, &triangles, calm, job)?;
     let colours = colours(mesh, solid, &positions, job)?;
     job.progress(1.0);
-    Ok(TriMesh { positions, triangles, colours })
+    Ok(Remade { mesh: TriMesh { positions, triangles, colours }, crossings })
+}
+
+fn middle(points: &[DVec3]) -> DVec3 {
+    points.iter().sum::<DVec3>() / points.len() as f64
 }
 
 /// The place on the old surface nearest to `p`, less a fiftieth of the way: two vertices that meet

@@ -365,8 +365,14 @@ impl Tasks {
             let [before, now] = made.volume;
             let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
             let voxel = format!("{:.4}", made.voxel);
-            let count = made.triangles;
-            let text = tr!("task-remeshed", count = count, voxel = voxel, change = change);
+            let (count, crossings) = (made.triangles, made.crossings);
+            let text = tr!(
+                "task-remeshed",
+                count = count,
+                voxel = voxel,
+                change = change,
+                crossings = crossings
+            );
             Ok((vec![command], text))
         });
     }

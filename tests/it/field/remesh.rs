@@ -84,7 +84,9 @@ fn shapes_are_remeshed_within_half_a_voxel() {
     ] {
         let old = solid(&mesh);
         let settings = RemeshSettings { side: 64, sharp };
-        let new = remesh(&mesh, &old, settings, &job).unwrap();
+        let made = remesh(&mesh, &old, settings, &job).unwrap();
+        assert_eq!(made.crossings, 0, "{name}");
+        let new = made.mesh;
         assert!(manifold(&new), "{name}");
         let (lo, hi) = bounds(&mesh);
         let voxel = (hi - lo).max_element() / 57.0;
@@ -106,7 +108,8 @@ fn shapes_are_remeshed_within_half_a_voxel() {
             .collect(),
     );
     let new = remesh(&coloured, &solid(&coloured), RemeshSettings { side: 32, sharp: false }, &job)
-        .unwrap();
+        .unwrap()
+        .mesh;
     for (p, c) in new.positions.iter().zip(new.colours.as_ref().unwrap()) {
         assert!(p.x.abs() < 0.15 || (c[0] == 200) == (p.x > 0.0), "{p} {c:?}");
     }
@@ -126,7 +129,8 @@ fn soups_and_crossed_meshes_become_one_solid() {
     for (name, mesh) in meshes(most) {
         let old = solid(&mesh);
         match remesh(&mesh, &old, RemeshSettings { side, sharp: false }, &job) {
-            Ok(new) => {
+            Ok(made) => {
+                let new = made.mesh;
                 assert!(manifold(&new), "{name}");
                 let (lo, hi) = bounds(&mesh);
                 let voxel = (hi - lo).max_element() / (side - 7) as f64;

@@ -30,7 +30,7 @@ fn remesh(
     let settings = RemeshSettings { side, sharp };
     let made = watched(py, &progress, |job| remeshing::remesh(&part.mesh, &solid, settings, job))?
         .map_err(|e| errors::remesh(&e))?;
-    Ok(Mesh::at(&made, part.centre))
+    Ok(Mesh::at(&made.mesh, part.centre))
 }
 
 /// The surface at `distance` from that of `mesh`, and nowhere nearer; negative shrinks. Raises
@@ -89,7 +89,7 @@ fn decimate(
         return Err(PyValueError::new_err("expected a number of triangles, or an error, or both"));
     }
     let poly = mesh.get().poly.clone();
-    let target = DecimationTarget { triangles, error };
+    let target = DecimationTarget { triangles, error, single: false };
     let made =
         watched(py, &progress, |job| quadric(&poly, target, job))?.map_err(errors::cancelled)?;
     Ok(made.into())
