@@ -70,8 +70,8 @@ pub struct StepReport {
     pub join: Option<MenuItem>,
     /// A hand has put an object of the scene down: a worker may lay it flush on a face near it.
     pub put_down: Option<ObjectId>,
-    /// How often undo (counted below 0) or redo (above) was asked for, and nothing in memory answers
-    /// to it: for whoever keeps the history outside.
+    /// How often undo (counted below 0) or redo (above) was asked for, and nothing in memory
+    /// answers to it: for whoever keeps the history outside.
     pub missed: i32,
     /// Balls in which dynamic topology was still to be done and was given up: more waited than the
     /// list holds, or than could be done before a command that ends strokes.

@@ -13,7 +13,7 @@ use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
-/// Of the shortest edge about a vertex, the furthest that a dab for which `span` is 1 takes it.
+/// Of the shortest edge about a vertex, the furthest that a dab takes it for which `span` is 1.
 const SAFE: f32 = 0.3;
 
 /// One dab of slide relax, made ready.
@@ -42,7 +42,8 @@ impl Brush for SlideRelaxBrush {
         for k in spot.page.ring(spot.v) {
             shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
         }
-        let flat = (by - n * by.dot(n)).clamp_length_max(SAFE * dab.span.min(1.0) * shortest.sqrt());
+        let most = SAFE * dab.span.min(1.0) * shortest.sqrt();
+        let flat = (by - n * by.dot(n)).clamp_length_max(most);
         VertexChange::by(put_back(spot, flat))
     }
 }

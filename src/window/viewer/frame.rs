@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::clay_picture::ClayPictureKey;
+use super::mirrors::mirrors;
 use super::objects::{self, Stance};
 use super::overlay;
 use super::pages::MapValues;
@@ -45,7 +46,7 @@ impl WindowState {
             let to_world = state.transform();
             let own = to_world.inverse();
             let (middle, ray) = (own.point(state.middle), own.ray(ray));
-            for m in overlay::mirrors(state.brush.symmetry) {
+            for m in mirrors(state.brush.symmetry) {
                 let origin = middle + (ray.origin - middle) * m;
                 let mirrored = sculptd_clay::Ray { origin, dir: ray.dir * m };
                 if let Some(hit) = state.pick(to_world.ray(mirrored)) {

@@ -16,6 +16,7 @@ pub mod gizmo;
 pub mod gpu;
 mod input;
 mod latest_wins;
+mod mirrors;
 pub mod objects;
 mod overlay;
 pub mod overlay_mesh;

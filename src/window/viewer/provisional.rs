@@ -3,13 +3,13 @@
 //! Laws kept here:
 //! * It is drawn and nothing else: the shader moves the vertices of the picture, so the clay
 //!   depends on real samples alone, and the next snapshot takes the place of what was led.
-//! * It is shown only where it is known what the brush will do: draw and inflate, whose dabs add up by
-//!   their falloff, drawn evenly along the path. With any other only the ring runs ahead.
+//! * It is shown only where it is known what the brush will do: draw and inflate, whose dabs add
+//!   up by their falloff, drawn evenly along the path. With any other only the ring runs ahead.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 
-use super::overlay;
+use super::mirrors::mirrors;
 use sculptd_clay::Ray;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Measure, Method, StampBy};
 use sculptd_daemon::Published;
@@ -119,7 +119,7 @@ impl ProvisionalDabs {
         let to_world = state.transform();
         let own = to_world.inverse();
         let middle = own.point(state.middle);
-        for m in overlay::mirrors(brush.symmetry) {
+        for m in mirrors(brush.symmetry) {
             let place = |p: Vec3| to_world.point(middle + (own.point(p) - middle) * m);
             let direction = |d: Vec3| to_world.direction(own.direction(d) * m);
             let mirrored = |r: Ray| Ray { origin: place(r.origin), dir: direction(r.dir) };
