@@ -71,8 +71,8 @@ impl PolygonStore {
     }
 
     /// An object's mesh with the faces and groups of its file, where its triangles are still those
-    /// of the file; else its triangles. A vertex that is where the file had it has the file's
-    /// double precision.
+    /// of the file; else its triangles. A coordinate that is where the file had it has the file's
+    /// double precision: rows of vertices that a stroke moves only upwards stay rows.
     pub fn polygons(&self, plain: &TriMesh) -> PolyMesh {
         let key = key(plain.positions.len(), &plain.triangles);
         let found = {
@@ -83,9 +83,8 @@ impl PolygonStore {
             f.triangles == plain.triangles && f.mesh.positions.len() == plain.positions.len()
         };
         let Some(file) = found.filter(same) else { return plain.to_poly() };
-        let place = |(now, then): (&glam::Vec3, &glam::DVec3)| match then.as_vec3() == *now {
-            true => *then,
-            false => now.as_dvec3(),
+        let place = |(now, then): (&glam::Vec3, &glam::DVec3)| {
+            glam::DVec3::select(then.as_vec3().cmpeq(*now), *then, now.as_dvec3())
         };
         let positions = plain.positions.iter().zip(&file.mesh.positions).map(place).collect();
         PolyMesh { positions, colours: plain.colours.clone(), ..file.mesh.clone() }
@@ -121,7 +120,8 @@ mod tests {
         plain.positions[7] += Vec3::Y;
         let moved = store.polygons(&plain);
         assert_eq!((&moved.corners, &moved.groups), (&quads.corners, &quads.groups));
-        assert_eq!(moved.positions[7], plain.positions[7].as_dvec3());
+        let raised = f64::from(plain.positions[7].y);
+        assert_eq!(moved.positions[7], DVec3 { y: raised, ..quads.positions[7] });
         assert_eq!(moved.positions[8], quads.positions[8]);
         plain.triangles.swap(3, 4);
         assert_eq!(store.polygons(&plain), plain.to_poly());
