@@ -54,7 +54,8 @@
 //! [`sculptd_engine::world`] turns them into view rays, a resampled stroke and dabs;
 //! [`sculptd_clay::Clay::dab`] moves vertices in pages. The [`sculptd_clay::Snapshot`] in
 //! [`sculptd_daemon::Published`] hands the result to the viewer, which uploads the pages that
-//! changed and draws.
+//! changed and draws. Where a tablet's pen will be when the frame is seen, ring and stroke run
+//! ahead of it in the picture alone: `viewer::provisional`.
 //!
 //! ## Crates, from the bottom up
 //! The compiler holds the arrows between them; `tests/tidy` refuses circles between the files of a

@@ -169,16 +169,22 @@ fn both_ways(path: &Path) -> (u64, u64) {
     (replayed.world.hash(), quick.replayed.world.hash())
 }
 
-#[test]
-fn undo_goes_back_beyond_memory_and_a_restart_and_branches_stay() {
-    let dir = tempfile::tempdir().expect("a folder");
-    // One byte: every step is forgotten at once, and all undo comes from the file.
-    let mut s = Studio::begin(dir.path(), 3000, 1);
+/// Four strokes, and the hashes before them and after each. One byte of memory: every step is
+/// forgotten at once, and all undo comes from the file.
+fn four_forgotten_strokes(dir: &Path) -> (Studio, Vec<u64>) {
+    let mut s = Studio::begin(dir, 3000, 1);
     let mut hashes = vec![s.world.hash()];
     for k in 0..4 {
         hashes.push(s.stroke(Vec2::new(-0.1 + 0.06 * k as f32, 0.05)));
     }
     s.settle();
+    (s, hashes)
+}
+
+#[test]
+fn undo_goes_back_beyond_memory_and_a_restart_and_branches_stay() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (mut s, hashes) = four_forgotten_strokes(dir.path());
     assert_eq!(s.world.undo_steps(), 0);
     for k in [3, 2] {
         s.tick(&[], &[Command::Undo]);
@@ -223,12 +229,7 @@ fn undo_goes_back_beyond_memory_and_a_restart_and_branches_stay() {
 #[test]
 fn undos_of_one_tick_each_go_back_a_step_beyond_memory() {
     let dir = tempfile::tempdir().expect("a folder");
-    let mut s = Studio::begin(dir.path(), 3000, 1);
-    let mut hashes = vec![s.world.hash()];
-    for k in 0..4 {
-        hashes.push(s.stroke(Vec2::new(-0.1 + 0.06 * k as f32, 0.05)));
-    }
-    s.settle();
+    let (mut s, hashes) = four_forgotten_strokes(dir.path());
     s.tick(&[], &[Command::Undo, Command::Undo, Command::Undo]);
     s.becomes(hashes[1]);
     s.tick(&[], &[Command::Redo, Command::Redo]);
