@@ -3,7 +3,7 @@
 //! which is deterministic. What is sent is input, never a mesh; only who joins is given the pages
 //! of a checkpoint.
 //!
-//! Where to start: [`station`], the protocol as a state machine without clock, IO and threads;
+//! Read first: [`station`], the protocol as a state machine without clock, IO and threads;
 //! [`wire`], its messages; [`executor`], which steps a world by frames. With the feature
 //! `zenoh`, `live` runs a station beside the tick loop, and `zenoh_link` carries its datagrams.
 //!
