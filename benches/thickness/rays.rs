@@ -144,7 +144,8 @@ fn main() {
     }
     let _ = writeln!(
         std::io::stdout(),
-        "{{\"triangles\":{},\"rays\":{},\"hits\":{hits},\"seconds\":{seconds:.6},\"build\":{build:.4},\"rate\":{:.3},\"measure\":[{}]}}",
+        "{{\"triangles\":{},\"rays\":{},\"hits\":{hits},\"seconds\":{seconds:.6},\
+         \"build\":{build:.4},\"rate\":{:.3},\"measure\":[{}]}}",
         mesh.triangles.len(),
         rays.len(),
         rays.len() as f64 / seconds * 1e-6,

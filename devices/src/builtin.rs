@@ -1,811 +1,164 @@
-//! The tablet files that are built in, one line each. A test holds this list to the folder, and
-//! writes it anew when `SCULPTD_BLESS` is set.
+//! The tablet files that are built in. A test holds this list to the folder, and writes it anew
+//! when `SCULPTD_BLESS` is set.
+
+/// Name and text of the files of `tablets/` with these names.
+macro_rules! tablets {
+    ($($name:literal)*) => {
+        &[$((concat!($name, ".toml"), include_str!(concat!("../tablets/", $name, ".toml")))),*]
+    };
+}
 
 /// Name and text of each file of `tablets/`, in alphabetical order.
 #[rustfmt::skip]
-pub(crate) const TABLETS: &[(&str, &str)] = &[
-    ("acepen-ap1060.toml", include_str!("../tablets/acepen-ap1060.toml")),
-    ("acepen-ap906.toml", include_str!("../tablets/acepen-ap906.toml")),
-    ("adesso-cybertablet-k8.toml", include_str!("../tablets/adesso-cybertablet-k8.toml")),
-    ("artisul-a1201.toml", include_str!("../tablets/artisul-a1201.toml")),
-    ("artisul-ap604.toml", include_str!("../tablets/artisul-ap604.toml")),
-    ("artisul-d16-pro.toml", include_str!("../tablets/artisul-d16-pro.toml")),
-    ("artisul-m0610-pro.toml", include_str!("../tablets/artisul-m0610-pro.toml")),
-    ("chuwi-minibook-x.toml", include_str!("../tablets/chuwi-minibook-x.toml")),
-    ("dell-canvas-27.toml", include_str!("../tablets/dell-canvas-27.toml")),
-    (
-        "dell-inc-inspiron-14-7445-2-in-1.toml",
-        include_str!("../tablets/dell-inc-inspiron-14-7445-2-in-1.toml"),
-    ),
-    ("dell-latitude-7275.toml", include_str!("../tablets/dell-latitude-7275.toml")),
-    ("elan-0732.toml", include_str!("../tablets/elan-0732.toml")),
-    ("elan-2072.toml", include_str!("../tablets/elan-2072.toml")),
-    ("elan-24d8.toml", include_str!("../tablets/elan-24d8.toml")),
-    ("elan-24db.toml", include_str!("../tablets/elan-24db.toml")),
-    ("elan-2513.toml", include_str!("../tablets/elan-2513.toml")),
-    ("elan-2514-004f3-23db.toml", include_str!("../tablets/elan-2514-004f3-23db.toml")),
-    ("elan-2514-04f3-29cf.toml", include_str!("../tablets/elan-2514-04f3-29cf.toml")),
-    ("elan-2537.toml", include_str!("../tablets/elan-2537.toml")),
-    ("elan-2627.toml", include_str!("../tablets/elan-2627.toml")),
-    ("elan-2628.toml", include_str!("../tablets/elan-2628.toml")),
-    ("elan-262b.toml", include_str!("../tablets/elan-262b.toml")),
-    ("elan-29a1.toml", include_str!("../tablets/elan-29a1.toml")),
-    ("elan-29b6.toml", include_str!("../tablets/elan-29b6.toml")),
-    ("elan-2ad9.toml", include_str!("../tablets/elan-2ad9.toml")),
-    ("elan-2c1b.toml", include_str!("../tablets/elan-2c1b.toml")),
-    ("elan-2d55.toml", include_str!("../tablets/elan-2d55.toml")),
-    ("elan-2f2a.toml", include_str!("../tablets/elan-2f2a.toml")),
-    ("elan-2fc2.toml", include_str!("../tablets/elan-2fc2.toml")),
-    ("elan-41a1.toml", include_str!("../tablets/elan-41a1.toml")),
-    (
-        "elan-touchscreen-pen-sensor.toml",
-        include_str!("../tablets/elan-touchscreen-pen-sensor.toml"),
-    ),
-    ("elan1001.toml", include_str!("../tablets/elan1001.toml")),
-    ("elan9008-00.toml", include_str!("../tablets/elan9008-00.toml")),
-    ("elan9009-00.toml", include_str!("../tablets/elan9009-00.toml")),
-    ("floogoo-fma100.toml", include_str!("../tablets/floogoo-fma100.toml")),
-    ("framework-laptop-12.toml", include_str!("../tablets/framework-laptop-12.toml")),
-    ("gaomon-1060-pro.toml", include_str!("../tablets/gaomon-1060-pro.toml")),
-    ("gaomon-gm116hd.toml", include_str!("../tablets/gaomon-gm116hd.toml")),
-    ("gaomon-gm156hd.toml", include_str!("../tablets/gaomon-gm156hd.toml")),
-    ("gaomon-m106k-pro.toml", include_str!("../tablets/gaomon-m106k-pro.toml")),
-    ("gaomon-m106k.toml", include_str!("../tablets/gaomon-m106k.toml")),
-    ("gaomon-m10k-pro.toml", include_str!("../tablets/gaomon-m10k-pro.toml")),
-    ("gaomon-m10k.toml", include_str!("../tablets/gaomon-m10k.toml")),
-    ("gaomon-m1220.toml", include_str!("../tablets/gaomon-m1220.toml")),
-    ("gaomon-m1230.toml", include_str!("../tablets/gaomon-m1230.toml")),
-    ("gaomon-m5.toml", include_str!("../tablets/gaomon-m5.toml")),
-    ("gaomon-m6.toml", include_str!("../tablets/gaomon-m6.toml")),
-    ("gaomon-m8-variant-2.toml", include_str!("../tablets/gaomon-m8-variant-2.toml")),
-    ("gaomon-m8.toml", include_str!("../tablets/gaomon-m8.toml")),
-    ("gaomon-pd1161.toml", include_str!("../tablets/gaomon-pd1161.toml")),
-    ("gaomon-pd156-pro.toml", include_str!("../tablets/gaomon-pd156-pro.toml")),
-    ("gaomon-pd1560.toml", include_str!("../tablets/gaomon-pd1560.toml")),
-    ("gaomon-pd1561.toml", include_str!("../tablets/gaomon-pd1561.toml")),
-    ("gaomon-pd2200.toml", include_str!("../tablets/gaomon-pd2200.toml")),
-    ("gaomon-s56k.toml", include_str!("../tablets/gaomon-s56k.toml")),
-    ("gaomon-s620.toml", include_str!("../tablets/gaomon-s620.toml")),
-    ("gaomon-s630.toml", include_str!("../tablets/gaomon-s630.toml")),
-    ("gaomon-s830.toml", include_str!("../tablets/gaomon-s830.toml")),
-    ("genius-g-pen-560.toml", include_str!("../tablets/genius-g-pen-560.toml")),
-    ("genius-g-pen-f509.toml", include_str!("../tablets/genius-g-pen-f509.toml")),
-    ("genius-i608x.toml", include_str!("../tablets/genius-i608x.toml")),
-    ("hp-elite-chromebook-c1030.toml", include_str!("../tablets/hp-elite-chromebook-c1030.toml")),
-    ("hp-pro-tablet-408.toml", include_str!("../tablets/hp-pro-tablet-408.toml")),
-    ("huion-1060-plus.toml", include_str!("../tablets/huion-1060-plus.toml")),
-    ("huion-420.toml", include_str!("../tablets/huion-420.toml")),
-    ("huion-g10t.toml", include_str!("../tablets/huion-g10t.toml")),
-    ("huion-g930l.toml", include_str!("../tablets/huion-g930l.toml")),
-    ("huion-gc610.toml", include_str!("../tablets/huion-gc610.toml")),
-    ("huion-gt-156hd-v2.toml", include_str!("../tablets/huion-gt-156hd-v2.toml")),
-    ("huion-gt-191-v2.toml", include_str!("../tablets/huion-gt-191-v2.toml")),
-    ("huion-gt-220-v2.toml", include_str!("../tablets/huion-gt-220-v2.toml")),
-    ("huion-gt-221-pro.toml", include_str!("../tablets/huion-gt-221-pro.toml")),
-    ("huion-gt-221.toml", include_str!("../tablets/huion-gt-221.toml")),
-    ("huion-h1060p.toml", include_str!("../tablets/huion-h1060p.toml")),
-    ("huion-h1061p.toml", include_str!("../tablets/huion-h1061p.toml")),
-    ("huion-h1161.toml", include_str!("../tablets/huion-h1161.toml")),
-    ("huion-h320m.toml", include_str!("../tablets/huion-h320m.toml")),
-    ("huion-h420.toml", include_str!("../tablets/huion-h420.toml")),
-    ("huion-h420x.toml", include_str!("../tablets/huion-h420x.toml")),
-    ("huion-h430p.toml", include_str!("../tablets/huion-h430p.toml")),
-    ("huion-h580x.toml", include_str!("../tablets/huion-h580x.toml")),
-    ("huion-h610-pro-v2.toml", include_str!("../tablets/huion-h610-pro-v2.toml")),
-    ("huion-h610-pro-v3.toml", include_str!("../tablets/huion-h610-pro-v3.toml")),
-    ("huion-h610-pro.toml", include_str!("../tablets/huion-h610-pro.toml")),
-    ("huion-h610x.toml", include_str!("../tablets/huion-h610x.toml")),
-    ("huion-h640p.toml", include_str!("../tablets/huion-h640p.toml")),
-    ("huion-h641p.toml", include_str!("../tablets/huion-h641p.toml")),
-    ("huion-h642.toml", include_str!("../tablets/huion-h642.toml")),
-    ("huion-h690.toml", include_str!("../tablets/huion-h690.toml")),
-    ("huion-h950p.toml", include_str!("../tablets/huion-h950p.toml")),
-    ("huion-h951p.toml", include_str!("../tablets/huion-h951p.toml")),
-    ("huion-hc16-variant-2.toml", include_str!("../tablets/huion-hc16-variant-2.toml")),
-    ("huion-hc16.toml", include_str!("../tablets/huion-hc16.toml")),
-    ("huion-hs610.toml", include_str!("../tablets/huion-hs610.toml")),
-    ("huion-hs611.toml", include_str!("../tablets/huion-hs611.toml")),
-    ("huion-hs64.toml", include_str!("../tablets/huion-hs64.toml")),
-    ("huion-hs95.toml", include_str!("../tablets/huion-hs95.toml")),
-    ("huion-inspiroy-frego-s.toml", include_str!("../tablets/huion-inspiroy-frego-s.toml")),
-    ("huion-kamvas-12.toml", include_str!("../tablets/huion-kamvas-12.toml")),
-    ("huion-kamvas-13-gen-3.toml", include_str!("../tablets/huion-kamvas-13-gen-3.toml")),
-    ("huion-kamvas-13.toml", include_str!("../tablets/huion-kamvas-13.toml")),
-    ("huion-kamvas-16-2021.toml", include_str!("../tablets/huion-kamvas-16-2021.toml")),
-    ("huion-kamvas-16-gen-3.toml", include_str!("../tablets/huion-kamvas-16-gen-3.toml")),
-    ("huion-kamvas-16.toml", include_str!("../tablets/huion-kamvas-16.toml")),
-    ("huion-kamvas-20.toml", include_str!("../tablets/huion-kamvas-20.toml")),
-    ("huion-kamvas-22-plus.toml", include_str!("../tablets/huion-kamvas-22-plus.toml")),
-    ("huion-kamvas-22.toml", include_str!("../tablets/huion-kamvas-22.toml")),
-    ("huion-kamvas-24-plus.toml", include_str!("../tablets/huion-kamvas-24-plus.toml")),
-    ("huion-kamvas-24.toml", include_str!("../tablets/huion-kamvas-24.toml")),
-    ("huion-kamvas-pro-12.toml", include_str!("../tablets/huion-kamvas-pro-12.toml")),
-    ("huion-kamvas-pro-13-2-5k.toml", include_str!("../tablets/huion-kamvas-pro-13-2-5k.toml")),
-    ("huion-kamvas-pro-13.toml", include_str!("../tablets/huion-kamvas-pro-13.toml")),
-    ("huion-kamvas-pro-16-2-5k.toml", include_str!("../tablets/huion-kamvas-pro-16-2-5k.toml")),
-    ("huion-kamvas-pro-16-4k.toml", include_str!("../tablets/huion-kamvas-pro-16-4k.toml")),
-    (
-        "huion-kamvas-pro-16-plus-4k.toml",
-        include_str!("../tablets/huion-kamvas-pro-16-plus-4k.toml"),
-    ),
-    ("huion-kamvas-pro-16.toml", include_str!("../tablets/huion-kamvas-pro-16.toml")),
-    ("huion-kamvas-pro-19-4k.toml", include_str!("../tablets/huion-kamvas-pro-19-4k.toml")),
-    ("huion-kamvas-pro-20.toml", include_str!("../tablets/huion-kamvas-pro-20.toml")),
-    ("huion-kamvas-pro-22-2019.toml", include_str!("../tablets/huion-kamvas-pro-22-2019.toml")),
-    ("huion-kamvas-pro-24-4k.toml", include_str!("../tablets/huion-kamvas-pro-24-4k.toml")),
-    ("huion-kamvas-pro-24.toml", include_str!("../tablets/huion-kamvas-pro-24.toml")),
-    ("huion-kamvas-pro-27.toml", include_str!("../tablets/huion-kamvas-pro-27.toml")),
-    ("huion-l310.toml", include_str!("../tablets/huion-l310.toml")),
-    ("huion-l610.toml", include_str!("../tablets/huion-l610.toml")),
-    ("huion-new-1060-plus-2048.toml", include_str!("../tablets/huion-new-1060-plus-2048.toml")),
-    ("huion-new-1060-plus.toml", include_str!("../tablets/huion-new-1060-plus.toml")),
-    ("huion-note-x10.toml", include_str!("../tablets/huion-note-x10.toml")),
-    ("huion-q11k-v2.toml", include_str!("../tablets/huion-q11k-v2.toml")),
-    ("huion-q11k.toml", include_str!("../tablets/huion-q11k.toml")),
-    ("huion-q620m.toml", include_str!("../tablets/huion-q620m.toml")),
-    ("huion-q630m.toml", include_str!("../tablets/huion-q630m.toml")),
-    ("huion-rds-160.toml", include_str!("../tablets/huion-rds-160.toml")),
-    ("huion-rte-100.toml", include_str!("../tablets/huion-rte-100.toml")),
-    ("huion-rtm-500.toml", include_str!("../tablets/huion-rtm-500.toml")),
-    ("huion-rtp-700.toml", include_str!("../tablets/huion-rtp-700.toml")),
-    ("huion-wh1409-v2-variant-2.toml", include_str!("../tablets/huion-wh1409-v2-variant-2.toml")),
-    ("huion-wh1409-v2.toml", include_str!("../tablets/huion-wh1409-v2.toml")),
-    ("huion-wh1409.toml", include_str!("../tablets/huion-wh1409.toml")),
-    ("ingenic-touch-pen-display.toml", include_str!("../tablets/ingenic-touch-pen-display.toml")),
-    ("isdv4-002c.toml", include_str!("../tablets/isdv4-002c.toml")),
-    ("isdv4-0066.toml", include_str!("../tablets/isdv4-0066.toml")),
-    ("isdv4-0078.toml", include_str!("../tablets/isdv4-0078.toml")),
-    ("isdv4-0095.toml", include_str!("../tablets/isdv4-0095.toml")),
-    ("isdv4-0114.toml", include_str!("../tablets/isdv4-0114.toml")),
-    ("isdv4-011e.toml", include_str!("../tablets/isdv4-011e.toml")),
-    ("isdv4-0136.toml", include_str!("../tablets/isdv4-0136.toml")),
-    ("isdv4-014b.toml", include_str!("../tablets/isdv4-014b.toml")),
-    ("isdv4-0163.toml", include_str!("../tablets/isdv4-0163.toml")),
-    ("isdv4-016c.toml", include_str!("../tablets/isdv4-016c.toml")),
-    ("isdv4-0185.toml", include_str!("../tablets/isdv4-0185.toml")),
-    ("isdv4-0203.toml", include_str!("../tablets/isdv4-0203.toml")),
-    ("isdv4-121a.toml", include_str!("../tablets/isdv4-121a.toml")),
-    ("isdv4-4834.toml", include_str!("../tablets/isdv4-4834.toml")),
-    ("isdv4-4838.toml", include_str!("../tablets/isdv4-4838.toml")),
-    ("isdv4-484d.toml", include_str!("../tablets/isdv4-484d.toml")),
-    ("isdv4-4851.toml", include_str!("../tablets/isdv4-4851.toml")),
-    ("isdv4-4898.toml", include_str!("../tablets/isdv4-4898.toml")),
-    ("isdv4-48ca.toml", include_str!("../tablets/isdv4-48ca.toml")),
-    ("isdv4-48ce.toml", include_str!("../tablets/isdv4-48ce.toml")),
-    ("isdv4-48eb.toml", include_str!("../tablets/isdv4-48eb.toml")),
-    ("isdv4-48f6.toml", include_str!("../tablets/isdv4-48f6.toml")),
-    ("isdv4-490a.toml", include_str!("../tablets/isdv4-490a.toml")),
-    ("isdv4-4957.toml", include_str!("../tablets/isdv4-4957.toml")),
-    ("isdv4-495f.toml", include_str!("../tablets/isdv4-495f.toml")),
-    ("isdv4-496c.toml", include_str!("../tablets/isdv4-496c.toml")),
-    ("isdv4-4988.toml", include_str!("../tablets/isdv4-4988.toml")),
-    ("isdv4-4995.toml", include_str!("../tablets/isdv4-4995.toml")),
-    ("isdv4-49a3.toml", include_str!("../tablets/isdv4-49a3.toml")),
-    ("isdv4-5019.toml", include_str!("../tablets/isdv4-5019.toml")),
-    ("isdv4-504c.toml", include_str!("../tablets/isdv4-504c.toml")),
-    ("isdv4-5072.toml", include_str!("../tablets/isdv4-5072.toml")),
-    ("isdv4-5093.toml", include_str!("../tablets/isdv4-5093.toml")),
-    ("isdv4-509f.toml", include_str!("../tablets/isdv4-509f.toml")),
-    ("isdv4-50fe.toml", include_str!("../tablets/isdv4-50fe.toml")),
-    ("isdv4-511a.toml", include_str!("../tablets/isdv4-511a.toml")),
-    ("isdv4-5144.toml", include_str!("../tablets/isdv4-5144.toml")),
-    ("isdv4-5159.toml", include_str!("../tablets/isdv4-5159.toml")),
-    ("isdv4-51b0.toml", include_str!("../tablets/isdv4-51b0.toml")),
-    ("isdv4-51b1.toml", include_str!("../tablets/isdv4-51b1.toml")),
-    ("isdv4-51b2.toml", include_str!("../tablets/isdv4-51b2.toml")),
-    ("isdv4-51b3.toml", include_str!("../tablets/isdv4-51b3.toml")),
-    ("isdv4-51b6.toml", include_str!("../tablets/isdv4-51b6.toml")),
-    ("isdv4-51b7.toml", include_str!("../tablets/isdv4-51b7.toml")),
-    ("isdv4-51b9.toml", include_str!("../tablets/isdv4-51b9.toml")),
-    ("isdv4-51ba.toml", include_str!("../tablets/isdv4-51ba.toml")),
-    ("isdv4-51bb.toml", include_str!("../tablets/isdv4-51bb.toml")),
-    ("isdv4-51bc.toml", include_str!("../tablets/isdv4-51bc.toml")),
-    ("isdv4-51c7.toml", include_str!("../tablets/isdv4-51c7.toml")),
-    ("isdv4-51d0.toml", include_str!("../tablets/isdv4-51d0.toml")),
-    ("isdv4-51e2.toml", include_str!("../tablets/isdv4-51e2.toml")),
-    ("isdv4-51e9.toml", include_str!("../tablets/isdv4-51e9.toml")),
-    ("isdv4-51ef.toml", include_str!("../tablets/isdv4-51ef.toml")),
-    ("isdv4-51f9.toml", include_str!("../tablets/isdv4-51f9.toml")),
-    ("isdv4-5202.toml", include_str!("../tablets/isdv4-5202.toml")),
-    ("isdv4-5204.toml", include_str!("../tablets/isdv4-5204.toml")),
-    ("isdv4-5214.toml", include_str!("../tablets/isdv4-5214.toml")),
-    ("isdv4-5215.toml", include_str!("../tablets/isdv4-5215.toml")),
-    ("isdv4-5216.toml", include_str!("../tablets/isdv4-5216.toml")),
-    ("isdv4-5218.toml", include_str!("../tablets/isdv4-5218.toml")),
-    ("isdv4-521c.toml", include_str!("../tablets/isdv4-521c.toml")),
-    ("isdv4-521f.toml", include_str!("../tablets/isdv4-521f.toml")),
-    ("isdv4-5220.toml", include_str!("../tablets/isdv4-5220.toml")),
-    ("isdv4-5221.toml", include_str!("../tablets/isdv4-5221.toml")),
-    ("isdv4-5222.toml", include_str!("../tablets/isdv4-5222.toml")),
-    ("isdv4-5229.toml", include_str!("../tablets/isdv4-5229.toml")),
-    ("isdv4-523a.toml", include_str!("../tablets/isdv4-523a.toml")),
-    ("isdv4-523e.toml", include_str!("../tablets/isdv4-523e.toml")),
-    ("isdv4-5256.toml", include_str!("../tablets/isdv4-5256.toml")),
-    ("isdv4-526a.toml", include_str!("../tablets/isdv4-526a.toml")),
-    ("isdv4-526c.toml", include_str!("../tablets/isdv4-526c.toml")),
-    ("isdv4-5276.toml", include_str!("../tablets/isdv4-5276.toml")),
-    ("isdv4-5277.toml", include_str!("../tablets/isdv4-5277.toml")),
-    ("isdv4-5278.toml", include_str!("../tablets/isdv4-5278.toml")),
-    ("isdv4-5279.toml", include_str!("../tablets/isdv4-5279.toml")),
-    ("isdv4-527a.toml", include_str!("../tablets/isdv4-527a.toml")),
-    ("isdv4-527e.toml", include_str!("../tablets/isdv4-527e.toml")),
-    ("isdv4-527f.toml", include_str!("../tablets/isdv4-527f.toml")),
-    ("isdv4-5285.toml", include_str!("../tablets/isdv4-5285.toml")),
-    ("isdv4-5286.toml", include_str!("../tablets/isdv4-5286.toml")),
-    ("isdv4-528e.toml", include_str!("../tablets/isdv4-528e.toml")),
-    ("isdv4-52a2.toml", include_str!("../tablets/isdv4-52a2.toml")),
-    ("isdv4-52b0.toml", include_str!("../tablets/isdv4-52b0.toml")),
-    ("kenting-k5540.toml", include_str!("../tablets/kenting-k5540.toml")),
-    ("kye-easypen-340.toml", include_str!("../tablets/kye-easypen-340.toml")),
-    ("kye-easypen-i405x.toml", include_str!("../tablets/kye-easypen-i405x.toml")),
-    ("kye-easypen-m406.toml", include_str!("../tablets/kye-easypen-m406.toml")),
-    ("kye-easypen-m406w.toml", include_str!("../tablets/kye-easypen-m406w.toml")),
-    ("kye-easypen-m406xe.toml", include_str!("../tablets/kye-easypen-m406xe.toml")),
-    ("kye-easypen-m506.toml", include_str!("../tablets/kye-easypen-m506.toml")),
-    ("kye-easypen-m610x.toml", include_str!("../tablets/kye-easypen-m610x.toml")),
-    ("kye-mousepen-i608x.toml", include_str!("../tablets/kye-mousepen-i608x.toml")),
-    ("kye-mousepen-m508wx.toml", include_str!("../tablets/kye-mousepen-m508wx.toml")),
-    ("kye-mousepen-m508x.toml", include_str!("../tablets/kye-mousepen-m508x.toml")),
-    ("kye-pensketch-m912.toml", include_str!("../tablets/kye-pensketch-m912.toml")),
-    ("kye-pensketch-t609a.toml", include_str!("../tablets/kye-pensketch-t609a.toml")),
-    ("lenovo-ideapad-duet.toml", include_str!("../tablets/lenovo-ideapad-duet.toml")),
-    (
-        "lenovo-thinkpad-x1-fold-16-gen-1.toml",
-        include_str!("../tablets/lenovo-thinkpad-x1-fold-16-gen-1.toml"),
-    ),
-    (
-        "lenovo-thinkvision-m14t-gen-2.toml",
-        include_str!("../tablets/lenovo-thinkvision-m14t-gen-2.toml"),
-    ),
-    ("lenovo-thinkvision-m14t.toml", include_str!("../tablets/lenovo-thinkvision-m14t.toml")),
-    ("letsketch-letsketch.toml", include_str!("../tablets/letsketch-letsketch.toml")),
-    ("lifetec-lt9570.toml", include_str!("../tablets/lifetec-lt9570.toml")),
-    ("m5-v2.toml", include_str!("../tablets/m5-v2.toml")),
-    ("microsoft-surface-go-2.toml", include_str!("../tablets/microsoft-surface-go-2.toml")),
-    ("microsoft-surface-go.toml", include_str!("../tablets/microsoft-surface-go.toml")),
-    ("monoprice-10594.toml", include_str!("../tablets/monoprice-10594.toml")),
-    ("monoprice-mp1060-ha60.toml", include_str!("../tablets/monoprice-mp1060-ha60.toml")),
-    ("n-trig-pen.toml", include_str!("../tablets/n-trig-pen.toml")),
-    ("nuvision-solo-10-draw.toml", include_str!("../tablets/nuvision-solo-10-draw.toml")),
-    ("parblo-a609.toml", include_str!("../tablets/parblo-a609.toml")),
-    ("parblo-a610-pro-variant-2.toml", include_str!("../tablets/parblo-a610-pro-variant-2.toml")),
-    ("parblo-a610-pro.toml", include_str!("../tablets/parblo-a610-pro.toml")),
-    ("parblo-a610.toml", include_str!("../tablets/parblo-a610.toml")),
-    ("parblo-a640-v2.toml", include_str!("../tablets/parblo-a640-v2.toml")),
-    ("parblo-a640.toml", include_str!("../tablets/parblo-a640.toml")),
-    ("parblo-intangbo-m.toml", include_str!("../tablets/parblo-intangbo-m.toml")),
-    ("parblo-intangbo-s.toml", include_str!("../tablets/parblo-intangbo-s.toml")),
-    ("parblo-ninos-m.toml", include_str!("../tablets/parblo-ninos-m.toml")),
-    ("parblo-ninos-n4.toml", include_str!("../tablets/parblo-ninos-n4.toml")),
-    ("parblo-ninos-n7.toml", include_str!("../tablets/parblo-ninos-n7.toml")),
-    ("parblo-ninos-n7b.toml", include_str!("../tablets/parblo-ninos-n7b.toml")),
-    ("parblo-ninos-s.toml", include_str!("../tablets/parblo-ninos-s.toml")),
-    ("robotpen-t9a.toml", include_str!("../tablets/robotpen-t9a.toml")),
-    ("samsung-chromebook-plus-v2.toml", include_str!("../tablets/samsung-chromebook-plus-v2.toml")),
-    ("starlabs-starlite.toml", include_str!("../tablets/starlabs-starlite.toml")),
-    ("trust-flex-design-tablet.toml", include_str!("../tablets/trust-flex-design-tablet.toml")),
-    ("turcom-ts-6580.toml", include_str!("../tablets/turcom-ts-6580.toml")),
-    ("uc-logic-1060n.toml", include_str!("../tablets/uc-logic-1060n.toml")),
-    ("uc-logic-pf1209.toml", include_str!("../tablets/uc-logic-pf1209.toml")),
-    ("ugee-m708-v2.toml", include_str!("../tablets/ugee-m708-v2.toml")),
-    ("ugee-m708-v3.toml", include_str!("../tablets/ugee-m708-v3.toml")),
-    ("ugee-m708.toml", include_str!("../tablets/ugee-m708.toml")),
-    ("ugee-m808.toml", include_str!("../tablets/ugee-m808.toml")),
-    ("ugee-m908.toml", include_str!("../tablets/ugee-m908.toml")),
-    ("ugee-s1060.toml", include_str!("../tablets/ugee-s1060.toml")),
-    ("ugee-s640.toml", include_str!("../tablets/ugee-s640.toml")),
-    ("ugee-u1200.toml", include_str!("../tablets/ugee-u1200.toml")),
-    ("ugee-u1600.toml", include_str!("../tablets/ugee-u1600.toml")),
-    ("ugee-ue16.toml", include_str!("../tablets/ugee-ue16.toml")),
-    ("veikk-a15-pro.toml", include_str!("../tablets/veikk-a15-pro.toml")),
-    ("veikk-a15-v2.toml", include_str!("../tablets/veikk-a15-v2.toml")),
-    ("veikk-a15.toml", include_str!("../tablets/veikk-a15.toml")),
-    ("veikk-a30-v2.toml", include_str!("../tablets/veikk-a30-v2.toml")),
-    ("veikk-a30.toml", include_str!("../tablets/veikk-a30.toml")),
-    ("veikk-a50-variant-2.toml", include_str!("../tablets/veikk-a50-variant-2.toml")),
-    ("veikk-a50.toml", include_str!("../tablets/veikk-a50.toml")),
-    ("veikk-s640-v2.toml", include_str!("../tablets/veikk-s640-v2.toml")),
-    ("veikk-s640.toml", include_str!("../tablets/veikk-s640.toml")),
-    ("veikk-vk1060.toml", include_str!("../tablets/veikk-vk1060.toml")),
-    ("veikk-vk1060pro.toml", include_str!("../tablets/veikk-vk1060pro.toml")),
-    ("veikk-vk430-v2.toml", include_str!("../tablets/veikk-vk430-v2.toml")),
-    ("veikk-vk430.toml", include_str!("../tablets/veikk-vk430.toml")),
-    ("veikk-vk640.toml", include_str!("../tablets/veikk-vk640.toml")),
-    ("veikk-voila-vo1060.toml", include_str!("../tablets/veikk-voila-vo1060.toml")),
-    ("viewsonic-woodpad-pf0730.toml", include_str!("../tablets/viewsonic-woodpad-pf0730.toml")),
-    ("viewsonic-woodpad-pf1030.toml", include_str!("../tablets/viewsonic-woodpad-pf1030.toml")),
-    ("wacom-bamboo-16fg-4x5.toml", include_str!("../tablets/wacom-bamboo-16fg-4x5.toml")),
-    ("wacom-bamboo-16fg-6x8.toml", include_str!("../tablets/wacom-bamboo-16fg-6x8.toml")),
-    ("wacom-bamboo-2fg-4x5-se.toml", include_str!("../tablets/wacom-bamboo-2fg-4x5-se.toml")),
-    ("wacom-bamboo-2fg-6x8-se.toml", include_str!("../tablets/wacom-bamboo-2fg-6x8-se.toml")),
-    ("wacom-bamboo-2fg-6x8.toml", include_str!("../tablets/wacom-bamboo-2fg-6x8.toml")),
-    ("wacom-bamboo-2fg.toml", include_str!("../tablets/wacom-bamboo-2fg.toml")),
-    ("wacom-bamboo-comic-2fg.toml", include_str!("../tablets/wacom-bamboo-comic-2fg.toml")),
-    ("wacom-bamboo-craft.toml", include_str!("../tablets/wacom-bamboo-craft.toml")),
-    ("wacom-bamboo-pen-6x8.toml", include_str!("../tablets/wacom-bamboo-pen-6x8.toml")),
-    ("wacom-bamboo1-medium.toml", include_str!("../tablets/wacom-bamboo1-medium.toml")),
-    ("wacom-bamboo1.toml", include_str!("../tablets/wacom-bamboo1.toml")),
-    ("wacom-bamboofun-4x5.toml", include_str!("../tablets/wacom-bamboofun-4x5.toml")),
-    ("wacom-bamboofun-6x8.toml", include_str!("../tablets/wacom-bamboofun-6x8.toml")),
-    ("wacom-bamboopt-2fg-small.toml", include_str!("../tablets/wacom-bamboopt-2fg-small.toml")),
-    ("wacom-cintiq-12wx.toml", include_str!("../tablets/wacom-cintiq-12wx.toml")),
-    ("wacom-cintiq-13hd-touch.toml", include_str!("../tablets/wacom-cintiq-13hd-touch.toml")),
-    ("wacom-cintiq-13hd.toml", include_str!("../tablets/wacom-cintiq-13hd.toml")),
-    ("wacom-cintiq-16-dtk-1660.toml", include_str!("../tablets/wacom-cintiq-16-dtk-1660.toml")),
-    ("wacom-cintiq-16.toml", include_str!("../tablets/wacom-cintiq-16.toml")),
-    ("wacom-cintiq-18sx-pl-800-u.toml", include_str!("../tablets/wacom-cintiq-18sx-pl-800-u.toml")),
-    ("wacom-cintiq-20wsx.toml", include_str!("../tablets/wacom-cintiq-20wsx.toml")),
-    ("wacom-cintiq-21ux-dtz-2100.toml", include_str!("../tablets/wacom-cintiq-21ux-dtz-2100.toml")),
-    ("wacom-cintiq-21ux2.toml", include_str!("../tablets/wacom-cintiq-21ux2.toml")),
-    ("wacom-cintiq-22.toml", include_str!("../tablets/wacom-cintiq-22.toml")),
-    ("wacom-cintiq-22hd-dtk-2200.toml", include_str!("../tablets/wacom-cintiq-22hd-dtk-2200.toml")),
-    (
-        "wacom-cintiq-22hd-touch-dth-2200.toml",
-        include_str!("../tablets/wacom-cintiq-22hd-touch-dth-2200.toml"),
-    ),
-    ("wacom-cintiq-24-touch.toml", include_str!("../tablets/wacom-cintiq-24-touch.toml")),
-    ("wacom-cintiq-24.toml", include_str!("../tablets/wacom-cintiq-24.toml")),
-    ("wacom-cintiq-24hd-touch.toml", include_str!("../tablets/wacom-cintiq-24hd-touch.toml")),
-    ("wacom-cintiq-24hd.toml", include_str!("../tablets/wacom-cintiq-24hd.toml")),
-    ("wacom-cintiq-27qhd-touch.toml", include_str!("../tablets/wacom-cintiq-27qhd-touch.toml")),
-    ("wacom-cintiq-27qhd.toml", include_str!("../tablets/wacom-cintiq-27qhd.toml")),
-    ("wacom-cintiq-companion-2.toml", include_str!("../tablets/wacom-cintiq-companion-2.toml")),
-    (
-        "wacom-cintiq-companion-hybrid.toml",
-        include_str!("../tablets/wacom-cintiq-companion-hybrid.toml"),
-    ),
-    ("wacom-cintiq-companion.toml", include_str!("../tablets/wacom-cintiq-companion.toml")),
-    ("wacom-cintiq-pro-16.toml", include_str!("../tablets/wacom-cintiq-pro-16.toml")),
-    ("wacom-cintiq-pro-17.toml", include_str!("../tablets/wacom-cintiq-pro-17.toml")),
-    (
-        "wacom-cintiq-pro-22-dth-227.toml",
-        include_str!("../tablets/wacom-cintiq-pro-22-dth-227.toml"),
-    ),
-    ("wacom-cintiq-pro-24.toml", include_str!("../tablets/wacom-cintiq-pro-24.toml")),
-    (
-        "wacom-cintiq-pro-27-dth-271.toml",
-        include_str!("../tablets/wacom-cintiq-pro-27-dth-271.toml"),
-    ),
-    ("wacom-cintiq-pro-32.toml", include_str!("../tablets/wacom-cintiq-pro-32.toml")),
-    ("wacom-ctc-4110wl.toml", include_str!("../tablets/wacom-ctc-4110wl.toml")),
-    ("wacom-ctc-6110wl.toml", include_str!("../tablets/wacom-ctc-6110wl.toml")),
-    ("wacom-cte-430.toml", include_str!("../tablets/wacom-cte-430.toml")),
-    ("wacom-cte-440.toml", include_str!("../tablets/wacom-cte-440.toml")),
-    ("wacom-cte-460.toml", include_str!("../tablets/wacom-cte-460.toml")),
-    ("wacom-cte-640.toml", include_str!("../tablets/wacom-cte-640.toml")),
-    ("wacom-cte-660.toml", include_str!("../tablets/wacom-cte-660.toml")),
-    ("wacom-cth-300.toml", include_str!("../tablets/wacom-cth-300.toml")),
-    ("wacom-cth-301.toml", include_str!("../tablets/wacom-cth-301.toml")),
-    ("wacom-cth-460.toml", include_str!("../tablets/wacom-cth-460.toml")),
-    ("wacom-cth-480.toml", include_str!("../tablets/wacom-cth-480.toml")),
-    ("wacom-cth-490.toml", include_str!("../tablets/wacom-cth-490.toml")),
-    ("wacom-cth-690.toml", include_str!("../tablets/wacom-cth-690.toml")),
-    ("wacom-ctl-4100.toml", include_str!("../tablets/wacom-ctl-4100.toml")),
-    (
-        "wacom-ctl-4100wl-over-bluetooth.toml",
-        include_str!("../tablets/wacom-ctl-4100wl-over-bluetooth.toml"),
-    ),
-    ("wacom-ctl-4100wl.toml", include_str!("../tablets/wacom-ctl-4100wl.toml")),
-    ("wacom-ctl-460.toml", include_str!("../tablets/wacom-ctl-460.toml")),
-    ("wacom-ctl-470.toml", include_str!("../tablets/wacom-ctl-470.toml")),
-    ("wacom-ctl-471.toml", include_str!("../tablets/wacom-ctl-471.toml")),
-    ("wacom-ctl-472.toml", include_str!("../tablets/wacom-ctl-472.toml")),
-    ("wacom-ctl-490.toml", include_str!("../tablets/wacom-ctl-490.toml")),
-    ("wacom-ctl-6100.toml", include_str!("../tablets/wacom-ctl-6100.toml")),
-    (
-        "wacom-ctl-6100wl-over-bluetooth.toml",
-        include_str!("../tablets/wacom-ctl-6100wl-over-bluetooth.toml"),
-    ),
-    ("wacom-ctl-6100wl.toml", include_str!("../tablets/wacom-ctl-6100wl.toml")),
-    ("wacom-ctl-671.toml", include_str!("../tablets/wacom-ctl-671.toml")),
-    ("wacom-ctl-672.toml", include_str!("../tablets/wacom-ctl-672.toml")),
-    ("wacom-ctt-460-2-fg.toml", include_str!("../tablets/wacom-ctt-460-2-fg.toml")),
-    ("wacom-ctt-470.toml", include_str!("../tablets/wacom-ctt-470.toml")),
-    ("wacom-dtc-133.toml", include_str!("../tablets/wacom-dtc-133.toml")),
-    ("wacom-dtc121.toml", include_str!("../tablets/wacom-dtc121.toml")),
-    ("wacom-dtf521.toml", include_str!("../tablets/wacom-dtf521.toml")),
-    ("wacom-dtf720.toml", include_str!("../tablets/wacom-dtf720.toml")),
-    ("wacom-dtf720a.toml", include_str!("../tablets/wacom-dtf720a.toml")),
-    ("wacom-dth-1320.toml", include_str!("../tablets/wacom-dth-1320.toml")),
-    ("wacom-dth1152.toml", include_str!("../tablets/wacom-dth1152.toml")),
-    ("wacom-dth134.toml", include_str!("../tablets/wacom-dth134.toml")),
-    ("wacom-dth2242.toml", include_str!("../tablets/wacom-dth2242.toml")),
-    ("wacom-dth2452.toml", include_str!("../tablets/wacom-dth2452.toml")),
-    ("wacom-dth246e.toml", include_str!("../tablets/wacom-dth246e.toml")),
-    ("wacom-dti520ub-l.toml", include_str!("../tablets/wacom-dti520ub-l.toml")),
-    ("wacom-dtk-1660e.toml", include_str!("../tablets/wacom-dtk-1660e.toml")),
-    ("wacom-dtk1651.toml", include_str!("../tablets/wacom-dtk1651.toml")),
-    ("wacom-dtk168e.toml", include_str!("../tablets/wacom-dtk168e.toml")),
-    ("wacom-dtk2241.toml", include_str!("../tablets/wacom-dtk2241.toml")),
-    ("wacom-dtk2451.toml", include_str!("../tablets/wacom-dtk2451.toml")),
-    ("wacom-dtk246e.toml", include_str!("../tablets/wacom-dtk246e.toml")),
-    ("wacom-dtu1031.toml", include_str!("../tablets/wacom-dtu1031.toml")),
-    ("wacom-dtu1031x.toml", include_str!("../tablets/wacom-dtu1031x.toml")),
-    ("wacom-dtu1141.toml", include_str!("../tablets/wacom-dtu1141.toml")),
-    ("wacom-dtu1141b.toml", include_str!("../tablets/wacom-dtu1141b.toml")),
-    ("wacom-dtu1631.toml", include_str!("../tablets/wacom-dtu1631.toml")),
-    ("wacom-dtu1931.toml", include_str!("../tablets/wacom-dtu1931.toml")),
-    ("wacom-dtu2231.toml", include_str!("../tablets/wacom-dtu2231.toml")),
-    ("wacom-dtu710.toml", include_str!("../tablets/wacom-dtu710.toml")),
-    ("wacom-et-0405a-u.toml", include_str!("../tablets/wacom-et-0405a-u.toml")),
-    ("wacom-ft-0405-u.toml", include_str!("../tablets/wacom-ft-0405-u.toml")),
-    ("wacom-gd-0912-u.toml", include_str!("../tablets/wacom-gd-0912-u.toml")),
-    ("wacom-gd-1212-u.toml", include_str!("../tablets/wacom-gd-1212-u.toml")),
-    ("wacom-gd-1218-u.toml", include_str!("../tablets/wacom-gd-1218-u.toml")),
-    (
-        "wacom-graphire-bluetooth-6x8.toml",
-        include_str!("../tablets/wacom-graphire-bluetooth-6x8.toml"),
-    ),
-    ("wacom-graphire.toml", include_str!("../tablets/wacom-graphire.toml")),
-    ("wacom-graphire2-5x7.toml", include_str!("../tablets/wacom-graphire2-5x7.toml")),
-    ("wacom-graphire3-6x8.toml", include_str!("../tablets/wacom-graphire3-6x8.toml")),
-    ("wacom-hid-48ec.toml", include_str!("../tablets/wacom-hid-48ec.toml")),
-    ("wacom-hid-49c8.toml", include_str!("../tablets/wacom-hid-49c8.toml")),
-    ("wacom-hid-5115.toml", include_str!("../tablets/wacom-hid-5115.toml")),
-    ("wacom-hid-52d3.toml", include_str!("../tablets/wacom-hid-52d3.toml")),
-    ("wacom-hid-52d5.toml", include_str!("../tablets/wacom-hid-52d5.toml")),
-    (
-        "wacom-hid-5362-pen-wacom-hid-5362-finger.toml",
-        include_str!("../tablets/wacom-hid-5362-pen-wacom-hid-5362-finger.toml"),
-    ),
-    ("wacom-hid-53bb-pen.toml", include_str!("../tablets/wacom-hid-53bb-pen.toml")),
-    ("wacom-intuos-4x5.toml", include_str!("../tablets/wacom-intuos-4x5.toml")),
-    ("wacom-intuos-6x8.toml", include_str!("../tablets/wacom-intuos-6x8.toml")),
-    (
-        "wacom-intuos-bt-m-android-mode.toml",
-        include_str!("../tablets/wacom-intuos-bt-m-android-mode.toml"),
-    ),
-    (
-        "wacom-intuos-bt-s-android-mode.toml",
-        include_str!("../tablets/wacom-intuos-bt-s-android-mode.toml"),
-    ),
-    (
-        "wacom-intuos-m-android-mode.toml",
-        include_str!("../tablets/wacom-intuos-m-android-mode.toml"),
-    ),
-    ("wacom-intuos-p-m-2.toml", include_str!("../tablets/wacom-intuos-p-m-2.toml")),
-    ("wacom-intuos-p-m.toml", include_str!("../tablets/wacom-intuos-p-m.toml")),
-    (
-        "wacom-intuos-pro-l-pth-860-over-bluetooth.toml",
-        include_str!("../tablets/wacom-intuos-pro-l-pth-860-over-bluetooth.toml"),
-    ),
-    ("wacom-intuos-pro-l-ptk870.toml", include_str!("../tablets/wacom-intuos-pro-l-ptk870.toml")),
-    ("wacom-intuos-pro-l.toml", include_str!("../tablets/wacom-intuos-pro-l.toml")),
-    ("wacom-intuos-pro-m.toml", include_str!("../tablets/wacom-intuos-pro-m.toml")),
-    (
-        "wacom-intuos-pro-s-pth-460-over-bluetooth.toml",
-        include_str!("../tablets/wacom-intuos-pro-s-pth-460-over-bluetooth.toml"),
-    ),
-    ("wacom-intuos-pro-s-ptk470.toml", include_str!("../tablets/wacom-intuos-pro-s-ptk470.toml")),
-    ("wacom-intuos-pro-s.toml", include_str!("../tablets/wacom-intuos-pro-s.toml")),
-    ("wacom-intuos-pt-m.toml", include_str!("../tablets/wacom-intuos-pt-m.toml")),
-    (
-        "wacom-intuos-s-android-mode.toml",
-        include_str!("../tablets/wacom-intuos-s-android-mode.toml"),
-    ),
-    ("wacom-intuos-s.toml", include_str!("../tablets/wacom-intuos-s.toml")),
-    ("wacom-intuos2-12x12.toml", include_str!("../tablets/wacom-intuos2-12x12.toml")),
-    ("wacom-intuos2-4x5.toml", include_str!("../tablets/wacom-intuos2-4x5.toml")),
-    (
-        "wacom-intuos2-6x8-second-id.toml",
-        include_str!("../tablets/wacom-intuos2-6x8-second-id.toml"),
-    ),
-    ("wacom-intuos2-6x8.toml", include_str!("../tablets/wacom-intuos2-6x8.toml")),
-    ("wacom-intuos2-9x12.toml", include_str!("../tablets/wacom-intuos2-9x12.toml")),
-    ("wacom-intuos3-12x12.toml", include_str!("../tablets/wacom-intuos3-12x12.toml")),
-    ("wacom-intuos3-4x6.toml", include_str!("../tablets/wacom-intuos3-4x6.toml")),
-    ("wacom-intuos3-6x11.toml", include_str!("../tablets/wacom-intuos3-6x11.toml")),
-    ("wacom-intuos3-9x12.toml", include_str!("../tablets/wacom-intuos3-9x12.toml")),
-    ("wacom-intuos4-12x19.toml", include_str!("../tablets/wacom-intuos4-12x19.toml")),
-    ("wacom-intuos4-wl.toml", include_str!("../tablets/wacom-intuos4-wl.toml")),
-    ("wacom-intuos5-touch-m.toml", include_str!("../tablets/wacom-intuos5-touch-m.toml")),
-    ("wacom-isdv4-0148.toml", include_str!("../tablets/wacom-isdv4-0148.toml")),
-    ("wacom-isdv4-014d.toml", include_str!("../tablets/wacom-isdv4-014d.toml")),
-    ("wacom-isdv4-014e.toml", include_str!("../tablets/wacom-isdv4-014e.toml")),
-    ("wacom-isdv4-0157.toml", include_str!("../tablets/wacom-isdv4-0157.toml")),
-    ("wacom-isdv4-0529.toml", include_str!("../tablets/wacom-isdv4-0529.toml")),
-    ("wacom-isdv4-101.toml", include_str!("../tablets/wacom-isdv4-101.toml")),
-    ("wacom-isdv4-104.toml", include_str!("../tablets/wacom-isdv4-104.toml")),
-    ("wacom-isdv4-10d.toml", include_str!("../tablets/wacom-isdv4-10d.toml")),
-    ("wacom-isdv4-10e.toml", include_str!("../tablets/wacom-isdv4-10e.toml")),
-    ("wacom-isdv4-10f.toml", include_str!("../tablets/wacom-isdv4-10f.toml")),
-    ("wacom-isdv4-114.toml", include_str!("../tablets/wacom-isdv4-114.toml")),
-    ("wacom-isdv4-116.toml", include_str!("../tablets/wacom-isdv4-116.toml")),
-    ("wacom-isdv4-117.toml", include_str!("../tablets/wacom-isdv4-117.toml")),
-    ("wacom-isdv4-124.toml", include_str!("../tablets/wacom-isdv4-124.toml")),
-    ("wacom-isdv4-12c.toml", include_str!("../tablets/wacom-isdv4-12c.toml")),
-    ("wacom-isdv4-149.toml", include_str!("../tablets/wacom-isdv4-149.toml")),
-    ("wacom-isdv4-1e.toml", include_str!("../tablets/wacom-isdv4-1e.toml")),
-    ("wacom-isdv4-2e.toml", include_str!("../tablets/wacom-isdv4-2e.toml")),
-    ("wacom-isdv4-4004.toml", include_str!("../tablets/wacom-isdv4-4004.toml")),
-    ("wacom-isdv4-4806.toml", include_str!("../tablets/wacom-isdv4-4806.toml")),
-    ("wacom-isdv4-4807.toml", include_str!("../tablets/wacom-isdv4-4807.toml")),
-    ("wacom-isdv4-4809.toml", include_str!("../tablets/wacom-isdv4-4809.toml")),
-    ("wacom-isdv4-4814.toml", include_str!("../tablets/wacom-isdv4-4814.toml")),
-    ("wacom-isdv4-481a.toml", include_str!("../tablets/wacom-isdv4-481a.toml")),
-    ("wacom-isdv4-481c.toml", include_str!("../tablets/wacom-isdv4-481c.toml")),
-    ("wacom-isdv4-4822.toml", include_str!("../tablets/wacom-isdv4-4822.toml")),
-    ("wacom-isdv4-4824.toml", include_str!("../tablets/wacom-isdv4-4824.toml")),
-    ("wacom-isdv4-4831.toml", include_str!("../tablets/wacom-isdv4-4831.toml")),
-    ("wacom-isdv4-4841.toml", include_str!("../tablets/wacom-isdv4-4841.toml")),
-    ("wacom-isdv4-4846.toml", include_str!("../tablets/wacom-isdv4-4846.toml")),
-    ("wacom-isdv4-484c.toml", include_str!("../tablets/wacom-isdv4-484c.toml")),
-    ("wacom-isdv4-484e.toml", include_str!("../tablets/wacom-isdv4-484e.toml")),
-    ("wacom-isdv4-485b.toml", include_str!("../tablets/wacom-isdv4-485b.toml")),
-    ("wacom-isdv4-485e.toml", include_str!("../tablets/wacom-isdv4-485e.toml")),
-    ("wacom-isdv4-4865.toml", include_str!("../tablets/wacom-isdv4-4865.toml")),
-    ("wacom-isdv4-486a.toml", include_str!("../tablets/wacom-isdv4-486a.toml")),
-    ("wacom-isdv4-4870.toml", include_str!("../tablets/wacom-isdv4-4870.toml")),
-    ("wacom-isdv4-4875.toml", include_str!("../tablets/wacom-isdv4-4875.toml")),
-    ("wacom-isdv4-488f.toml", include_str!("../tablets/wacom-isdv4-488f.toml")),
-    ("wacom-isdv4-48b7.toml", include_str!("../tablets/wacom-isdv4-48b7.toml")),
-    ("wacom-isdv4-48c9.toml", include_str!("../tablets/wacom-isdv4-48c9.toml")),
-    ("wacom-isdv4-48cc.toml", include_str!("../tablets/wacom-isdv4-48cc.toml")),
-    ("wacom-isdv4-48cd.toml", include_str!("../tablets/wacom-isdv4-48cd.toml")),
-    ("wacom-isdv4-48d6.toml", include_str!("../tablets/wacom-isdv4-48d6.toml")),
-    ("wacom-isdv4-48e2.toml", include_str!("../tablets/wacom-isdv4-48e2.toml")),
-    ("wacom-isdv4-48ed.toml", include_str!("../tablets/wacom-isdv4-48ed.toml")),
-    ("wacom-isdv4-48ee.toml", include_str!("../tablets/wacom-isdv4-48ee.toml")),
-    ("wacom-isdv4-490b.toml", include_str!("../tablets/wacom-isdv4-490b.toml")),
-    ("wacom-isdv4-4911.toml", include_str!("../tablets/wacom-isdv4-4911.toml")),
-    ("wacom-isdv4-4921.toml", include_str!("../tablets/wacom-isdv4-4921.toml")),
-    ("wacom-isdv4-494a.toml", include_str!("../tablets/wacom-isdv4-494a.toml")),
-    ("wacom-isdv4-49a0.toml", include_str!("../tablets/wacom-isdv4-49a0.toml")),
-    ("wacom-isdv4-49a5.toml", include_str!("../tablets/wacom-isdv4-49a5.toml")),
-    ("wacom-isdv4-49bc.toml", include_str!("../tablets/wacom-isdv4-49bc.toml")),
-    ("wacom-isdv4-49c3.toml", include_str!("../tablets/wacom-isdv4-49c3.toml")),
-    ("wacom-isdv4-49fc.toml", include_str!("../tablets/wacom-isdv4-49fc.toml")),
-    ("wacom-isdv4-4a0a.toml", include_str!("../tablets/wacom-isdv4-4a0a.toml")),
-    ("wacom-isdv4-5000.toml", include_str!("../tablets/wacom-isdv4-5000.toml")),
-    ("wacom-isdv4-5002.toml", include_str!("../tablets/wacom-isdv4-5002.toml")),
-    ("wacom-isdv4-5010.toml", include_str!("../tablets/wacom-isdv4-5010.toml")),
-    ("wacom-isdv4-5013.toml", include_str!("../tablets/wacom-isdv4-5013.toml")),
-    ("wacom-isdv4-5014.toml", include_str!("../tablets/wacom-isdv4-5014.toml")),
-    ("wacom-isdv4-503e.toml", include_str!("../tablets/wacom-isdv4-503e.toml")),
-    ("wacom-isdv4-503f.toml", include_str!("../tablets/wacom-isdv4-503f.toml")),
-    ("wacom-isdv4-5040.toml", include_str!("../tablets/wacom-isdv4-5040.toml")),
-    ("wacom-isdv4-5044.toml", include_str!("../tablets/wacom-isdv4-5044.toml")),
-    ("wacom-isdv4-5048.toml", include_str!("../tablets/wacom-isdv4-5048.toml")),
-    ("wacom-isdv4-504a.toml", include_str!("../tablets/wacom-isdv4-504a.toml")),
-    ("wacom-isdv4-5077.toml", include_str!("../tablets/wacom-isdv4-5077.toml")),
-    ("wacom-isdv4-5087.toml", include_str!("../tablets/wacom-isdv4-5087.toml")),
-    ("wacom-isdv4-5090.toml", include_str!("../tablets/wacom-isdv4-5090.toml")),
-    ("wacom-isdv4-5094.toml", include_str!("../tablets/wacom-isdv4-5094.toml")),
-    ("wacom-isdv4-5099.toml", include_str!("../tablets/wacom-isdv4-5099.toml")),
-    ("wacom-isdv4-509c.toml", include_str!("../tablets/wacom-isdv4-509c.toml")),
-    ("wacom-isdv4-509d.toml", include_str!("../tablets/wacom-isdv4-509d.toml")),
-    ("wacom-isdv4-50a0.toml", include_str!("../tablets/wacom-isdv4-50a0.toml")),
-    ("wacom-isdv4-50a2.toml", include_str!("../tablets/wacom-isdv4-50a2.toml")),
-    ("wacom-isdv4-50a9.toml", include_str!("../tablets/wacom-isdv4-50a9.toml")),
-    ("wacom-isdv4-50b4.toml", include_str!("../tablets/wacom-isdv4-50b4.toml")),
-    ("wacom-isdv4-50b6.toml", include_str!("../tablets/wacom-isdv4-50b6.toml")),
-    ("wacom-isdv4-50b7.toml", include_str!("../tablets/wacom-isdv4-50b7.toml")),
-    ("wacom-isdv4-50b8.toml", include_str!("../tablets/wacom-isdv4-50b8.toml")),
-    ("wacom-isdv4-50db.toml", include_str!("../tablets/wacom-isdv4-50db.toml")),
-    ("wacom-isdv4-50e9.toml", include_str!("../tablets/wacom-isdv4-50e9.toml")),
-    ("wacom-isdv4-50ef.toml", include_str!("../tablets/wacom-isdv4-50ef.toml")),
-    ("wacom-isdv4-50f1.toml", include_str!("../tablets/wacom-isdv4-50f1.toml")),
-    ("wacom-isdv4-50f8.toml", include_str!("../tablets/wacom-isdv4-50f8.toml")),
-    ("wacom-isdv4-50fd.toml", include_str!("../tablets/wacom-isdv4-50fd.toml")),
-    ("wacom-isdv4-5110.toml", include_str!("../tablets/wacom-isdv4-5110.toml")),
-    ("wacom-isdv4-5122.toml", include_str!("../tablets/wacom-isdv4-5122.toml")),
-    ("wacom-isdv4-5128.toml", include_str!("../tablets/wacom-isdv4-5128.toml")),
-    ("wacom-isdv4-513b.toml", include_str!("../tablets/wacom-isdv4-513b.toml")),
-    ("wacom-isdv4-5146.toml", include_str!("../tablets/wacom-isdv4-5146.toml")),
-    ("wacom-isdv4-5147.toml", include_str!("../tablets/wacom-isdv4-5147.toml")),
-    ("wacom-isdv4-5148.toml", include_str!("../tablets/wacom-isdv4-5148.toml")),
-    ("wacom-isdv4-5150.toml", include_str!("../tablets/wacom-isdv4-5150.toml")),
-    ("wacom-isdv4-5155.toml", include_str!("../tablets/wacom-isdv4-5155.toml")),
-    ("wacom-isdv4-5157.toml", include_str!("../tablets/wacom-isdv4-5157.toml")),
-    ("wacom-isdv4-5158.toml", include_str!("../tablets/wacom-isdv4-5158.toml")),
-    ("wacom-isdv4-515a.toml", include_str!("../tablets/wacom-isdv4-515a.toml")),
-    ("wacom-isdv4-5169.toml", include_str!("../tablets/wacom-isdv4-5169.toml")),
-    ("wacom-isdv4-516b.toml", include_str!("../tablets/wacom-isdv4-516b.toml")),
-    ("wacom-isdv4-5174.toml", include_str!("../tablets/wacom-isdv4-5174.toml")),
-    ("wacom-isdv4-517d.toml", include_str!("../tablets/wacom-isdv4-517d.toml")),
-    ("wacom-isdv4-5196.toml", include_str!("../tablets/wacom-isdv4-5196.toml")),
-    ("wacom-isdv4-5197.toml", include_str!("../tablets/wacom-isdv4-5197.toml")),
-    ("wacom-isdv4-51a0.toml", include_str!("../tablets/wacom-isdv4-51a0.toml")),
-    ("wacom-isdv4-51af.toml", include_str!("../tablets/wacom-isdv4-51af.toml")),
-    ("wacom-isdv4-51b8.toml", include_str!("../tablets/wacom-isdv4-51b8.toml")),
-    ("wacom-isdv4-51bd.toml", include_str!("../tablets/wacom-isdv4-51bd.toml")),
-    ("wacom-isdv4-51be.toml", include_str!("../tablets/wacom-isdv4-51be.toml")),
-    ("wacom-isdv4-51bf.toml", include_str!("../tablets/wacom-isdv4-51bf.toml")),
-    ("wacom-isdv4-51c4.toml", include_str!("../tablets/wacom-isdv4-51c4.toml")),
-    ("wacom-isdv4-51e3.toml", include_str!("../tablets/wacom-isdv4-51e3.toml")),
-    ("wacom-isdv4-51f6.toml", include_str!("../tablets/wacom-isdv4-51f6.toml")),
-    ("wacom-isdv4-51fe.toml", include_str!("../tablets/wacom-isdv4-51fe.toml")),
-    ("wacom-isdv4-5201.toml", include_str!("../tablets/wacom-isdv4-5201.toml")),
-    ("wacom-isdv4-5203.toml", include_str!("../tablets/wacom-isdv4-5203.toml")),
-    ("wacom-isdv4-521a.toml", include_str!("../tablets/wacom-isdv4-521a.toml")),
-    ("wacom-isdv4-5243.toml", include_str!("../tablets/wacom-isdv4-5243.toml")),
-    ("wacom-isdv4-524d.toml", include_str!("../tablets/wacom-isdv4-524d.toml")),
-    ("wacom-isdv4-525c.toml", include_str!("../tablets/wacom-isdv4-525c.toml")),
-    ("wacom-isdv4-525d.toml", include_str!("../tablets/wacom-isdv4-525d.toml")),
-    ("wacom-isdv4-5269.toml", include_str!("../tablets/wacom-isdv4-5269.toml")),
-    ("wacom-isdv4-5284.toml", include_str!("../tablets/wacom-isdv4-5284.toml")),
-    ("wacom-isdv4-528a.toml", include_str!("../tablets/wacom-isdv4-528a.toml")),
-    ("wacom-isdv4-52b5.toml", include_str!("../tablets/wacom-isdv4-52b5.toml")),
-    ("wacom-isdv4-52c2.toml", include_str!("../tablets/wacom-isdv4-52c2.toml")),
-    ("wacom-isdv4-52c6.toml", include_str!("../tablets/wacom-isdv4-52c6.toml")),
-    ("wacom-isdv4-52cc.toml", include_str!("../tablets/wacom-isdv4-52cc.toml")),
-    ("wacom-isdv4-52cd.toml", include_str!("../tablets/wacom-isdv4-52cd.toml")),
-    ("wacom-isdv4-52e1.toml", include_str!("../tablets/wacom-isdv4-52e1.toml")),
-    ("wacom-isdv4-52e8.toml", include_str!("../tablets/wacom-isdv4-52e8.toml")),
-    ("wacom-isdv4-52eb.toml", include_str!("../tablets/wacom-isdv4-52eb.toml")),
-    ("wacom-isdv4-52ee.toml", include_str!("../tablets/wacom-isdv4-52ee.toml")),
-    ("wacom-isdv4-52fa.toml", include_str!("../tablets/wacom-isdv4-52fa.toml")),
-    ("wacom-isdv4-5309.toml", include_str!("../tablets/wacom-isdv4-5309.toml")),
-    ("wacom-isdv4-5349.toml", include_str!("../tablets/wacom-isdv4-5349.toml")),
-    ("wacom-isdv4-535f.toml", include_str!("../tablets/wacom-isdv4-535f.toml")),
-    ("wacom-isdv4-5360.toml", include_str!("../tablets/wacom-isdv4-5360.toml")),
-    ("wacom-isdv4-5365.toml", include_str!("../tablets/wacom-isdv4-5365.toml")),
-    ("wacom-isdv4-53a7.toml", include_str!("../tablets/wacom-isdv4-53a7.toml")),
-    ("wacom-isdv4-53b7.toml", include_str!("../tablets/wacom-isdv4-53b7.toml")),
-    ("wacom-isdv4-53b8.toml", include_str!("../tablets/wacom-isdv4-53b8.toml")),
-    ("wacom-isdv4-544b.toml", include_str!("../tablets/wacom-isdv4-544b.toml")),
-    ("wacom-isdv4-8191.toml", include_str!("../tablets/wacom-isdv4-8191.toml")),
-    ("wacom-isdv4-90.toml", include_str!("../tablets/wacom-isdv4-90.toml")),
-    ("wacom-isdv4-93.toml", include_str!("../tablets/wacom-isdv4-93.toml")),
-    ("wacom-isdv4-e2.toml", include_str!("../tablets/wacom-isdv4-e2.toml")),
-    ("wacom-isdv4-e6.toml", include_str!("../tablets/wacom-isdv4-e6.toml")),
-    ("wacom-isdv4-f1f5.toml", include_str!("../tablets/wacom-isdv4-f1f5.toml")),
-    ("wacom-mobilestudio-pro-13.toml", include_str!("../tablets/wacom-mobilestudio-pro-13.toml")),
-    ("wacom-mobilestudio-pro-16.toml", include_str!("../tablets/wacom-mobilestudio-pro-16.toml")),
-    ("wacom-movink-13-dth-135.toml", include_str!("../tablets/wacom-movink-13-dth-135.toml")),
-    ("wacom-mte-450.toml", include_str!("../tablets/wacom-mte-450.toml")),
-    ("wacom-one-14.toml", include_str!("../tablets/wacom-one-14.toml")),
-    ("wacom-one-pen-display-12.toml", include_str!("../tablets/wacom-one-pen-display-12.toml")),
-    (
-        "wacom-one-pen-display-13-dtc133.toml",
-        include_str!("../tablets/wacom-one-pen-display-13-dtc133.toml"),
-    ),
-    (
-        "wacom-one-pen-display-13-dth134.toml",
-        include_str!("../tablets/wacom-one-pen-display-13-dth134.toml"),
-    ),
-    (
-        "wacom-one-pen-tablet-medium.toml",
-        include_str!("../tablets/wacom-one-pen-tablet-medium.toml"),
-    ),
-    ("wacom-one-pen-tablet-small.toml", include_str!("../tablets/wacom-one-pen-tablet-small.toml")),
-    ("wacom-penpartner.toml", include_str!("../tablets/wacom-penpartner.toml")),
-    ("wacom-penpartner2.toml", include_str!("../tablets/wacom-penpartner2.toml")),
-    ("wacom-penstation2.toml", include_str!("../tablets/wacom-penstation2.toml")),
-    ("wacom-pl400.toml", include_str!("../tablets/wacom-pl400.toml")),
-    ("wacom-pl500.toml", include_str!("../tablets/wacom-pl500.toml")),
-    ("wacom-pl510.toml", include_str!("../tablets/wacom-pl510.toml")),
-    ("wacom-pl550.toml", include_str!("../tablets/wacom-pl550.toml")),
-    ("wacom-pl600.toml", include_str!("../tablets/wacom-pl600.toml")),
-    ("wacom-pl600sx.toml", include_str!("../tablets/wacom-pl600sx.toml")),
-    ("wacom-pl700.toml", include_str!("../tablets/wacom-pl700.toml")),
-    ("wacom-pth-450.toml", include_str!("../tablets/wacom-pth-450.toml")),
-    ("wacom-pth-460.toml", include_str!("../tablets/wacom-pth-460.toml")),
-    ("wacom-pth-651.toml", include_str!("../tablets/wacom-pth-651.toml")),
-    ("wacom-pth-660.toml", include_str!("../tablets/wacom-pth-660.toml")),
-    ("wacom-pth-850.toml", include_str!("../tablets/wacom-pth-850.toml")),
-    ("wacom-pth-860.toml", include_str!("../tablets/wacom-pth-860.toml")),
-    ("wacom-ptk-440.toml", include_str!("../tablets/wacom-ptk-440.toml")),
-    ("wacom-ptk-450.toml", include_str!("../tablets/wacom-ptk-450.toml")),
-    ("wacom-ptk-470.toml", include_str!("../tablets/wacom-ptk-470.toml")),
-    ("wacom-ptk-640.toml", include_str!("../tablets/wacom-ptk-640.toml")),
-    ("wacom-ptk-650.toml", include_str!("../tablets/wacom-ptk-650.toml")),
-    ("wacom-ptk-670.toml", include_str!("../tablets/wacom-ptk-670.toml")),
-    ("wacom-ptk-840.toml", include_str!("../tablets/wacom-ptk-840.toml")),
-    ("wacom-ptk-870.toml", include_str!("../tablets/wacom-ptk-870.toml")),
-    ("wacom-ptu-600u.toml", include_str!("../tablets/wacom-ptu-600u.toml")),
-    ("wacom-ptz-1231w.toml", include_str!("../tablets/wacom-ptz-1231w.toml")),
-    ("wacom-ptz-430.toml", include_str!("../tablets/wacom-ptz-430.toml")),
-    ("wacom-ptz-630.toml", include_str!("../tablets/wacom-ptz-630.toml")),
-    ("wacom-volito2-2x3.toml", include_str!("../tablets/wacom-volito2-2x3.toml")),
-    ("wacom-volito2-4x5.toml", include_str!("../tablets/wacom-volito2-4x5.toml")),
-    ("wacom-xd-1218-u.toml", include_str!("../tablets/wacom-xd-1218-u.toml")),
-    ("waltop-batteryless-tablet.toml", include_str!("../tablets/waltop-batteryless-tablet.toml")),
-    (
-        "waltop-media-tablet-10-6-inch.toml",
-        include_str!("../tablets/waltop-media-tablet-10-6-inch.toml"),
-    ),
-    (
-        "waltop-media-tablet-14-1-inch.toml",
-        include_str!("../tablets/waltop-media-tablet-14-1-inch.toml"),
-    ),
-    ("waltop-pid-0038.toml", include_str!("../tablets/waltop-pid-0038.toml")),
-    ("waltop-q-pad.toml", include_str!("../tablets/waltop-q-pad.toml")),
-    (
-        "waltop-sirius-battery-free-tablet.toml",
-        include_str!("../tablets/waltop-sirius-battery-free-tablet.toml"),
-    ),
-    (
-        "waltop-slim-tablet-12-1-inch.toml",
-        include_str!("../tablets/waltop-slim-tablet-12-1-inch.toml"),
-    ),
-    ("waltop-slim-tablet-12-1.toml", include_str!("../tablets/waltop-slim-tablet-12-1.toml")),
-    (
-        "waltop-slim-tablet-5-8-inch.toml",
-        include_str!("../tablets/waltop-slim-tablet-5-8-inch.toml"),
-    ),
-    ("waltop-slim-tablet-5-8.toml", include_str!("../tablets/waltop-slim-tablet-5-8.toml")),
-    ("xencelabs-pen-display-16.toml", include_str!("../tablets/xencelabs-pen-display-16.toml")),
-    (
-        "xencelabs-pen-tablet-medium.toml",
-        include_str!("../tablets/xencelabs-pen-tablet-medium.toml"),
-    ),
-    ("xencelabs-pen-tablet-small.toml", include_str!("../tablets/xencelabs-pen-tablet-small.toml")),
-    ("xenx-p1-640.toml", include_str!("../tablets/xenx-p1-640.toml")),
-    ("xenx-p3-1060.toml", include_str!("../tablets/xenx-p3-1060.toml")),
-    ("xenx-x1-640.toml", include_str!("../tablets/xenx-x1-640.toml")),
-    ("xoppox-d161.toml", include_str!("../tablets/xoppox-d161.toml")),
-    ("xp-pen-artist-10-2nd-gen.toml", include_str!("../tablets/xp-pen-artist-10-2nd-gen.toml")),
-    ("xp-pen-artist-10s.toml", include_str!("../tablets/xp-pen-artist-10s.toml")),
-    ("xp-pen-artist-12-2nd-gen.toml", include_str!("../tablets/xp-pen-artist-12-2nd-gen.toml")),
-    ("xp-pen-artist-12-pro.toml", include_str!("../tablets/xp-pen-artist-12-pro.toml")),
-    ("xp-pen-artist-12.toml", include_str!("../tablets/xp-pen-artist-12.toml")),
-    ("xp-pen-artist-13-2nd-gen.toml", include_str!("../tablets/xp-pen-artist-13-2nd-gen.toml")),
-    ("xp-pen-artist-13-3-pro.toml", include_str!("../tablets/xp-pen-artist-13-3-pro.toml")),
-    ("xp-pen-artist-13-3.toml", include_str!("../tablets/xp-pen-artist-13-3.toml")),
-    ("xp-pen-artist-15-6-pro-v2.toml", include_str!("../tablets/xp-pen-artist-15-6-pro-v2.toml")),
-    ("xp-pen-artist-15-6-pro.toml", include_str!("../tablets/xp-pen-artist-15-6-pro.toml")),
-    ("xp-pen-artist-15-6.toml", include_str!("../tablets/xp-pen-artist-15-6.toml")),
-    ("xp-pen-artist-16-2nd-gen.toml", include_str!("../tablets/xp-pen-artist-16-2nd-gen.toml")),
-    ("xp-pen-artist-16-pro.toml", include_str!("../tablets/xp-pen-artist-16-pro.toml")),
-    ("xp-pen-artist-16.toml", include_str!("../tablets/xp-pen-artist-16.toml")),
-    ("xp-pen-artist-22-2nd-gen.toml", include_str!("../tablets/xp-pen-artist-22-2nd-gen.toml")),
-    ("xp-pen-artist-22hd.toml", include_str!("../tablets/xp-pen-artist-22hd.toml")),
-    ("xp-pen-artist-22r-pro.toml", include_str!("../tablets/xp-pen-artist-22r-pro.toml")),
-    ("xp-pen-artist-24-pro.toml", include_str!("../tablets/xp-pen-artist-24-pro.toml")),
-    ("xp-pen-artist-24.toml", include_str!("../tablets/xp-pen-artist-24.toml")),
-    ("xp-pen-artist-pro-14-gen2.toml", include_str!("../tablets/xp-pen-artist-pro-14-gen2.toml")),
-    ("xp-pen-artist-pro-16-gen2.toml", include_str!("../tablets/xp-pen-artist-pro-16-gen2.toml")),
-    ("xp-pen-artist-pro-16tp.toml", include_str!("../tablets/xp-pen-artist-pro-16tp.toml")),
-    ("xp-pen-artist-pro-19-gen2.toml", include_str!("../tablets/xp-pen-artist-pro-19-gen2.toml")),
-    ("xp-pen-artist-pro-22-gen2.toml", include_str!("../tablets/xp-pen-artist-pro-22-gen2.toml")),
-    ("xp-pen-artist-pro-24-gen2.toml", include_str!("../tablets/xp-pen-artist-pro-24-gen2.toml")),
-    (
-        "xp-pen-deco-01-v2-variant-2.toml",
-        include_str!("../tablets/xp-pen-deco-01-v2-variant-2.toml"),
-    ),
-    ("xp-pen-deco-01-v2.toml", include_str!("../tablets/xp-pen-deco-01-v2.toml")),
-    (
-        "xp-pen-deco-01-v3-variant-2.toml",
-        include_str!("../tablets/xp-pen-deco-01-v3-variant-2.toml"),
-    ),
-    ("xp-pen-deco-01-v3.toml", include_str!("../tablets/xp-pen-deco-01-v3.toml")),
-    ("xp-pen-deco-01.toml", include_str!("../tablets/xp-pen-deco-01.toml")),
-    ("xp-pen-deco-02.toml", include_str!("../tablets/xp-pen-deco-02.toml")),
-    ("xp-pen-deco-03.toml", include_str!("../tablets/xp-pen-deco-03.toml")),
-    ("xp-pen-deco-640-it640.toml", include_str!("../tablets/xp-pen-deco-640-it640.toml")),
-    ("xp-pen-deco-fun-l-ct1060.toml", include_str!("../tablets/xp-pen-deco-fun-l-ct1060.toml")),
-    ("xp-pen-deco-fun-s-ct640.toml", include_str!("../tablets/xp-pen-deco-fun-s-ct640.toml")),
-    ("xp-pen-deco-fun-xs-ct430.toml", include_str!("../tablets/xp-pen-deco-fun-xs-ct430.toml")),
-    ("xp-pen-deco-l.toml", include_str!("../tablets/xp-pen-deco-l.toml")),
-    ("xp-pen-deco-m.toml", include_str!("../tablets/xp-pen-deco-m.toml")),
-    ("xp-pen-deco-mini4.toml", include_str!("../tablets/xp-pen-deco-mini4.toml")),
-    ("xp-pen-deco-mini7-v2.toml", include_str!("../tablets/xp-pen-deco-mini7-v2.toml")),
-    ("xp-pen-deco-mini7.toml", include_str!("../tablets/xp-pen-deco-mini7.toml")),
-    ("xp-pen-deco-pro-lw-gen2.toml", include_str!("../tablets/xp-pen-deco-pro-lw-gen2.toml")),
-    ("xp-pen-deco-pro-medium.toml", include_str!("../tablets/xp-pen-deco-pro-medium.toml")),
-    ("xp-pen-deco-pro-mw-gen2.toml", include_str!("../tablets/xp-pen-deco-pro-mw-gen2.toml")),
-    ("xp-pen-deco-pro-mw.toml", include_str!("../tablets/xp-pen-deco-pro-mw.toml")),
-    ("xp-pen-deco-pro-small.toml", include_str!("../tablets/xp-pen-deco-pro-small.toml")),
-    ("xp-pen-deco-pro-sw.toml", include_str!("../tablets/xp-pen-deco-pro-sw.toml")),
-    ("xp-pen-deco-pro-xlw-gen2.toml", include_str!("../tablets/xp-pen-deco-pro-xlw-gen2.toml")),
-    ("xp-pen-deco-se.toml", include_str!("../tablets/xp-pen-deco-se.toml")),
-    ("xp-pen-innovator-16.toml", include_str!("../tablets/xp-pen-innovator-16.toml")),
-    ("xp-pen-star-02.toml", include_str!("../tablets/xp-pen-star-02.toml")),
-    ("xp-pen-star-03-pro.toml", include_str!("../tablets/xp-pen-star-03-pro.toml")),
-    ("xp-pen-star-03.toml", include_str!("../tablets/xp-pen-star-03.toml")),
-    ("xp-pen-star-05-v3.toml", include_str!("../tablets/xp-pen-star-05-v3.toml")),
-    ("xp-pen-star-06.toml", include_str!("../tablets/xp-pen-star-06.toml")),
-    ("xp-pen-star-06c.toml", include_str!("../tablets/xp-pen-star-06c.toml")),
-    ("xp-pen-star-g430.toml", include_str!("../tablets/xp-pen-star-g430.toml")),
-    ("xp-pen-star-g430s-v2.toml", include_str!("../tablets/xp-pen-star-g430s-v2.toml")),
-    ("xp-pen-star-g430s.toml", include_str!("../tablets/xp-pen-star-g430s.toml")),
-    ("xp-pen-star-g540-pro.toml", include_str!("../tablets/xp-pen-star-g540-pro.toml")),
-    ("xp-pen-star-g540.toml", include_str!("../tablets/xp-pen-star-g540.toml")),
-    ("xp-pen-star-g640-variant-2.toml", include_str!("../tablets/xp-pen-star-g640-variant-2.toml")),
-    ("xp-pen-star-g640.toml", include_str!("../tablets/xp-pen-star-g640.toml")),
-    ("xp-pen-star-g640s.toml", include_str!("../tablets/xp-pen-star-g640s.toml")),
-    ("xp-pen-star-g960.toml", include_str!("../tablets/xp-pen-star-g960.toml")),
-    ("xp-pen-star-g960s-plus.toml", include_str!("../tablets/xp-pen-star-g960s-plus.toml")),
-    ("xp-pen-star-g960s.toml", include_str!("../tablets/xp-pen-star-g960s.toml")),
-];
+pub(crate) const TABLETS: &[(&str, &str)] = tablets! {
+    "acepen-ap1060" "acepen-ap906" "adesso-cybertablet-k8" "artisul-a1201" "artisul-ap604"
+    "artisul-d16-pro" "artisul-m0610-pro" "chuwi-minibook-x" "dell-canvas-27"
+    "dell-inc-inspiron-14-7445-2-in-1" "dell-latitude-7275" "elan-0732" "elan-2072" "elan-24d8"
+    "elan-24db" "elan-2513" "elan-2514-004f3-23db" "elan-2514-04f3-29cf" "elan-2537" "elan-2627"
+    "elan-2628" "elan-262b" "elan-29a1" "elan-29b6" "elan-2ad9" "elan-2c1b" "elan-2d55" "elan-2f2a"
+    "elan-2fc2" "elan-41a1" "elan-touchscreen-pen-sensor" "elan1001" "elan9008-00" "elan9009-00"
+    "floogoo-fma100" "framework-laptop-12" "gaomon-1060-pro" "gaomon-gm116hd" "gaomon-gm156hd"
+    "gaomon-m106k-pro" "gaomon-m106k" "gaomon-m10k-pro" "gaomon-m10k" "gaomon-m1220" "gaomon-m1230"
+    "gaomon-m5" "gaomon-m6" "gaomon-m8-variant-2" "gaomon-m8" "gaomon-pd1161" "gaomon-pd156-pro"
+    "gaomon-pd1560" "gaomon-pd1561" "gaomon-pd2200" "gaomon-s56k" "gaomon-s620" "gaomon-s630"
+    "gaomon-s830" "genius-g-pen-560" "genius-g-pen-f509" "genius-i608x" "hp-elite-chromebook-c1030"
+    "hp-pro-tablet-408" "huion-1060-plus" "huion-420" "huion-g10t" "huion-g930l" "huion-gc610"
+    "huion-gt-156hd-v2" "huion-gt-191-v2" "huion-gt-220-v2" "huion-gt-221-pro" "huion-gt-221"
+    "huion-h1060p" "huion-h1061p" "huion-h1161" "huion-h320m" "huion-h420" "huion-h420x"
+    "huion-h430p" "huion-h580x" "huion-h610-pro-v2" "huion-h610-pro-v3" "huion-h610-pro"
+    "huion-h610x" "huion-h640p" "huion-h641p" "huion-h642" "huion-h690" "huion-h950p" "huion-h951p"
+    "huion-hc16-variant-2" "huion-hc16" "huion-hs610" "huion-hs611" "huion-hs64" "huion-hs95"
+    "huion-inspiroy-frego-s" "huion-kamvas-12" "huion-kamvas-13-gen-3" "huion-kamvas-13"
+    "huion-kamvas-16-2021" "huion-kamvas-16-gen-3" "huion-kamvas-16" "huion-kamvas-20"
+    "huion-kamvas-22-plus" "huion-kamvas-22" "huion-kamvas-24-plus" "huion-kamvas-24"
+    "huion-kamvas-pro-12" "huion-kamvas-pro-13-2-5k" "huion-kamvas-pro-13"
+    "huion-kamvas-pro-16-2-5k" "huion-kamvas-pro-16-4k" "huion-kamvas-pro-16-plus-4k"
+    "huion-kamvas-pro-16" "huion-kamvas-pro-19-4k" "huion-kamvas-pro-20" "huion-kamvas-pro-22-2019"
+    "huion-kamvas-pro-24-4k" "huion-kamvas-pro-24" "huion-kamvas-pro-27" "huion-l310" "huion-l610"
+    "huion-new-1060-plus-2048" "huion-new-1060-plus" "huion-note-x10" "huion-q11k-v2" "huion-q11k"
+    "huion-q620m" "huion-q630m" "huion-rds-160" "huion-rte-100" "huion-rtm-500" "huion-rtp-700"
+    "huion-wh1409-v2-variant-2" "huion-wh1409-v2" "huion-wh1409" "ingenic-touch-pen-display"
+    "isdv4-002c" "isdv4-0066" "isdv4-0078" "isdv4-0095" "isdv4-0114" "isdv4-011e" "isdv4-0136"
+    "isdv4-014b" "isdv4-0163" "isdv4-016c" "isdv4-0185" "isdv4-0203" "isdv4-121a" "isdv4-4834"
+    "isdv4-4838" "isdv4-484d" "isdv4-4851" "isdv4-4898" "isdv4-48ca" "isdv4-48ce" "isdv4-48eb"
+    "isdv4-48f6" "isdv4-490a" "isdv4-4957" "isdv4-495f" "isdv4-496c" "isdv4-4988" "isdv4-4995"
+    "isdv4-49a3" "isdv4-5019" "isdv4-504c" "isdv4-5072" "isdv4-5093" "isdv4-509f" "isdv4-50fe"
+    "isdv4-511a" "isdv4-5144" "isdv4-5159" "isdv4-51b0" "isdv4-51b1" "isdv4-51b2" "isdv4-51b3"
+    "isdv4-51b6" "isdv4-51b7" "isdv4-51b9" "isdv4-51ba" "isdv4-51bb" "isdv4-51bc" "isdv4-51c7"
+    "isdv4-51d0" "isdv4-51e2" "isdv4-51e9" "isdv4-51ef" "isdv4-51f9" "isdv4-5202" "isdv4-5204"
+    "isdv4-5214" "isdv4-5215" "isdv4-5216" "isdv4-5218" "isdv4-521c" "isdv4-521f" "isdv4-5220"
+    "isdv4-5221" "isdv4-5222" "isdv4-5229" "isdv4-523a" "isdv4-523e" "isdv4-5256" "isdv4-526a"
+    "isdv4-526c" "isdv4-5276" "isdv4-5277" "isdv4-5278" "isdv4-5279" "isdv4-527a" "isdv4-527e"
+    "isdv4-527f" "isdv4-5285" "isdv4-5286" "isdv4-528e" "isdv4-52a2" "isdv4-52b0" "kenting-k5540"
+    "kye-easypen-340" "kye-easypen-i405x" "kye-easypen-m406" "kye-easypen-m406w"
+    "kye-easypen-m406xe" "kye-easypen-m506" "kye-easypen-m610x" "kye-mousepen-i608x"
+    "kye-mousepen-m508wx" "kye-mousepen-m508x" "kye-pensketch-m912" "kye-pensketch-t609a"
+    "lenovo-ideapad-duet" "lenovo-thinkpad-x1-fold-16-gen-1" "lenovo-thinkvision-m14t-gen-2"
+    "lenovo-thinkvision-m14t" "letsketch-letsketch" "lifetec-lt9570" "m5-v2"
+    "microsoft-surface-go-2" "microsoft-surface-go" "monoprice-10594" "monoprice-mp1060-ha60"
+    "n-trig-pen" "nuvision-solo-10-draw" "parblo-a609" "parblo-a610-pro-variant-2" "parblo-a610-pro"
+    "parblo-a610" "parblo-a640-v2" "parblo-a640" "parblo-intangbo-m" "parblo-intangbo-s"
+    "parblo-ninos-m" "parblo-ninos-n4" "parblo-ninos-n7" "parblo-ninos-n7b" "parblo-ninos-s"
+    "robotpen-t9a" "samsung-chromebook-plus-v2" "starlabs-starlite" "trust-flex-design-tablet"
+    "turcom-ts-6580" "uc-logic-1060n" "uc-logic-pf1209" "ugee-m708-v2" "ugee-m708-v3" "ugee-m708"
+    "ugee-m808" "ugee-m908" "ugee-s1060" "ugee-s640" "ugee-u1200" "ugee-u1600" "ugee-ue16"
+    "veikk-a15-pro" "veikk-a15-v2" "veikk-a15" "veikk-a30-v2" "veikk-a30" "veikk-a50-variant-2"
+    "veikk-a50" "veikk-s640-v2" "veikk-s640" "veikk-vk1060" "veikk-vk1060pro" "veikk-vk430-v2"
+    "veikk-vk430" "veikk-vk640" "veikk-voila-vo1060" "viewsonic-woodpad-pf0730"
+    "viewsonic-woodpad-pf1030" "wacom-bamboo-16fg-4x5" "wacom-bamboo-16fg-6x8"
+    "wacom-bamboo-2fg-4x5-se" "wacom-bamboo-2fg-6x8-se" "wacom-bamboo-2fg-6x8" "wacom-bamboo-2fg"
+    "wacom-bamboo-comic-2fg" "wacom-bamboo-craft" "wacom-bamboo-pen-6x8" "wacom-bamboo1-medium"
+    "wacom-bamboo1" "wacom-bamboofun-4x5" "wacom-bamboofun-6x8" "wacom-bamboopt-2fg-small"
+    "wacom-cintiq-12wx" "wacom-cintiq-13hd-touch" "wacom-cintiq-13hd" "wacom-cintiq-16-dtk-1660"
+    "wacom-cintiq-16" "wacom-cintiq-18sx-pl-800-u" "wacom-cintiq-20wsx" "wacom-cintiq-21ux-dtz-2100"
+    "wacom-cintiq-21ux2" "wacom-cintiq-22" "wacom-cintiq-22hd-dtk-2200"
+    "wacom-cintiq-22hd-touch-dth-2200" "wacom-cintiq-24-touch" "wacom-cintiq-24"
+    "wacom-cintiq-24hd-touch" "wacom-cintiq-24hd" "wacom-cintiq-27qhd-touch" "wacom-cintiq-27qhd"
+    "wacom-cintiq-companion-2" "wacom-cintiq-companion-hybrid" "wacom-cintiq-companion"
+    "wacom-cintiq-pro-16" "wacom-cintiq-pro-17" "wacom-cintiq-pro-22-dth-227" "wacom-cintiq-pro-24"
+    "wacom-cintiq-pro-27-dth-271" "wacom-cintiq-pro-32" "wacom-ctc-4110wl" "wacom-ctc-6110wl"
+    "wacom-cte-430" "wacom-cte-440" "wacom-cte-460" "wacom-cte-640" "wacom-cte-660" "wacom-cth-300"
+    "wacom-cth-301" "wacom-cth-460" "wacom-cth-480" "wacom-cth-490" "wacom-cth-690" "wacom-ctl-4100"
+    "wacom-ctl-4100wl-over-bluetooth" "wacom-ctl-4100wl" "wacom-ctl-460" "wacom-ctl-470"
+    "wacom-ctl-471" "wacom-ctl-472" "wacom-ctl-490" "wacom-ctl-6100"
+    "wacom-ctl-6100wl-over-bluetooth" "wacom-ctl-6100wl" "wacom-ctl-671" "wacom-ctl-672"
+    "wacom-ctt-460-2-fg" "wacom-ctt-470" "wacom-dtc-133" "wacom-dtc121" "wacom-dtf521"
+    "wacom-dtf720" "wacom-dtf720a" "wacom-dth-1320" "wacom-dth1152" "wacom-dth134" "wacom-dth2242"
+    "wacom-dth2452" "wacom-dth246e" "wacom-dti520ub-l" "wacom-dtk-1660e" "wacom-dtk1651"
+    "wacom-dtk168e" "wacom-dtk2241" "wacom-dtk2451" "wacom-dtk246e" "wacom-dtu1031" "wacom-dtu1031x"
+    "wacom-dtu1141" "wacom-dtu1141b" "wacom-dtu1631" "wacom-dtu1931" "wacom-dtu2231" "wacom-dtu710"
+    "wacom-et-0405a-u" "wacom-ft-0405-u" "wacom-gd-0912-u" "wacom-gd-1212-u" "wacom-gd-1218-u"
+    "wacom-graphire-bluetooth-6x8" "wacom-graphire" "wacom-graphire2-5x7" "wacom-graphire3-6x8"
+    "wacom-hid-48ec" "wacom-hid-49c8" "wacom-hid-5115" "wacom-hid-52d3" "wacom-hid-52d5"
+    "wacom-hid-5362-pen-wacom-hid-5362-finger" "wacom-hid-53bb-pen" "wacom-intuos-4x5"
+    "wacom-intuos-6x8" "wacom-intuos-bt-m-android-mode" "wacom-intuos-bt-s-android-mode"
+    "wacom-intuos-m-android-mode" "wacom-intuos-p-m-2" "wacom-intuos-p-m"
+    "wacom-intuos-pro-l-pth-860-over-bluetooth" "wacom-intuos-pro-l-ptk870" "wacom-intuos-pro-l"
+    "wacom-intuos-pro-m" "wacom-intuos-pro-s-pth-460-over-bluetooth" "wacom-intuos-pro-s-ptk470"
+    "wacom-intuos-pro-s" "wacom-intuos-pt-m" "wacom-intuos-s-android-mode" "wacom-intuos-s"
+    "wacom-intuos2-12x12" "wacom-intuos2-4x5" "wacom-intuos2-6x8-second-id" "wacom-intuos2-6x8"
+    "wacom-intuos2-9x12" "wacom-intuos3-12x12" "wacom-intuos3-4x6" "wacom-intuos3-6x11"
+    "wacom-intuos3-9x12" "wacom-intuos4-12x19" "wacom-intuos4-wl" "wacom-intuos5-touch-m"
+    "wacom-isdv4-0148" "wacom-isdv4-014d" "wacom-isdv4-014e" "wacom-isdv4-0157" "wacom-isdv4-0529"
+    "wacom-isdv4-101" "wacom-isdv4-104" "wacom-isdv4-10d" "wacom-isdv4-10e" "wacom-isdv4-10f"
+    "wacom-isdv4-114" "wacom-isdv4-116" "wacom-isdv4-117" "wacom-isdv4-124" "wacom-isdv4-12c"
+    "wacom-isdv4-149" "wacom-isdv4-1e" "wacom-isdv4-2e" "wacom-isdv4-4004" "wacom-isdv4-4806"
+    "wacom-isdv4-4807" "wacom-isdv4-4809" "wacom-isdv4-4814" "wacom-isdv4-481a" "wacom-isdv4-481c"
+    "wacom-isdv4-4822" "wacom-isdv4-4824" "wacom-isdv4-4831" "wacom-isdv4-4841" "wacom-isdv4-4846"
+    "wacom-isdv4-484c" "wacom-isdv4-484e" "wacom-isdv4-485b" "wacom-isdv4-485e" "wacom-isdv4-4865"
+    "wacom-isdv4-486a" "wacom-isdv4-4870" "wacom-isdv4-4875" "wacom-isdv4-488f" "wacom-isdv4-48b7"
+    "wacom-isdv4-48c9" "wacom-isdv4-48cc" "wacom-isdv4-48cd" "wacom-isdv4-48d6" "wacom-isdv4-48e2"
+    "wacom-isdv4-48ed" "wacom-isdv4-48ee" "wacom-isdv4-490b" "wacom-isdv4-4911" "wacom-isdv4-4921"
+    "wacom-isdv4-494a" "wacom-isdv4-49a0" "wacom-isdv4-49a5" "wacom-isdv4-49bc" "wacom-isdv4-49c3"
+    "wacom-isdv4-49fc" "wacom-isdv4-4a0a" "wacom-isdv4-5000" "wacom-isdv4-5002" "wacom-isdv4-5010"
+    "wacom-isdv4-5013" "wacom-isdv4-5014" "wacom-isdv4-503e" "wacom-isdv4-503f" "wacom-isdv4-5040"
+    "wacom-isdv4-5044" "wacom-isdv4-5048" "wacom-isdv4-504a" "wacom-isdv4-5077" "wacom-isdv4-5087"
+    "wacom-isdv4-5090" "wacom-isdv4-5094" "wacom-isdv4-5099" "wacom-isdv4-509c" "wacom-isdv4-509d"
+    "wacom-isdv4-50a0" "wacom-isdv4-50a2" "wacom-isdv4-50a9" "wacom-isdv4-50b4" "wacom-isdv4-50b6"
+    "wacom-isdv4-50b7" "wacom-isdv4-50b8" "wacom-isdv4-50db" "wacom-isdv4-50e9" "wacom-isdv4-50ef"
+    "wacom-isdv4-50f1" "wacom-isdv4-50f8" "wacom-isdv4-50fd" "wacom-isdv4-5110" "wacom-isdv4-5122"
+    "wacom-isdv4-5128" "wacom-isdv4-513b" "wacom-isdv4-5146" "wacom-isdv4-5147" "wacom-isdv4-5148"
+    "wacom-isdv4-5150" "wacom-isdv4-5155" "wacom-isdv4-5157" "wacom-isdv4-5158" "wacom-isdv4-515a"
+    "wacom-isdv4-5169" "wacom-isdv4-516b" "wacom-isdv4-5174" "wacom-isdv4-517d" "wacom-isdv4-5196"
+    "wacom-isdv4-5197" "wacom-isdv4-51a0" "wacom-isdv4-51af" "wacom-isdv4-51b8" "wacom-isdv4-51bd"
+    "wacom-isdv4-51be" "wacom-isdv4-51bf" "wacom-isdv4-51c4" "wacom-isdv4-51e3" "wacom-isdv4-51f6"
+    "wacom-isdv4-51fe" "wacom-isdv4-5201" "wacom-isdv4-5203" "wacom-isdv4-521a" "wacom-isdv4-5243"
+    "wacom-isdv4-524d" "wacom-isdv4-525c" "wacom-isdv4-525d" "wacom-isdv4-5269" "wacom-isdv4-5284"
+    "wacom-isdv4-528a" "wacom-isdv4-52b5" "wacom-isdv4-52c2" "wacom-isdv4-52c6" "wacom-isdv4-52cc"
+    "wacom-isdv4-52cd" "wacom-isdv4-52e1" "wacom-isdv4-52e8" "wacom-isdv4-52eb" "wacom-isdv4-52ee"
+    "wacom-isdv4-52fa" "wacom-isdv4-5309" "wacom-isdv4-5349" "wacom-isdv4-535f" "wacom-isdv4-5360"
+    "wacom-isdv4-5365" "wacom-isdv4-53a7" "wacom-isdv4-53b7" "wacom-isdv4-53b8" "wacom-isdv4-544b"
+    "wacom-isdv4-8191" "wacom-isdv4-90" "wacom-isdv4-93" "wacom-isdv4-e2" "wacom-isdv4-e6"
+    "wacom-isdv4-f1f5" "wacom-mobilestudio-pro-13" "wacom-mobilestudio-pro-16"
+    "wacom-movink-13-dth-135" "wacom-mte-450" "wacom-one-14" "wacom-one-pen-display-12"
+    "wacom-one-pen-display-13-dtc133" "wacom-one-pen-display-13-dth134"
+    "wacom-one-pen-tablet-medium" "wacom-one-pen-tablet-small" "wacom-penpartner"
+    "wacom-penpartner2" "wacom-penstation2" "wacom-pl400" "wacom-pl500" "wacom-pl510" "wacom-pl550"
+    "wacom-pl600" "wacom-pl600sx" "wacom-pl700" "wacom-pth-450" "wacom-pth-460" "wacom-pth-651"
+    "wacom-pth-660" "wacom-pth-850" "wacom-pth-860" "wacom-ptk-440" "wacom-ptk-450" "wacom-ptk-470"
+    "wacom-ptk-640" "wacom-ptk-650" "wacom-ptk-670" "wacom-ptk-840" "wacom-ptk-870" "wacom-ptu-600u"
+    "wacom-ptz-1231w" "wacom-ptz-430" "wacom-ptz-630" "wacom-volito2-2x3" "wacom-volito2-4x5"
+    "wacom-xd-1218-u" "waltop-batteryless-tablet" "waltop-media-tablet-10-6-inch"
+    "waltop-media-tablet-14-1-inch" "waltop-pid-0038" "waltop-q-pad"
+    "waltop-sirius-battery-free-tablet" "waltop-slim-tablet-12-1-inch" "waltop-slim-tablet-12-1"
+    "waltop-slim-tablet-5-8-inch" "waltop-slim-tablet-5-8" "xencelabs-pen-display-16"
+    "xencelabs-pen-tablet-medium" "xencelabs-pen-tablet-small" "xenx-p1-640" "xenx-p3-1060"
+    "xenx-x1-640" "xoppox-d161" "xp-pen-artist-10-2nd-gen" "xp-pen-artist-10s"
+    "xp-pen-artist-12-2nd-gen" "xp-pen-artist-12-pro" "xp-pen-artist-12" "xp-pen-artist-13-2nd-gen"
+    "xp-pen-artist-13-3-pro" "xp-pen-artist-13-3" "xp-pen-artist-15-6-pro-v2"
+    "xp-pen-artist-15-6-pro" "xp-pen-artist-15-6" "xp-pen-artist-16-2nd-gen" "xp-pen-artist-16-pro"
+    "xp-pen-artist-16" "xp-pen-artist-22-2nd-gen" "xp-pen-artist-22hd" "xp-pen-artist-22r-pro"
+    "xp-pen-artist-24-pro" "xp-pen-artist-24" "xp-pen-artist-pro-14-gen2"
+    "xp-pen-artist-pro-16-gen2" "xp-pen-artist-pro-16tp" "xp-pen-artist-pro-19-gen2"
+    "xp-pen-artist-pro-22-gen2" "xp-pen-artist-pro-24-gen2" "xp-pen-deco-01-v2-variant-2"
+    "xp-pen-deco-01-v2" "xp-pen-deco-01-v3-variant-2" "xp-pen-deco-01-v3" "xp-pen-deco-01"
+    "xp-pen-deco-02" "xp-pen-deco-03" "xp-pen-deco-640-it640" "xp-pen-deco-fun-l-ct1060"
+    "xp-pen-deco-fun-s-ct640" "xp-pen-deco-fun-xs-ct430" "xp-pen-deco-l" "xp-pen-deco-m"
+    "xp-pen-deco-mini4" "xp-pen-deco-mini7-v2" "xp-pen-deco-mini7" "xp-pen-deco-pro-lw-gen2"
+    "xp-pen-deco-pro-medium" "xp-pen-deco-pro-mw-gen2" "xp-pen-deco-pro-mw" "xp-pen-deco-pro-small"
+    "xp-pen-deco-pro-sw" "xp-pen-deco-pro-xlw-gen2" "xp-pen-deco-se" "xp-pen-innovator-16"
+    "xp-pen-star-02" "xp-pen-star-03-pro" "xp-pen-star-03" "xp-pen-star-05-v3" "xp-pen-star-06"
+    "xp-pen-star-06c" "xp-pen-star-g430" "xp-pen-star-g430s-v2" "xp-pen-star-g430s"
+    "xp-pen-star-g540-pro" "xp-pen-star-g540" "xp-pen-star-g640-variant-2" "xp-pen-star-g640"
+    "xp-pen-star-g640s" "xp-pen-star-g960" "xp-pen-star-g960s-plus" "xp-pen-star-g960s"
+};

@@ -237,9 +237,8 @@ pub fn run(args: &BenchArgs, json: bool) -> Outcome {
         )?;
         writeln!(
             out,
-            "dab      {affected} vertices: {:.0} us, {:.0} at p99; {:.1} ns a vertex; the first one \
-                \
-                {:.0} us",
+            "dab      {affected} vertices: {:.0} us, {:.0} at p99; {:.1} ns a vertex; the first \
+             one {:.0} us",
             report.dab_us.p50,
             report.dab_us.p99,
             report.ns_per_affected_vertex,

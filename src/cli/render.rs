@@ -142,7 +142,13 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         write_png(&path, &picture).map_err(|e| Fail::io(&path, &e))?;
         files.push(path);
     }
-    let said = json!({ "file": files[0], "files": files, "width": width, "height": height, "adapter": painter.adapter() });
+    let said = json!({
+        "file": files[0],
+        "files": files,
+        "width": width,
+        "height": height,
+        "adapter": painter.adapter(),
+    });
     answer(as_json, &said, |out| {
         for file in &files {
             writeln!(out, "{} ({width}x{height}, {})", file.display(), painter.adapter())?;

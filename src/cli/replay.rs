@@ -39,7 +39,8 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "FOLDER")]
     pub frames: Option<PathBuf>,
     /// Seconds of the session between two pictures.
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = super::run::seconds, requires = "frames")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, requires = "frames")]
+    #[arg(value_parser = super::run::seconds)]
     pub every: f64,
     /// Threads that help; the hash is the same with any number.
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -22,7 +22,8 @@ pub struct ProjectArgs {
     /// The mesh file.
     pub mesh: PathBuf,
     /// Looked along.
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true, default_value = "0,0,-1")]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,-1")]
+    #[arg(value_parser = direction)]
     pub direction: DVec3,
     /// Turns the drawing about the direction.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true)]
@@ -32,7 +33,8 @@ pub struct ProjectArgs {
     #[arg(long, value_enum, default_value = "exact")]
     pub method: MethodArg,
     /// Random points, for `sample` and `march`.
-    #[arg(long, value_name = "N", default_value_t = 25_000, value_parser = clap::value_parser!(u64).range(3..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 25_000)]
+    #[arg(value_parser = clap::value_parser!(u64).range(3..=10_000_000))]
     pub samples: u64,
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
@@ -41,7 +43,8 @@ pub struct ProjectArgs {
     #[arg(long, value_name = "MM")]
     pub alpha: Option<f64>,
     /// Samples along the longest side of the grid, for `march`.
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u64).range(4..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 128)]
+    #[arg(value_parser = clap::value_parser!(u64).range(4..=1024))]
     pub grid: u64,
     /// A marching ray this near the surface has hit it.
     #[arg(long, value_name = "MM")]
@@ -143,7 +146,8 @@ pub fn run(args: &ProjectArgs, json: bool) -> Outcome {
         if shadow.strip > 0.0 {
             out.method = "strips";
             out.warnings.push(format!(
-                "the outline crosses itself too often to be resolved: it is drawn in strips {} high",
+                "the outline crosses itself too often to be resolved: it is drawn in strips {} \
+                 high",
                 shadow.strip
             ));
         }

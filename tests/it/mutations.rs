@@ -148,9 +148,15 @@ fn threemf() {
 fn json_rpc() {
     let seeds: Vec<Vec<u8>> = [
         r#"{"jsonrpc":"2.0","id":1,"method":"status","params":{"version":1}}"#,
-        r#"{"jsonrpc":"2.0","id":"a","method":"brush","params":{"kind":"gaussian","radius":0.1,"symmetry":[true,false,false]}}"#,
+        concat!(
+            r#"{"jsonrpc":"2.0","id":"a","method":"brush","params":{"kind":"gaussian","#,
+            r#""radius":0.1,"symmetry":[true,false,false]}}"#,
+        ),
         r#"{"jsonrpc":"2.0","method":"camera","params":{"target":[0,0,0],"yaw":1.5}}"#,
-        r#"{"jsonrpc":"2.0","id":3,"method":"reach","params":{"middle_mm":[0,200,0],"half_mm":100}}"#,
+        concat!(
+            r#"{"jsonrpc":"2.0","id":3,"method":"reach","#,
+            r#""params":{"middle_mm":[0,200,0],"half_mm":100}}"#,
+        ),
     ]
     .iter()
     .map(|s| s.as_bytes().to_vec())

@@ -318,7 +318,8 @@ fn soak(seed: u64, ticks: u64, calendar: Calendar) -> Result<(), String> {
     }
     println!(
         "{ticks} ticks, {busy} of them visited, {taken} samples, {dabs} dabs; heap {:.1} then \
-            {:.1} MB; descriptors and threads {before:?} then {after:?}; session {:.1} MB; {faults:?}",
+         {:.1} MB; descriptors and threads {before:?} then {after:?}; session {:.1} MB; \
+         {faults:?}",
         mb[0],
         mb[1],
         bytes as f64 / 1e6

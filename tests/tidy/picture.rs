@@ -91,8 +91,9 @@ fn draw() -> String {
         let thousands = total.div_ceil(1000);
         writeln!(
             body,
-            "<rect x=\"20\" y=\"{y}\" width=\"{BOX}\" height=\"{height}\" rx=\"6\" fill=\"#f4efe8\" \
-             stroke=\"#6b5b4b\"/>\n<text x=\"34\" y=\"{}\" font-weight=\"bold\">{name}</text>\n\
+            "<rect x=\"20\" y=\"{y}\" width=\"{BOX}\" height=\"{height}\" rx=\"6\" \
+             fill=\"#f4efe8\" stroke=\"#6b5b4b\"/>\n\
+             <text x=\"34\" y=\"{}\" font-weight=\"bold\">{name}</text>\n\
              <text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#6b5b4b\">{dir}, about \
              {thousands},000 \
              lines</text>",

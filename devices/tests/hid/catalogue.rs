@@ -15,27 +15,31 @@ fn folder() -> PathBuf {
 /// The text of `src/builtin.rs` for these files.
 fn list_of(files: &[PathBuf]) -> String {
     let mut out = String::from(
-        "//! The tablet files that are built in, one line each. A test holds this list to the \
-         folder, and\n\
-         //! writes it anew when `SCULPTD_BLESS` is set.\n\n\
+        "//! The tablet files that are built in. A test holds this list to the folder, and writes \
+         it anew\n\
+         //! when `SCULPTD_BLESS` is set.\n\n\
+         /// Name and text of the files of `tablets/` with these names.\n\
+         macro_rules! tablets {\n    \
+             ($($name:literal)*) => {\n        \
+                 &[$((concat!($name, \".toml\"), \
+                 include_str!(concat!(\"../tablets/\", $name, \".toml\")))),*]\n    \
+             };\n\
+         }\n\n\
          /// Name and text of each file of `tablets/`, in alphabetical order.\n\
          #[rustfmt::skip]\n\
-         pub(crate) const TABLETS: &[(&str, &str)] = &[\n",
+         pub(crate) const TABLETS: &[(&str, &str)] = tablets! {\n",
     );
+    let mut line = String::from("   ");
     for path in files {
-        let file = path.file_name().unwrap().to_string_lossy();
-        let line = format!("    (\"{file}\", include_str!(\"../tablets/{file}\")),\n");
-        if line.len() > 101 {
-            let lines = format!(
-                "    (\n        \"{file}\",\n        include_str!(\"../tablets/{file}\"),\n    ),\n"
-            );
-            out.push_str(&lines);
-        } else {
+        let name = format!(" \"{}\"", path.file_stem().unwrap().to_string_lossy());
+        if line.len() + name.len() > 100 {
             out.push_str(&line);
+            out.push('\n');
+            line.truncate(3);
         }
+        line.push_str(&name);
     }
-    out.push_str("];\n");
-    out
+    out + &line + "\n};\n"
 }
 
 #[test]

@@ -60,9 +60,8 @@ pub(super) fn parse_binary(
             FilePlace::Byte(bytes.len() as u64),
             format!("{need} bytes for the {count} triangles that the header at byte 80 states"),
             format!(
-                "the end of the file after {whole} whole triangles (not text either: it starts with \
-                    \
-                    {})",
+                "the end of the file after {whole} whole triangles (not text either: it starts \
+                 with {})",
                 excerpt(bytes)
             ),
         );

@@ -220,12 +220,16 @@ pub(super) fn base64(bytes: &[u8]) -> String {
     out
 }
 
-const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
-"#;
-const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
-"#;
+const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+    <Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\
+    <Default Extension=\"rels\" \
+    ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\
+    <Default Extension=\"model\" \
+    ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>\n";
+const RELATIONS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+    <Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\
+    <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
+    Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
 /// One object, in millimetres, double precision.
 pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
@@ -242,7 +246,8 @@ pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     writeln!(text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
     writeln!(
         text,
-        "<model unit=\"millimeter\" xml:lang=\"en\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
+        "<model unit=\"millimeter\" xml:lang=\"en\" \
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
     )?;
     writeln!(text, "<resources><object id=\"1\" type=\"model\"><mesh><vertices>")?;
     for p in &mesh.positions {

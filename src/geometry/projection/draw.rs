@@ -23,11 +23,15 @@ pub fn svg(polygons: &[PlaneRegion]) -> String {
     let mut out = String::new();
     let _ = writeln!(
         out,
-        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{:.6}mm" height="{:.6}mm" viewBox="0 0 {:.6} {:.6}">"##,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.6}mm\" height=\"{:.6}mm\" \
+         viewBox=\"0 0 {:.6} {:.6}\">",
         size.x, size.y, size.x, size.y
     );
     for polygon in polygons {
-        out.push_str(r##"<path fill="#c8ced6" stroke="#20242a" vector-effect="non-scaling-stroke" fill-rule="evenodd" d=""##);
+        out.push_str(
+            "<path fill=\"#c8ced6\" stroke=\"#20242a\" vector-effect=\"non-scaling-stroke\" \
+             fill-rule=\"evenodd\" d=\"",
+        );
         for ring in polygon.rings() {
             for (i, p) in ring.iter().enumerate() {
                 let q = DVec2::new(p.x - lo.x, lo.y + size.y - p.y);

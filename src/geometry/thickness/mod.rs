@@ -1,10 +1,11 @@
 //! Wall thickness of a solid, at every vertex or face, by rays or by the inscribed sphere.
 //!
-//! | definition | what it says | where it fails |
-//! |---|---|---|
-//! | one ray | the way through the wall along the normal | jumps at steps; under a rib it sees rib and all |
-//! | cone of rays | the mean depth of the wall ahead (Shapira, Shamir, Cohen-Or 2008) | smooths what is narrower than itself |
-//! | inscribed sphere | the ball that fits | goes to zero in every convex edge: see [`EdgePolicy`] |
+//! * One ray: the way through the wall along the normal. It jumps at steps, and under a rib it sees
+//!   rib and all.
+//! * A cone of rays: the mean depth of the wall ahead (Shapira, Shamir, Cohen-Or 2008). It smooths
+//!   what is narrower than itself.
+//! * The inscribed sphere: the ball that fits. It goes to zero in every convex edge, see
+//!   [`EdgePolicy`].
 //!
 //! Guaranteed: the same values with any number of threads, with and without AVX2; a face that
 //! touches the vertex is never hit from it; a value is missing only with a [`Reason`]. Not

@@ -78,14 +78,17 @@ main{max-width:60rem;margin:0 auto;padding:1.5rem}h1{margin:0}h2{margin:1.8rem 0
 .5rem;font-size:1.25rem}\
 .file{margin:.2rem 0 1rem;color:#444;overflow-wrap:anywhere}.verdict{padding:.7rem 1rem;border:3px \
 solid;border-radius:6px;\
-font-size:1.1rem}.pass{border-color:#1b6e2e}.warn{border-color:#8a5a00}.fail{border-color:#a8001c}.unjudged{border-color:#555}\
+font-size:1.1rem}.pass{border-color:#1b6e2e}.warn{border-color:#8a5a00}\
+.fail{border-color:#a8001c}.unjudged{border-color:#555}\
 table{border-collapse:collapse;width:100%}th,td{text-align:left;padding:.3rem \
 .6rem;border-bottom:1px solid #ccc;\
-vertical-align:top}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}caption{text-align:left;color:#444;\
+vertical-align:top}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
+caption{text-align:left;color:#444;\
 padding:.2rem \
 0}figure{margin:0}figcaption{color:#444;font-size:.9rem}img{max-width:100%;height:auto;border:1px \
 solid #bbb}\
-.views{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1rem}svg{max-width:100%;height:auto}\
+.views{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));gap:1rem}\
+svg{max-width:100%;height:auto}\
 details{margin:.5rem 0}@media \
 print{main{padding:0;max-width:none}h2{break-after:avoid}figure,tr,svg{break-inside:avoid}\
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
@@ -150,10 +153,8 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
     const STEPS: usize = 40;
     let _ = write!(
         out,
-        "<svg role=img width=520 height=58 viewBox=\"0 0 520 58\" aria-label=\"Colours: dark red is \
-            \
-            {low:.3} mm, pale yellow \
-         {high:.3} mm and more, blue is no value\">"
+        "<svg role=img width=520 height=58 viewBox=\"0 0 520 58\" aria-label=\"Colours: dark red \
+         is {low:.3} mm, pale yellow {high:.3} mm and more, blue is no value\">"
     );
     for i in 0..STEPS {
         let value = low + (high - low) * i as f32 / (STEPS - 1) as f32;
@@ -168,9 +169,8 @@ fn legend(out: &mut String, (low, high): (f32, f32)) {
         out,
         "<rect x=440 y=4 width=24 height=24 fill=\"{}\"/><g font-size=14 \
             font-family=sans-serif><text x=0 y=48>{low:.3} mm</text>\
-         <text x=200 y=48 text-anchor=middle>{:.3}</text><text x=400 y=48 text-anchor=end>{high:.3} \
-         \
-         mm</text>\
+         <text x=200 y=48 text-anchor=middle>{:.3}</text>\
+         <text x=400 y=48 text-anchor=end>{high:.3} mm</text>\
          <text x=470 y=22>none</text></g></svg>",
         hex(NONE),
         (low + high) * 0.5
@@ -330,11 +330,9 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
                     hit face."
                 }
                 Correction::Chord => {
-                    "Each ray gives the wall's depth along the normal: a chord of the opposite wall \
-                        \
-                        stands at right angles to the \
-                     sum of the wall's normals at its ends, which removes the bias of slanted and \
-                     of bent walls."
+                    "Each ray gives the wall's depth along the normal: a chord of the opposite \
+                     wall stands at right angles to the sum of the wall's normals at its ends, \
+                     which removes the bias of slanted and of bent walls."
                 }
             };
             format!(
@@ -348,15 +346,11 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let limit = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v} mm"));
     let _ = write!(
         out,
-        "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that face \
-            \
-            the same way.</p>\
+        "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that \
+         face the same way.</p>\
          <p>Error bound: 95 % of the values are within {:.4} mm of the surface that the triangles \
-         describe. It adds single \
-         precision, the uncertainty of the normal, and twice the standard error of the cone's mean. \
-         \
-         What the triangles miss of \
-         the real part is not in it.</p>\
+         describe. It adds single precision, the uncertainty of the normal, and twice the standard \
+         error of the cone's mean. What the triangles miss of the real part is not in it.</p>\
          <p>Limits: warn below {}, fail below {}, fail above {}; a value fails when it is strictly \
          beyond.</p>\
          <table><tbody><tr><th scope=row>File<td>{}<tr><th scope=row>Size<td>{} bytes<tr><th \

@@ -219,8 +219,8 @@ impl WindowState {
             let turn = found.across.y.atan2(found.across.x).to_degrees();
             Some(format!(
                 "tablet {}: its area covers {w:.0} x {h:.0} pixels of the desktop from {:.0}, \
-                 {:.0}, turned by {turn:.0} degrees (found by itself, {off:.1} pixels off, the pointer \
-                 {} ms later)",
+                 {:.0}, turned by {turn:.0} degrees (found by itself, {off:.1} pixels off, the \
+                 pointer {} ms later)",
                 id.0,
                 found.origin.x,
                 found.origin.y,

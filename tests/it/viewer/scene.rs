@@ -116,8 +116,9 @@ fn the_outliner_lists_objects_and_asks_for_what_is_clicked() {
     h.run_steps(3);
     h.get_by_role_and_label(Role::Button, "Torus").click();
     h.run_steps(3);
-    let added = h.state().asked.iter().any(|a| {
-        matches!(a, UiRequest::AddPrimitive(p) if p.shape.name() == "torus" && p.triangles().is_ok())
+    let added = h.state().asked.iter().any(|a| match a {
+        UiRequest::AddPrimitive(p) => p.shape.name() == "torus" && p.triangles().is_ok(),
+        _ => false,
     });
     assert!(added, "{:?}", h.state().asked);
 }
