@@ -96,7 +96,7 @@ impl Clay {
     }
 
     /// Lets `kernel` change these pages, ascending.
-    pub(super) fn dab_on<K: Kernel>(
+    pub fn dab_on<K: Kernel>(
         &mut self,
         pages: &[u32],
         kernel: &K,
@@ -307,7 +307,8 @@ fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>
         affected: 0,
         layers: None,
     };
-    kernel.page(&PageIn::new(slot.index, old, was.before, was.stack), &mut out);
+    let seen = if K::SEES_START { was.before } else { old };
+    kernel.page(&PageIn::new(slot.index, seen, was.before, was.stack), &mut out);
     slot.affected = out.affected;
     slot.layers = out.layers;
     if !K::CHANGES_HIDDEN

@@ -15,6 +15,9 @@ use sculptd_geometry::simd::cotangents;
 pub trait Kernel: Sync {
     /// Whether it changes hidden vertices too; else what it writes there is dropped.
     const CHANGES_HIDDEN: bool = false;
+    /// Whether it sees each page, halo included, as the open undo step found it: for what goes over
+    /// a surface in portions and looks at neighbours, which may have been written before.
+    const SEES_START: bool = false;
 
     /// Changes the own vertices of one page through `out`.
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);

@@ -187,6 +187,35 @@ impl Command {
         }
     }
 
+    /// Whether it needs or changes the surface of objects, or the list of them: while an edit of the
+    /// whole mask or of face sets is under way, it finishes that within its tick. Who feeds a world
+    /// that must keep its time lets such commands, and all that follow them, wait until
+    /// [`crate::world::World::is_in_surface_edit`] is false.
+    pub fn needs_surface(&self) -> bool {
+        match self {
+            Command::Brush(_)
+            | Command::Camera(_)
+            | Command::DesktopLayout(_)
+            | Command::CalibrateReach
+            | Command::Reach(_)
+            | Command::Picture(_)
+            | Command::Place(_) => false,
+            Command::OfPerson(of) => of.command.needs_surface(),
+            _ => true,
+        }
+    }
+
+    /// Whether it may begin an edit of the whole mask or of face sets.
+    pub fn begins_surface_edit(&self) -> bool {
+        match self {
+            Command::Mask(_) | Command::MaskRegion(_) => true,
+            Command::Scene(SceneCommand::Sets(_) | SceneCommand::SetsRegion(_)) => true,
+            Command::OfClay(of) => of.command.begins_surface_edit(),
+            Command::OfPerson(of) => of.command.begins_surface_edit(),
+            _ => false,
+        }
+    }
+
     /// Whether its result stands among [`crate::world::World::cut_results`].
     pub fn is_cut(&self) -> bool {
         match self {

@@ -22,6 +22,7 @@ pub mod old_layout;
 pub mod payload;
 pub mod scene;
 pub mod stroke;
+mod surface_edit;
 mod topology_work;
 pub mod view_region;
 pub mod world;

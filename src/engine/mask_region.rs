@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::ObjectTransform;
 use crate::view_region::{RegionSeen, ViewRegion};
 use sculptd_clay::{Kernel, PageIn, PageOut};
 
@@ -26,18 +25,15 @@ impl MaskRegion {
 
 /// A region before a camera, as a kernel over the clay.
 pub(crate) struct MaskSeen<'a> {
-    pub(crate) seen: RegionSeen<'a>,
+    pub(crate) seen: &'a RegionSeen,
     /// The mask there, 0 to 1.
     pub(crate) mask: f32,
-    /// From the clay to the world.
-    pub(crate) transform: ObjectTransform,
 }
 
 impl Kernel for MaskSeen<'_> {
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {
-            let p = self.transform.point(page.positions.get(v));
-            if self.seen.holds(p, self.transform.direction(page.normals.get(v))) {
+            if self.seen.holds(page.positions.get(v), page.normals.get(v)) {
                 out.visit();
                 out.set_mask(v, self.mask);
             }

@@ -7,7 +7,6 @@
 //! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
 //!   topology, whose budget is what dabs leave.
 
-mod face_sets;
 mod hands;
 mod held;
 mod images;
@@ -19,6 +18,7 @@ mod saved;
 mod scene_steps;
 mod state;
 mod stroke_context;
+mod surface_edits;
 
 use std::sync::Arc;
 
@@ -35,13 +35,11 @@ use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
-use crate::mask_region::{MaskRegion, MaskSeen};
 use crate::payload::{Payload, PayloadStore};
 use crate::scene::{ObjectId, Scene, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
+use crate::surface_edit::SurfaceWork;
 use crate::topology_work::TopologyWork;
-use crate::view_region::RegionSeen;
-use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
 use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
@@ -119,6 +117,8 @@ pub struct World {
     topology: TopologyWork,
     /// Pages that are still to follow an edit of layers, or a stroke on one.
     layers: LayerWork,
+    /// Pages that are still to follow an edit of the whole mask or of face sets.
+    surface: SurfaceWork,
     /// Strokes begun.
     strokes: u32,
     hands: HandTools,
@@ -139,6 +139,7 @@ pub struct World {
     cuts: Vec<Option<Grafted>>,
     /// What came of the commands to the scene of this tick, in their order.
     scene_results: Vec<SceneResult>,
+    late_result: Option<SceneResult>,
     /// Clays put in place so far: each has a number of its own.
     lineages: u32,
     /// What was done in this tick, for the session's history; `None`: no history is kept.
@@ -184,6 +185,7 @@ impl World {
             scratch: Scratch::default(),
             topology: TopologyWork::new(),
             layers: LayerWork::new(),
+            surface: SurfaceWork::new(),
             strokes: 0,
             hands: HandTools::new(options.hands),
             last_hands: None,
@@ -196,6 +198,7 @@ impl World {
             payloads: PayloadStore::new(),
             cuts: Vec::with_capacity(PayloadStore::CAPACITY),
             scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
+            late_result: None,
             lineages: 0,
             moments: None,
             people: People::default(),
@@ -212,6 +215,8 @@ impl World {
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
         self.cuts.clear();
         self.scene_results.clear();
+        self.late_result = None;
+        self.surface.next_tick();
         self.let_entries_go();
         self.act_as_hands();
         for command in commands {
@@ -306,24 +311,15 @@ impl World {
                     std::mem::swap(&mut self.payloads, &mut old.payloads);
                     std::mem::swap(&mut self.cuts, &mut old.cuts);
                     std::mem::swap(&mut self.scene_results, &mut old.scene_results);
+                    self.late_result = old.late_result.take();
                     self.set_garbage_sink(old.garbage.clone());
                     self.set_page_supply(old.pages.clone());
                     self.garbage.discard_owned(old);
                     self.note(HistoryEvent::Begin);
                 }
             }
-            Command::Mask(action) => {
-                let extent = self.scene.active().extent;
-                self.mask(&MaskAll { action: *action, extent });
-            }
-            Command::MaskRegion(region) => {
-                let (camera, transform) = (self.camera, self.scene.active().settings.transform);
-                if region.is_sane() {
-                    let MaskRegion { region, mask, front_faces } = region;
-                    let seen = RegionSeen { region, camera: &camera, front_faces: *front_faces };
-                    self.mask(&MaskSeen { seen, mask: *mask, transform });
-                }
-            }
+            Command::Mask(action) => self.mask(*action),
+            Command::MaskRegion(region) => self.mask_seen(region),
             Command::Place(place) => {
                 if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
                     thing.place = *place;
@@ -388,6 +384,7 @@ impl World {
     /// see the strokes ended. So is topology that was carried over, as a part of the stroke's undo
     /// step: a stroke that is taken back and done again is whole.
     fn lift_all(&mut self) {
+        self.end_surface_edit();
         self.end_layer_edit();
         for seat in &mut self.pens {
             seat.track.lift();
@@ -453,7 +450,7 @@ impl World {
     }
 
     fn sculpt(&mut self) {
-        if !self.layers_may_wait() {
+        if !self.surface_may_wait() || !self.layers_may_wait() {
             self.report.paused = true;
             return;
         }

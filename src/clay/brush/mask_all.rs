@@ -1,5 +1,5 @@
-//! The mask of the whole work at once: each is one step of undo, and costs as much as the work is
-//! large.
+//! The mask of the whole work: each change is one step of undo, and costs as much as the work is
+//! large, in portions that whoever runs it decides.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,9 @@ pub struct MaskAll {
 }
 
 impl Kernel for MaskAll {
+    // It is carried out in portions.
+    const SEES_START: bool = true;
+
     #[inline(always)]
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>) {
         for v in 0..page.own() {

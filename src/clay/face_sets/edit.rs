@@ -1,11 +1,12 @@
-//! Edits of the face sets: each costs a look at every vertex, and a new page where one changed or a
-//! neighbour's did.
+//! Edits of the face sets: what there is to ask for and to ask about, and how pages get new sets. An
+//! edit costs a look at every vertex, in portions ([`super::work`]), and a new page where one
+//! changed or a neighbour's did.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{HIDDEN, MASKED, MOST_SETS, PageSets};
+use super::{HIDDEN, MOST_SETS, PageSets};
 use crate::clay::Clay;
 use crate::page::Page;
 use crate::ray::Hit;
@@ -81,13 +82,6 @@ impl SetsEdit {
     }
 }
 
-/// The sets of a page's own vertices by `value`, where one differs from what it is.
-fn differing(page: &Page, value: impl Fn(usize) -> u16) -> Option<Vec<u16>> {
-    let own = 0..page.own();
-    let differs = own.clone().any(|v| value(v) != page.set_bits(v));
-    differs.then(|| own.map(value).collect())
-}
-
 /// The set of the corner that is nearest to a hit, by its weights; of equal ones the first.
 fn set_at(page: &Page, hit: &Hit) -> u16 {
     let Some(corners) = page.triangles().get(hit.triangle as usize) else { return 0 };
@@ -152,121 +146,6 @@ impl Clay {
     /// The face set under a hit of the clay as it is; 0: none.
     pub fn set_at(&self, hit: &Hit) -> u16 {
         self.pages.get(hit.page as usize).map_or(0, |page| set_at(page, hit))
-    }
-
-    /// Carries out an edit of the face sets, as a part of the open undo step. The set that was made
-    /// or that it was about; 0 where it was about none.
-    ///
-    /// # Errors
-    /// Where there is nothing to do, no such set, or no number left. Nothing is changed then.
-    pub fn edit_sets(&mut self, edit: &SetsEdit) -> Result<u16, SetsError> {
-        let mut set = 0;
-        match edit {
-            SetsEdit::FromMask | SetsEdit::FromVisible => {
-                set = self.next_set().ok_or(SetsError::Full)?;
-            }
-            SetsEdit::Hide(of) | SetsEdit::Show(of) | SetsEdit::Isolate(of) => {
-                set = *of;
-                let own = |p: &Arc<Page>| (0..p.own()).any(|v| p.face_set(v) == set);
-                if !self.pages.iter().any(own) {
-                    return Err(SetsError::NoSet(set));
-                }
-            }
-            SetsEdit::Assign { revision, pages } => {
-                let fits = |(p, own): &(u32, Vec<u16>)| {
-                    self.pages.get(*p as usize).is_some_and(|page| page.own() == own.len())
-                };
-                let ascending = pages.windows(2).all(|two| two[0].0 < two[1].0);
-                if *revision != self.revision || !ascending || !pages.iter().all(fits) {
-                    return Err(SetsError::Changed);
-                }
-                if pages.iter().flat_map(|p| &p.1).any(|s| *s > MOST_SETS) {
-                    return Err(SetsError::Full);
-                }
-            }
-            SetsEdit::Clear | SetsEdit::HideMasked | SetsEdit::Invert | SetsEdit::ShowAll => {}
-        }
-        let mut given = match edit {
-            SetsEdit::Assign { pages, .. } => pages.as_slice(),
-            _ => &[],
-        };
-        self.change_sets(|number, page| {
-            let mut assigned = None;
-            if let Some(((p, sets), rest)) = given.split_first()
-                && *p == number
-            {
-                (assigned, given) = (Some(sets), rest);
-            }
-            differing(page, |v| {
-                let now = page.set_bits(v);
-                let (of, hidden) = (now & !HIDDEN, now & HIDDEN);
-                match edit {
-                    SetsEdit::FromMask if hidden == 0 && page.mask(v) >= MASKED => set,
-                    SetsEdit::FromVisible if hidden == 0 => set,
-                    SetsEdit::Assign { .. } if hidden == 0 => assigned.map_or(now, |a| a[v]),
-                    SetsEdit::Clear => hidden,
-                    SetsEdit::Hide(_) if of == set => now | HIDDEN,
-                    SetsEdit::Show(_) if of == set => of,
-                    SetsEdit::HideMasked if page.mask(v) >= MASKED => now | HIDDEN,
-                    SetsEdit::Invert => now ^ HIDDEN,
-                    SetsEdit::Isolate(_) if of == set => of,
-                    SetsEdit::Isolate(_) => now | HIDDEN,
-                    SetsEdit::ShowAll => of,
-                    _ => now,
-                }
-            })
-        })?;
-        Ok(set)
-    }
-
-    /// Carries out an edit of the part of the surface that `holds` tells, as a part of the open
-    /// undo step. The set that was made; 0 where none was.
-    ///
-    /// # Errors
-    /// Where there is nothing to do, or no number left. Nothing is changed then.
-    pub fn edit_part(
-        &mut self,
-        edit: PartEdit,
-        holds: impl Fn(&Page, usize) -> bool,
-    ) -> Result<u16, SetsError> {
-        let set = match edit {
-            PartEdit::NewSet => self.next_set().ok_or(SetsError::Full)?,
-            PartEdit::Hide | PartEdit::Isolate => 0,
-        };
-        self.change_sets(|_, page| {
-            differing(page, |v| {
-                let now = page.set_bits(v);
-                match edit {
-                    PartEdit::NewSet if now & HIDDEN == 0 && holds(page, v) => set,
-                    PartEdit::Hide if holds(page, v) => now | HIDDEN,
-                    PartEdit::Isolate if !holds(page, v) => now | HIDDEN,
-                    _ => now,
-                }
-            })
-        })?;
-        Ok(set)
-    }
-
-    /// Gives each page the sets of its own vertices that `new` tells, `None` for those that it has.
-    ///
-    /// # Errors
-    /// [`SetsError::Nothing`] where no page gets others.
-    fn change_sets(
-        &mut self,
-        mut new: impl FnMut(u32, &Page) -> Option<Vec<u16>>,
-    ) -> Result<(), SetsError> {
-        let mut changed: Vec<(u32, Vec<u16>)> = Vec::new();
-        for (number, page) in self.pages.iter().enumerate() {
-            if let Some(sets) = new(number as u32, page) {
-                changed.push((number as u32, sets));
-            }
-        }
-        if changed.is_empty() {
-            return Err(SetsError::Nothing);
-        }
-        self.put_sets(&changed);
-        self.history.sink.discard_owned(changed);
-        Ok(())
     }
 
     /// New sets of the own vertices of some pages, ascending; halos follow.

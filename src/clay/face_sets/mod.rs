@@ -15,11 +15,13 @@ mod extract;
 mod make;
 #[cfg(test)]
 mod tests;
+mod work;
 
 pub use crate::page_sets::{HIDDEN, MOST_SETS, PageSets};
 pub use edit::{PartEdit, SetsEdit, SetsError};
 pub use extract::{ExtractError, FaceSetPart, extract};
 pub use make::{Partition, partition};
+pub use work::{SetsTask, SetsWork};
 
 /// From this mask on, 0 free to 1 protected, a vertex counts as masked.
 pub const MASKED: f32 = 0.5;

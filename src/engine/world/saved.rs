@@ -305,6 +305,7 @@ impl World {
     pub fn is_at_rest(&self) -> bool {
         !self.scene.active().clay.is_in_step()
             && !self.layers.is_edit()
+            && !self.surface.is_under_way()
             && !self.report.paused
             && !self.in_hand.is_held()
             && self.pens.iter().all(|s| !s.track.is_open() && s.track.is_idle())

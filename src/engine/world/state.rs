@@ -11,8 +11,8 @@ use crate::hand::{HandTools, HeldObject, Pose, Volume};
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{Scene, SceneView};
 use crate::stroke::{CurveStroke, PenPoint};
-use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
-use sculptd_clay::{Clay, GarbageSink, Grafted, Kernel, PageSupply};
+use sculptd_clay::brush::{BrushSettings, Picture};
+use sculptd_clay::{Clay, GarbageSink, Grafted, PageSupply};
 use sculptd_devices::{DeviceId, Hands};
 
 impl World {
@@ -104,17 +104,6 @@ impl World {
         match kept.iter_mut().find(|k| k.key() == now.key()) {
             Some(old) => *old = now,
             None => kept.push(now),
-        }
-    }
-
-    /// Changes the mask of the whole active object: one step of undo.
-    pub(super) fn mask<K: Kernel>(&mut self, kernel: &K) {
-        self.lift_all();
-        let object = self.scene.active_mut();
-        if object.is_editable() {
-            object.clay.begin_step();
-            object.clay.dab(&MaskAction::reach(), kernel, &self.workers);
-            self.close();
         }
     }
 

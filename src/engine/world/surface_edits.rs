@@ -1,0 +1,129 @@
+//! What the world does with the mask and the face sets of its active object as a whole.
+
+use super::{HistoryEvent, SceneResult, World};
+use crate::mask_region::MaskRegion;
+use crate::scene::{ObjectId, SceneError, SceneEvent};
+use crate::surface_edit::{Asked, SurfaceEdit};
+use crate::view_region::{RegionSeen, SetsRegion, ViewRegion};
+use sculptd_clay::brush::MaskAction;
+use sculptd_clay::brush::mask_all::MaskAll;
+use sculptd_clay::face_sets::{SetsEdit, SetsError, SetsTask};
+
+impl World {
+    /// Whether an edit of a whole object's mask or face sets is under way: its pages follow in this
+    /// tick and, where they are many, in the next ones. A command that needs the surface finishes
+    /// it within its tick; see [`crate::command::Command::needs_surface`].
+    pub fn is_in_surface_edit(&self) -> bool {
+        self.surface.is_under_way()
+    }
+
+    /// The place among [`World::scene_results`] of the edit whose pages are still to follow: what
+    /// came of it is told by [`World::late_result`] in a later tick.
+    pub fn unsettled(&self) -> Option<usize> {
+        match self.surface.asked() {
+            Asked::Now(place) => Some(place),
+            Asked::Untold | Asked::Earlier => None,
+        }
+    }
+
+    /// What came of an edit of an earlier tick that was done in this one.
+    pub fn late_result(&self) -> Option<SceneResult> {
+        self.late_result
+    }
+
+    /// Changes the mask of the whole active object: one step of undo.
+    pub(super) fn mask(&mut self, action: MaskAction) {
+        self.lift_all();
+        let extent = self.scene.active().extent;
+        self.begin_mask(SurfaceEdit::Mask(MaskAll { action, extent }));
+    }
+
+    /// The same of what is seen in a region.
+    pub(super) fn mask_seen(&mut self, asked: &MaskRegion) {
+        if asked.is_sane() {
+            self.lift_all();
+            let seen = self.seen(&asked.region, asked.front_faces);
+            self.begin_mask(SurfaceEdit::MaskSeen(seen, asked.mask));
+        }
+    }
+
+    fn begin_mask(&mut self, edit: SurfaceEdit) {
+        let object = self.scene.active_mut();
+        if object.is_editable() {
+            object.clay.begin_step();
+            self.surface.begin(edit, Asked::Untold);
+        }
+    }
+
+    /// A region as the active object sees it.
+    fn seen(&self, region: &ViewRegion, front_faces: bool) -> RegionSeen {
+        let transform = self.scene.active().settings.transform;
+        RegionSeen::new(region, front_faces, &self.camera, transform)
+    }
+
+    /// Begins an edit of the active object's face sets: one step of undo. The result has the number
+    /// of the set that was made or that it was about in the place of an object's, 0 for none.
+    pub(super) fn edit_sets(&mut self, edit: &SetsEdit) -> SceneResult {
+        self.change_sets(SetsTask::Edit(edit.clone()), None)
+    }
+
+    /// The same of what is seen in a region.
+    pub(super) fn edit_sets_seen(&mut self, asked: &SetsRegion) -> SceneResult {
+        if !asked.region.is_sane() {
+            return Err(SceneError::Region);
+        }
+        let seen = self.seen(&asked.region, asked.front_faces);
+        self.change_sets(SetsTask::Part(asked.edit), Some(seen))
+    }
+
+    fn change_sets(&mut self, task: SetsTask, seen: Option<RegionSeen>) -> SceneResult {
+        let active = self.scene.active_mut();
+        if active.settings.locked {
+            return Err(SceneError::Locked(active.id));
+        }
+        let work = active.clay.begin_sets(task)?;
+        active.clay.begin_step();
+        // Its place is the next one: the result stands there when the command has been applied.
+        let place = Asked::Now(self.scene_results.len());
+        self.surface.begin(SurfaceEdit::Sets(work, seen), place);
+        Ok(ObjectId(0))
+    }
+
+    /// An edit that is under way is finished, and its step closed.
+    pub(super) fn end_surface_edit(&mut self) {
+        if self.surface.is_under_way() {
+            let done = self.surface.finish(&mut self.scene.active_mut().clay, &self.workers);
+            self.close_surface_edit(done);
+        }
+    }
+
+    /// Lets pages follow an edit. False: more are to follow, and strokes wait.
+    pub(super) fn surface_may_wait(&mut self) -> bool {
+        if !self.surface.is_under_way() {
+            return true;
+        }
+        let done = self.surface.run(&mut self.scene.active_mut().clay, &self.workers);
+        done.map(|done| self.close_surface_edit(done)).is_some()
+    }
+
+    fn close_surface_edit(&mut self, done: Result<u16, SetsError>) {
+        let event = match self.surface.is_of_sets() {
+            true => HistoryEvent::Scene(SceneEvent::Sets),
+            false => HistoryEvent::Step,
+        };
+        let result = done.map(|set| ObjectId(set.into())).map_err(SceneError::from);
+        match self.surface.asked() {
+            Asked::Untold => {}
+            Asked::Earlier => self.late_result = Some(result),
+            Asked::Now(place) => {
+                self.scene_results.get_mut(place).into_iter().for_each(|r| *r = result);
+            }
+        }
+        let World { surface, timeline, scene, garbage, options, .. } = self;
+        surface.end(&scene.active().clay, garbage);
+        // Nothing was moved: there is nothing that layers would have to take over.
+        if timeline.end_step(scene, options.undo_bytes, garbage) {
+            self.note(event);
+        }
+    }
+}
