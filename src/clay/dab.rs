@@ -96,12 +96,7 @@ impl Clay {
     }
 
     /// Lets `kernel` change these pages, ascending.
-    pub fn dab_on<K: Kernel>(
-        &mut self,
-        pages: &[u32],
-        kernel: &K,
-        workers: &Workers,
-    ) -> DabReport {
+    pub fn dab_on<K: Kernel>(&mut self, pages: &[u32], kernel: &K, workers: &Workers) -> DabReport {
         self.dab_pages(None, pages, kernel, workers)
     }
 

@@ -179,6 +179,10 @@ struct TickBuffers {
     /// Where the result of each cut of this tick goes, in the order of the commands.
     results: Vec<Option<cc::Sender<Option<Grafted>>>>,
     scene_results: Vec<Option<cc::Sender<SceneResult>>>,
+    /// Where the result goes of an edit whose pages are still to follow.
+    late_result: Option<cc::Sender<SceneResult>>,
+    /// Commands that wait until such an edit is done, in their order, and ahead of the inbox.
+    held: VecDeque<QueuedCommand>,
     /// Of a shared sculpture: where those of the own commands go that are on their way.
     waiting: VecDeque<ResultSenders>,
     /// What hands asked workers for, to be told once the state that it is about is published.
@@ -202,6 +206,8 @@ impl Ticking {
             commands: Vec::with_capacity(COMMANDS_PER_TICK),
             results: Vec::with_capacity(COMMANDS_PER_TICK),
             scene_results: Vec::with_capacity(COMMANDS_PER_TICK),
+            late_result: None,
+            held: VecDeque::with_capacity(COMMANDS_PER_TICK),
             asked: Vec::new(),
             waiting: VecDeque::new(),
             figures: TickStatistics::default(),
@@ -219,7 +225,16 @@ impl Ticking {
             self.receiver.drain(self.drain_per_tick, &mut now.samples);
             in_order_of_time(&mut now.samples);
             self.trail.send(&now.samples);
-            for mut queued in self.inbox.try_iter().take(COMMANDS_PER_TICK) {
+            // What needs the surface would finish in this tick what an edit of all of it has left.
+            let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
+            for _ in 0..COMMANDS_PER_TICK {
+                let next = now.held.pop_front().or_else(|| self.inbox.try_recv().ok());
+                let Some(mut queued) = next else { break };
+                if edits && queued.command.needs_surface() {
+                    now.held.push_front(queued);
+                    break;
+                }
+                edits |= self.shared.is_none() && queued.command.begins_surface_edit();
                 if let Some(shared) = &mut self.shared {
                     if !shared.refuses(&queued) {
                         now.waiting.push_back((queued.result.take(), queued.scene_result.take()));
@@ -235,7 +250,12 @@ impl Ticking {
                 now.commands.push(command);
             }
             if let Some(actions) = &mut self.actions {
+                let first = now.commands.len();
                 actions.take(&mut now.samples, &self.world, &mut now.commands);
+                if edits {
+                    // A tablet's keys wait their turn behind what waits already.
+                    now.held.extend(now.commands.drain(first..).map(QueuedCommand::from));
+                }
             }
             match self.shared.take() {
                 None => {
@@ -279,8 +299,17 @@ impl Ticking {
                 let _ = result.try_send(*made);
             }
         }
-        for (result, done) in now.scene_results.drain(..).zip(self.world.scene_results()) {
-            if let Some(result) = result {
+        if let Some(done) = self.world.late_result()
+            && let Some(result) = now.late_result.take()
+        {
+            let _ = result.try_send(done);
+        }
+        let unsettled = self.world.unsettled();
+        let results = now.scene_results.drain(..).zip(self.world.scene_results());
+        for (place, (result, done)) in results.enumerate() {
+            if unsettled == Some(place) {
+                now.late_result = result;
+            } else if let Some(result) = result {
                 let _ = result.try_send(*done);
             }
         }
@@ -314,6 +343,7 @@ impl Ticking {
                     world.set_page_supply(self.pages.clone());
                     world.warm();
                     now.waiting.clear();
+                    now.late_result = None;
                     garbage.discard_owned(std::mem::replace(&mut self.world, *world));
                 }
                 NextTick::Step(next) => {

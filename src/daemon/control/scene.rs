@@ -27,7 +27,7 @@ use sculptd_geometry::io::write_scene;
 use sculptd_geometry::job::Job;
 
 /// For the loop to say what came of a command.
-const PATIENCE: Duration = Duration::from_secs(10);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 fn placed(asked: &Placement) -> Result<ObjectTransform, RpcError> {
     let turn = DQuat::from_array(asked.turn);
@@ -114,7 +114,10 @@ pub(super) fn ask(
     host.send(queued)?;
     match result.recv_timeout(PATIENCE) {
         Ok(done) => Ok(ObjectReply { id: done.map_err(failed)?.0, warnings: Vec::new() }),
-        Err(_) => Err(RpcError::failed("the loop has ended")),
+        Err(cc::RecvTimeoutError::Timeout) => {
+            Err(RpcError::failed("no result came within a minute; it may still be carried out"))
+        }
+        Err(cc::RecvTimeoutError::Disconnected) => Err(RpcError::failed("the loop has ended")),
     }
 }
 
