@@ -30,10 +30,20 @@ pub(super) fn world(workers: usize, undo_bytes: u64) -> World {
     World::new(ball, Camera::default(), brush, Workers::new(workers), options)
 }
 
+/// What comes of a command, in its tick or, for an edit that takes several, in a later one.
 pub(super) fn ask(world: &mut World, command: SceneCommand) -> Result<ObjectId, SceneError> {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(command)]);
-    world.scene_results()[0]
+    if world.unsettled() != Some(0) {
+        return world.scene_results()[0];
+    }
+    for tick in world.tick() + 1..world.tick() + 1000 {
+        world.step(tick, &[], &[]);
+        if let Some(late) = world.late_result() {
+            return late;
+        }
+    }
+    panic!("no result after a thousand ticks")
 }
 
 pub(super) fn tell(world: &mut World, command: Command) {

@@ -45,7 +45,7 @@ fn edits() -> Vec<Command> {
         [MaskAction::Blur, MaskAction::Grow, MaskAction::Sharpen, MaskAction::Shrink]
             .map(Command::Mask),
     );
-    all.extend([MaskAction::Cavity(-0.15), MaskAction::Invert].map(Command::Mask));
+    all.extend([MaskAction::Cavity(-0.2), MaskAction::Invert].map(Command::Mask));
     all.extend([part(PartEdit::NewSet), sets(SetsEdit::Hide(1)), part(PartEdit::Hide)]);
     all.extend([SetsEdit::Invert, SetsEdit::ShowAll, SetsEdit::Isolate(2)].map(sets));
     all.extend([SetsEdit::Show(1), SetsEdit::FromVisible, SetsEdit::Clear].map(sets));
