@@ -7,14 +7,23 @@ use super::garbage::{Garbage, GarbageSink};
 use super::page::Page;
 
 /// Pages by number, as they were before a step (or, on the redo side, after it).
-type Step = Vec<(u32, Arc<Page>)>;
+type Pages = Vec<(u32, Arc<Page>)>;
+
+/// A step that is done, and what its pages weigh: to let it go none of them is looked at.
+#[derive(Debug)]
+struct Step {
+    pages: Pages,
+    bytes: u64,
+}
 
 /// Steps remembered at most, whatever they weigh.
 const STEPS: usize = 1024;
 
 #[derive(Debug)]
 pub(super) struct History {
-    open: Option<Step>,
+    open: Option<Pages>,
+    /// What the pages of the open step weigh.
+    open_bytes: u64,
     undo: VecDeque<Step>,
     redo: Vec<Step>,
     /// Bytes that all steps together may hold.
@@ -27,14 +36,11 @@ pub(super) struct History {
     pub(super) sink: GarbageSink,
 }
 
-fn cost(step: &Step) -> u64 {
-    step.iter().map(|(_, p)| p.weight() as u64).sum()
-}
-
 impl History {
     pub(super) fn new(pages: usize) -> Self {
         History {
             open: None,
+            open_bytes: 0,
             undo: VecDeque::with_capacity(STEPS + 1),
             redo: Vec::new(),
             limit: 1 << 30,
@@ -57,6 +63,7 @@ impl History {
     pub(super) fn begin(&mut self) {
         if self.open.is_none() {
             self.open = Some(Vec::with_capacity(1024));
+            self.open_bytes = 0;
             self.stamp += 1;
         }
     }
@@ -70,7 +77,9 @@ impl History {
             return Some(page);
         }
         *touched = (self.stamp, step.len() as u32);
-        self.bytes += page.weight() as u64;
+        let weight = page.weight() as u64;
+        self.bytes += weight;
+        self.open_bytes += weight;
         step.push((index, page));
         None
     }
@@ -90,12 +99,12 @@ impl History {
     /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to
     /// the garbage sink. Whether there is a step more.
     pub(super) fn end(&mut self) -> bool {
-        let Some(step) = self.open.take() else { return false };
-        if step.is_empty() {
+        let Some(pages) = self.open.take() else { return false };
+        if pages.is_empty() {
             return false;
         }
         self.forget_redo();
-        self.undo.push_back(step);
+        self.undo.push_back(Step { pages, bytes: self.open_bytes });
         self.trim();
         true
     }
@@ -111,31 +120,31 @@ impl History {
         }
         self.forget_redo();
         for gone in self.undo.drain(..) {
-            self.sink.discard(Garbage::Pages(gone));
+            self.sink.discard(Garbage::Pages(gone.pages));
         }
         self.bytes = 0;
     }
 
     pub(super) fn forget_redo(&mut self) {
         for gone in self.redo.drain(..) {
-            self.bytes -= cost(&gone);
-            self.sink.discard(Garbage::Pages(gone));
+            self.bytes -= gone.bytes;
+            self.sink.discard(Garbage::Pages(gone.pages));
         }
     }
 
     pub(super) fn trim(&mut self) {
         while (self.bytes > self.limit && !self.undo.is_empty()) || self.undo.len() > STEPS {
             let Some(gone) = self.undo.pop_front() else { break };
-            self.bytes -= cost(&gone);
-            self.sink.discard(Garbage::Pages(gone));
+            self.bytes -= gone.bytes;
+            self.sink.discard(Garbage::Pages(gone.pages));
         }
     }
 
     /// Lets the oldest step go, which can then no longer be taken back.
     pub(super) fn forget_oldest(&mut self) {
         if let Some(gone) = self.undo.pop_front() {
-            self.bytes -= cost(&gone);
-            self.sink.discard(Garbage::Pages(gone));
+            self.bytes -= gone.bytes;
+            self.sink.discard(Garbage::Pages(gone.pages));
         }
     }
 
@@ -155,10 +164,16 @@ impl History {
     }
 
     fn swapped(&mut self, step: Step, mut swap: impl FnMut(u32, Arc<Page>) -> Arc<Page>) -> Step {
-        self.bytes -= cost(&step);
-        let step: Step = step.into_iter().map(|(i, page)| (i, swap(i, page))).collect();
-        self.bytes += cost(&step);
-        step
+        self.bytes -= step.bytes;
+        let mut bytes = 0;
+        let swapped = step.pages.into_iter().map(|(i, page)| {
+            let page = swap(i, page);
+            bytes += page.weight() as u64;
+            (i, page)
+        });
+        let pages = swapped.collect();
+        self.bytes += bytes;
+        Step { pages, bytes }
     }
 
     pub(super) fn undo_steps(&self) -> usize {

@@ -73,9 +73,8 @@ fn settle(world: &mut World, command: Command) -> usize {
 fn in_portions_comes_what_comes_at_once() {
     let (mut portions, mut at_once) = (large(1), large(1));
     let start = portions.hash();
-    let mut steps = portions.undo_steps();
     let mut hashes = Vec::new();
-    for edit in edits() {
+    for (steps, edit) in (portions.undo_steps()..).zip(edits()) {
         let ticks = settle(&mut portions, edit.clone());
         assert!(ticks > 2, "{edit:?}: {ticks}");
         let tick = at_once.tick() + 1;
@@ -83,7 +82,6 @@ fn in_portions_comes_what_comes_at_once() {
         assert_eq!(portions.hash(), at_once.hash(), "{edit:?}");
         portions.verify_invariants().expect("sound");
         assert_eq!(portions.undo_steps(), steps + 1, "{edit:?}: one step");
-        steps += 1;
         hashes.push(portions.hash());
     }
     for hash in hashes.iter().rev() {

@@ -142,3 +142,53 @@ fn face_sets_are_drawn_by_strokes_and_made_of_regions_by_request_and_replayed() 
     let quick = session::reopen(&session, &opened, None, 1, &Job::default()).expect("a checkpoint");
     assert_eq!(quick.replayed.world.hash(), hash);
 }
+
+#[test]
+fn requests_wait_in_their_order_while_an_edit_takes_several_ticks() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (ball, session) = (dir.path().join("ball.ply"), dir.path().join("s.sculpt"));
+    write_mesh(&ball, &shapes::icosphere(1.0, 150).to_poly()).expect("written");
+    let run = Running::begin(std::slice::from_ref(&ball), &session);
+    let start = run.bits();
+    let tick = || run.live.published.load().tick;
+    let vertices = run.sets()["sets"][0]["vertices"].as_u64().expect("all are in none");
+
+    // The mask has nothing to tell: its request is answered before the last page has followed, and
+    // what is asked next sees all of it.
+    let before = tick();
+    run.ask("mask", json!({ "action": "fill" }));
+    let left = json!({ "region": { "box": [0, 0, 0.5, 1] }, "mask": 0, "front_faces": false });
+    run.ask("mask-region", left);
+    assert_eq!(run.ask("sets.make", json!({ "from": "mask" })), json!({ "set": 1, "made": 1 }));
+    assert!(tick() >= before + 6, "three edits of three ticks at least");
+    let right = run.sets()["sets"][1]["vertices"].as_u64().expect("some");
+    assert!(right > vertices / 3 && right < vertices * 2 / 3, "{right} of {vertices}");
+
+    // An undo behind an edit takes back the whole of it; what is behind that goes on from there.
+    run.ask("mask", json!({ "action": "invert" }));
+    run.ask("undo", json!({}));
+    run.ask("sets.hide", json!({ "masked": true }));
+    assert_eq!(run.sets()["hidden"], right, "the mask was not inverted");
+    assert!(run.refused("sets.hide", json!({ "set": 7 })).contains("no face set 7"));
+    run.ask("sets.show", json!({}));
+    run.ask("mask", json!({ "action": "clear" }));
+
+    // A stroke that is drawn meanwhile is drawn afterwards, whole.
+    let points: Vec<Value> =
+        (0..10).map(|i| json!([0.45 + 0.01 * f64::from(i), 0.5, 1.0, 8 * i])).collect();
+    run.ask("stroke", json!({ "points": points, "space": "view", "brush": { "kind": "draw" } }));
+    until("six edits and a stroke", || run.live.published.load().undo_steps == 7);
+    let end = run.bits();
+    for _ in 0..7 {
+        run.ask("undo", json!({}));
+    }
+    assert_eq!(run.bits(), start, "undo of everything");
+    for _ in 0..7 {
+        run.ask("redo", json!({}));
+    }
+    assert_eq!(run.bits(), end);
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(2), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+}
