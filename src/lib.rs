@@ -34,8 +34,8 @@
 //!    be late for it: the one that first takes up a brush that changes topology, which makes room
 //!    by the number of pages, and one with an undo, which finishes what was carried over, some
 //!    twenty milliseconds at most.
-//!    An edit of the whole mask or of face sets, of a region of the view too, goes through the pages
-//!    in portions counted by what looking and writing cost, and strokes wait; commands that need the
+//!    An edit of the whole mask or of face sets, of a region of the view too, goes through pages in
+//!    portions counted by what looking and writing cost, and strokes wait; commands that need the
 //!    surface wait in [`sculptd_daemon::live`] until it is done.
 //!    Four more exceptions: an edit of face sets, and dynamic topology on an object that has some,
 //!    as a stroke that draws them, allocates two bytes a vertex that it writes; the end of a

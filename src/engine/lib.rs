@@ -20,6 +20,7 @@ mod layer_work;
 pub mod mask_region;
 pub mod old_layout;
 pub mod payload;
+mod region_seen;
 pub mod scene;
 pub mod stroke;
 mod surface_edit;

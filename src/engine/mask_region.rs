@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::view_region::{RegionSeen, ViewRegion};
+use crate::region_seen::RegionSeen;
+use crate::view_region::ViewRegion;
 use sculptd_clay::{Kernel, PageIn, PageOut};
 
 /// Sets the mask of what is seen in a region, all the way through the object.

@@ -11,7 +11,7 @@
 //!   a saved state.
 
 use crate::mask_region::MaskSeen;
-use crate::view_region::RegionSeen;
+use crate::region_seen::RegionSeen;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsError, SetsWork};
 use sculptd_clay::{Clay, GarbageSink, Workers};

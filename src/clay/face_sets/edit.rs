@@ -1,4 +1,4 @@
-//! Edits of the face sets: what there is to ask for and to ask about, and how pages get new sets. An
+//! Edits of the face sets: what there is to ask for and to ask about, how pages get new sets. An
 //! edit costs a look at every vertex, in portions ([`super::work`]), and a new page where one
 //! changed or a neighbour's did.
 

@@ -129,8 +129,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
         println!(
-            "{name:28} {counts:5} ticks, longest {:8.2} ms, in all {:9.2} ms (medians of {TIMES}); the \
-             longest of the last was tick {which}",
+            "{name:28} {counts:5} ticks, longest {:8.2} ms, in all {:9.2} ms (medians of {TIMES}), \
+             the longest of the last was tick {which}",
             median(most),
             median(sums)
         );

@@ -2,9 +2,10 @@
 
 use super::{HistoryEvent, SceneResult, World};
 use crate::mask_region::MaskRegion;
+use crate::region_seen::RegionSeen;
 use crate::scene::{ObjectId, SceneError, SceneEvent};
 use crate::surface_edit::{Asked, SurfaceEdit};
-use crate::view_region::{RegionSeen, SetsRegion, ViewRegion};
+use crate::view_region::{SetsRegion, ViewRegion};
 use sculptd_clay::brush::MaskAction;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsEdit, SetsError, SetsTask};
