@@ -8,6 +8,7 @@
 //! lightweight approach to repairing digitized polygon meshes", 2010).
 
 use std::borrow::Cow;
+use std::cell::Cell;
 
 use glam::DVec3;
 
@@ -60,6 +61,10 @@ impl KnownFaces<'_> {
 /// With more crossing pairs a mesh is no rounded solid, and is left as it is.
 const MOST_PAIRS: usize = 3000;
 const ROUNDS: usize = 6;
+/// Triangles compared until a repair is given up: so many, and so many more a triangle of the mesh.
+/// Surfaces that lie upon each other in many places would cost a thousand times that, and no repair
+/// parts them.
+const COMPARED: (usize, usize) = (2_000_000, 100);
 
 /// `mesh` as a file with the ending `kind` will hold it (STL, GLB and glTF have single precision;
 /// they and 3MF have triangles only). Vertices move by no more than 64 steps of the format's
@@ -104,10 +109,14 @@ pub fn for_file<'a>(
     let mut local = LocalMesh::new(out.positions.clone(), triangles, single, step, tolerance, job)?;
     local.faces = faces;
     let mut left = pairs;
+    let most = COMPARED.0 + COMPARED.1 * local.triangles.len();
     for _ in 0..ROUNDS {
         let before = left.len();
         for &(s, t) in &left {
             job.check()?;
+            if local.compared.get() > most {
+                break;
+            }
             local.repair(s, t);
         }
         left = self_intersection::pairs(&local.positions, &local.alive(), job)?;
@@ -154,6 +163,8 @@ struct LocalMesh {
     single: bool,
     step: f64,
     limit: f64,
+    /// Triangles compared so far.
+    compared: Cell<usize>,
 }
 
 /// A change, and what undoes it.
@@ -194,6 +205,7 @@ impl LocalMesh {
             single,
             step,
             limit,
+            compared: Cell::new(0),
         })
     }
 
@@ -222,6 +234,7 @@ impl LocalMesh {
             };
             near.clear();
             self.tree.each_meets(&span, |u| near.push(u));
+            self.compared.update(|n| n + near.len() + self.changed.len());
             // Those that changed are where they are, not where the tree has them: each once.
             let still = near.iter().filter(|&&u| !self.is_changed[u as usize]);
             for &u in still.chain(&self.changed) {
