@@ -148,9 +148,9 @@
 //!   that station. Waits for: the station.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
-//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`, made
-//!   by `window::viewer::tasks`: changes of the whole object that the window asked for, sent as
-//!   commands. Waits for: the loop's answer.
+//! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`,
+//!   `sculptd-mask`, made by `window::viewer::tasks`: changes of the whole object that the window
+//!   asked for, sent as commands. Waits for: the loop's answer.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
 //! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's own file

@@ -57,6 +57,7 @@ pub mod layers;
 pub mod live_thickness;
 pub mod local_boolean;
 mod masks;
+pub mod measured_mask;
 pub mod multires;
 mod normals;
 pub mod page;

@@ -149,6 +149,37 @@ pub enum MaskAction {
     Cavity(#[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
 }
 
+/// Parameters of `mask-measured`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MaskMeasuredParams {
+    /// What is measured.
+    pub by: MaskMeasure,
+}
+
+/// What is protected by a measure of the whole object.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum MaskMeasure {
+    /// What is at most so thick, in the unit of the scene; more than 0.
+    Thin(f64),
+    /// Where the object keeps at least this share of the light of an even sky from itself: ambient
+    /// occlusion. More than 0.
+    Occlusion(
+        #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32,
+    ),
+}
+
+/// What came of `mask-measured`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MaskMeasuredReply {
+    /// Vertices that were measured to be protected by half or more.
+    pub protected: u64,
+}
+
 /// Parameters of `mask-region`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

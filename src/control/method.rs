@@ -10,8 +10,8 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use crate::brush::{
-    BrushSettings, BrushesReply, CurveParams, CurveReply, MaskParams, MaskRegionParams, PathParams,
-    PictureReply, StrokeParams, StrokeReply,
+    BrushSettings, BrushesReply, CurveParams, CurveReply, MaskMeasuredParams, MaskMeasuredReply,
+    MaskParams, MaskRegionParams, PathParams, PictureReply, StrokeParams, StrokeReply,
 };
 use crate::check;
 use crate::edit::{
@@ -189,6 +189,8 @@ methods! {
     "picture" Picture picture(PathParams) -> PictureReply;
     /// Changes the mask of the whole object.
     "mask" Mask mask(MaskParams) -> SentReply;
+    /// Masks what is thin, or sheltered from light, beside what is masked already: one step.
+    "mask-measured" MaskMeasured mask_measured(MaskMeasuredParams) -> MaskMeasuredReply;
     /// Sets the mask of what is seen in a box, to the left of a line, or in a polygon.
     "mask-region" MaskRegion mask_region(MaskRegionParams) -> SentReply;
     /// Applies, discards or edits the curve that a pen has laid.

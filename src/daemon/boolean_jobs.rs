@@ -72,6 +72,8 @@ pub enum JoinError {
     Snap(#[from] crate::snap_jobs::SnapError),
     #[error(transparent)]
     FaceSets(#[from] crate::face_set_jobs::ExtractionError),
+    #[error(transparent)]
+    Mask(#[from] sculptd_clay::measured_mask::MeasuredMaskError),
 }
 
 /// The work and a tool made one: the commands that put the result in place. Where the tool reaches

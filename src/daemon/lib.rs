@@ -25,6 +25,7 @@ pub mod http;
 pub mod kiosk;
 pub mod live;
 pub mod live_run;
+pub mod mask_jobs;
 #[cfg(unix)]
 pub mod metrics;
 pub mod pacer;

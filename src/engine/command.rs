@@ -209,7 +209,9 @@ impl Command {
     pub fn begins_surface_edit(&self) -> bool {
         match self {
             Command::Mask(_) | Command::MaskRegion(_) => true,
-            Command::Scene(SceneCommand::Sets(_) | SceneCommand::SetsRegion(_)) => true,
+            Command::Scene(
+                SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) | SceneCommand::MaskMeasured(_),
+            ) => true,
             Command::OfClay(of) => of.command.begins_surface_edit(),
             Command::OfPerson(of) => of.command.begins_surface_edit(),
             _ => false,

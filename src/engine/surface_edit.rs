@@ -14,6 +14,7 @@ use crate::mask_region::MaskSeen;
 use crate::region_seen::RegionSeen;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsError, SetsWork};
+use sculptd_clay::measured_mask::MeasuredMask;
 use sculptd_clay::{Clay, GarbageSink, Workers};
 
 /// Vertices written in a tick, in time: about two milliseconds on one core.
@@ -26,6 +27,8 @@ pub(crate) enum SurfaceEdit {
     Mask(MaskAll),
     /// The mask of what is seen in a region becomes this one.
     MaskSeen(RegionSeen, f32),
+    /// What was measured is masked.
+    MaskMeasured(MeasuredMask),
     /// Something to the face sets; where to a part, to what is seen in a region.
     Sets(SetsWork, Option<RegionSeen>),
 }
@@ -91,6 +94,7 @@ impl SurfaceWork {
                 seen.into_iter().for_each(|s| garbage.discard_owned(s));
             }
             Some(SurfaceEdit::MaskSeen(seen, _)) => garbage.discard_owned(seen),
+            Some(SurfaceEdit::MaskMeasured(mask)) => garbage.discard_owned(mask),
             Some(SurfaceEdit::Mask(_)) | None => {}
         }
         self.asked = Asked::Untold;
@@ -128,6 +132,11 @@ impl SurfaceWork {
             SurfaceEdit::Mask(kernel) => {
                 let all = take(clay, next, batch, budget, 1);
                 clay.dab_on(batch, kernel, workers);
+                all.then_some(Ok(0))
+            }
+            SurfaceEdit::MaskMeasured(mask) => {
+                let all = take(clay, next, batch, budget, 1);
+                clay.dab_on(batch, mask, workers);
                 all.then_some(Ok(0))
             }
             SurfaceEdit::MaskSeen(seen, mask) => {

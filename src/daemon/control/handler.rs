@@ -12,6 +12,7 @@ use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
 use super::layers::{self, LayerDone};
+use super::mask;
 use super::measurement;
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
@@ -214,6 +215,13 @@ impl Handler for Host {
     fn mask(&self, params: asked::MaskParams) -> Result<SentReply, RpcError> {
         self.send(Command::Mask(convert(params.action)?))?;
         Ok(SENT)
+    }
+
+    fn mask_measured(
+        &self,
+        params: asked::MaskMeasuredParams,
+    ) -> Result<asked::MaskMeasuredReply, RpcError> {
+        mask::measured(self, params)
     }
 
     fn mask_region(&self, params: asked::MaskRegionParams) -> Result<SentReply, RpcError> {

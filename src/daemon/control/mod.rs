@@ -18,6 +18,7 @@ pub mod handler;
 pub mod host;
 mod layers;
 pub mod loop_link;
+mod mask;
 mod measurement;
 mod retopology;
 mod scene;

@@ -8,6 +8,7 @@ use super::{ObjectId, ObjectTransform, Primitive};
 use crate::payload::PayloadId;
 use crate::view_region::SetsRegion;
 use sculptd_clay::face_sets::{SetsEdit, SetsError};
+use sculptd_clay::measured_mask::MeasuredMask;
 use sculptd_clay::{LayerEdit, LayerError};
 use sculptd_geometry::TriMesh;
 
@@ -47,6 +48,8 @@ pub enum SceneCommand {
     Sets(SetsEdit),
     /// Something is done to the face sets of what is seen in a region of the view.
     SetsRegion(SetsRegion),
+    /// What was measured of the active object is masked, beside what is masked already.
+    MaskMeasured(MeasuredMask),
 }
 
 impl SceneCommand {
@@ -70,6 +73,7 @@ impl SceneCommand {
                 | SceneCommand::Layers(_)
                 | SceneCommand::Snap(_)
                 | SceneCommand::SetsRegion(_)
+                | SceneCommand::MaskMeasured(_)
         ) || matches!(self, SceneCommand::Sets(edit) if edit.owns_memory())
     }
 }
@@ -221,4 +225,7 @@ pub enum SceneError {
     /// What was meant to be a region of the view is none.
     #[error("expected a box, a line of two places, or a polygon of 3 to 1000 corners")]
     Region,
+    /// The clay is another than the one that the mask was measured on.
+    #[error("the object has changed since its mask was measured")]
+    MaskChanged,
 }

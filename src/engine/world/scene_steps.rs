@@ -30,7 +30,10 @@ impl World {
         let result = self.scene_command(command);
         let noted = matches!(
             command,
-            SceneCommand::Layers(_) | SceneCommand::Sets(_) | SceneCommand::SetsRegion(_)
+            SceneCommand::Layers(_)
+                | SceneCommand::Sets(_)
+                | SceneCommand::SetsRegion(_)
+                | SceneCommand::MaskMeasured(_)
         );
         if result.is_ok() && !noted {
             self.scene.touch();
@@ -126,6 +129,7 @@ impl World {
             }
             SceneCommand::Sets(edit) => self.edit_sets(edit),
             SceneCommand::SetsRegion(asked) => self.edit_sets_seen(asked),
+            SceneCommand::MaskMeasured(mask) => self.mask_measured(mask),
             // Carried out above.
             SceneCommand::Layers(_) => Ok(self.scene.active().id),
         }
@@ -448,6 +452,9 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Snap(_) => SceneEvent::Snap,
         SceneCommand::Exchange(exchange) => exchange.event,
         SceneCommand::Layers(_) => SceneEvent::Layers,
-        SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) => SceneEvent::Sets,
+        // Noted where the edit ends.
+        SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) | SceneCommand::MaskMeasured(_) => {
+            SceneEvent::Sets
+        }
     }
 }

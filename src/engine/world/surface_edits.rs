@@ -9,6 +9,7 @@ use crate::view_region::{SetsRegion, ViewRegion};
 use sculptd_clay::brush::MaskAction;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsEdit, SetsError, SetsTask};
+use sculptd_clay::measured_mask::MeasuredMask;
 
 impl World {
     /// Whether an edit of a whole object's mask or face sets is under way: its pages follow in this
@@ -36,7 +37,7 @@ impl World {
     pub(super) fn mask(&mut self, action: MaskAction) {
         self.lift_all();
         let extent = self.scene.active().extent;
-        self.begin_mask(SurfaceEdit::Mask(MaskAll { action, extent }));
+        self.begin_mask(SurfaceEdit::Mask(MaskAll { action, extent }), Asked::Untold);
     }
 
     /// The same of what is seen in a region.
@@ -44,15 +45,29 @@ impl World {
         if asked.is_sane() {
             self.lift_all();
             let seen = self.seen(&asked.region, asked.front_faces);
-            self.begin_mask(SurfaceEdit::MaskSeen(seen, asked.mask));
+            self.begin_mask(SurfaceEdit::MaskSeen(seen, asked.mask), Asked::Untold);
         }
     }
 
-    fn begin_mask(&mut self, edit: SurfaceEdit) {
+    /// The same of what was measured of it, unless it has changed since.
+    pub(super) fn mask_measured(&mut self, mask: &MeasuredMask) -> SceneResult {
+        let active = self.scene.active();
+        if !active.is_editable() {
+            return Err(SceneError::Locked(active.id));
+        }
+        if !mask.fits(&active.clay) {
+            return Err(SceneError::MaskChanged);
+        }
+        let place = Asked::Now(self.scene_results.len());
+        self.begin_mask(SurfaceEdit::MaskMeasured(mask.clone()), place);
+        Ok(ObjectId(0))
+    }
+
+    fn begin_mask(&mut self, edit: SurfaceEdit, asked: Asked) {
         let object = self.scene.active_mut();
         if object.is_editable() {
             object.clay.begin_step();
-            self.surface.begin(edit, Asked::Untold);
+            self.surface.begin(edit, asked);
         }
     }
 

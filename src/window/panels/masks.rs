@@ -7,6 +7,7 @@ use super::state::{Action, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
 use sculptd_clay::brush::MaskAction;
+use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_engine::command::Command;
 
 /// Each with the message of its name.
@@ -21,6 +22,9 @@ const ACTIONS: [(MaskAction, &str); 8] = [
     (MaskAction::Cavity(0.05), "mask-cavity"),
 ];
 
+/// The share of the light that is kept from what the button protects.
+const SHELTERED: f32 = 0.4;
+
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let title = egui::CollapsingHeader::new(tr!("mask-heading")).id_salt("mask-heading");
     title.default_open(false).show(ui, |ui| {
@@ -33,8 +37,29 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
                 }
             }
         });
+        measured(ui, view, ui_state, out);
         region::buttons(ui, &mut ui_state.region, RegionPurpose::Mask);
         let keys = view.keys.text(Action::Mask);
         ui.colored_label(theme::quiet(ui), tr!("mask-note", keys = keys));
     });
+}
+
+/// What is thin, and what is sheltered from light.
+fn measured(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    let (lo, hi) = view.state.mesh.bounds();
+    let below = ui_state.mask.thin * (hi - lo).max_element().max(0.0);
+    rows::flow(ui, |ui| {
+        for (by, name) in [
+            (MaskMeasure::Thin(below), "mask-thin"),
+            (MaskMeasure::Occlusion(SHELTERED), "mask-occlusion"),
+        ] {
+            let button = egui::Button::new(tr!(name)).min_size([58.0, 20.0].into());
+            let button = ui.add_enabled(!ui_state.joining, button);
+            if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
+                out.push(UiRequest::MaskMeasured(by));
+            }
+        }
+    });
+    let share = egui::Slider::new(&mut ui_state.mask.thin, 0.001..=0.5).logarithmic(true);
+    rows::slider(ui, share, &tr!("mask-thin-below")).on_hover_text(tr!("mask-thin-below.tip"));
 }

@@ -90,6 +90,10 @@ impl WindowState {
                 self.ui_state.joining = true;
                 self.tasks.make_sets(by, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::MaskMeasured(by) => {
+                self.ui_state.joining = true;
+                self.tasks.mask_measured(by, wiring.published.clone(), wiring.commands.clone());
+            }
             UiRequest::Extract(part, thickness) => {
                 self.ui_state.joining = true;
                 let of = (part, thickness);

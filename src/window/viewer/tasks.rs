@@ -24,6 +24,7 @@ use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary,
 };
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
+use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_clay::{Clay, Snapshot};
 use sculptd_daemon::boolean_jobs::JoinError;
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
@@ -35,8 +36,8 @@ use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{
-    Published, boolean_jobs, decimate_job, face_set_jobs, polygons, quad_job, remesh_job,
-    scene_jobs, startup,
+    Published, boolean_jobs, decimate_job, face_set_jobs, mask_jobs, polygons, quad_job,
+    remesh_job, scene_jobs, startup,
 };
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
@@ -388,6 +389,21 @@ impl Tasks {
             let edit = face_set_jobs::parted(&shown.load_full(), by)?;
             let command = Command::Scene(SceneCommand::Sets(edit));
             Ok((vec![command.into()], tr!("task-sets-made")))
+        });
+    }
+
+    /// What is measured of the active object is masked.
+    pub fn mask_measured(
+        &self,
+        by: MaskMeasure,
+        shown: Arc<ArcSwap<Published>>,
+        commands: CommandSender,
+    ) {
+        self.change("sculptd-mask", commands, move || {
+            let mask = mask_jobs::measured(&shown.load_full(), by, &Job::default())?;
+            let count = mask.protected();
+            let command = Command::Scene(SceneCommand::MaskMeasured(mask));
+            Ok((vec![command.into()], tr!("task-mask-measured", count = count)))
         });
     }
 

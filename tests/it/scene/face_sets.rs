@@ -192,3 +192,36 @@ fn requests_wait_in_their_order_while_an_edit_takes_several_ticks() {
     let replayed = session::replay::replay(&opened, None, Workers::new(2), &Job::default());
     assert_eq!(replayed.expect("replays").world.hash(), hash);
 }
+
+#[test]
+fn what_is_thin_or_sheltered_is_masked_by_request_taken_back_and_replayed() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (lens, session) = (dir.path().join("lens.ply"), dir.path().join("s.sculpt"));
+    let mut mesh = shapes::icosphere(10.0, 40);
+    mesh.positions.iter_mut().for_each(|p| p.z *= 0.2);
+    write_mesh(&lens, &mesh.to_poly()).expect("written");
+    let run = Running::begin(std::slice::from_ref(&lens), &session);
+    let (start, before) = (run.bits(), run.live.published.load().undo_steps);
+    assert!(run.refused("mask-measured", json!({ "by": { "thin": 0 } })).contains("more than 0"));
+    let dark = json!({ "by": { "occlusion": 0.5 } });
+    assert!(run.refused("mask-measured", dark).contains("nothing of the object"));
+    let masked = run.ask("mask-measured", json!({ "by": { "thin": 2.0 } }));
+    let protected = masked["protected"].as_u64().expect("some");
+    let all = mesh.positions.len() as u64;
+    assert!(protected > all / 10 && protected < all * 2 / 3, "{protected} of {all}");
+    // A set of what is masked has as many.
+    run.ask("sets.make", json!({ "from": "mask" }));
+    assert_eq!(run.sets()["sets"][1]["vertices"], protected);
+    assert_eq!(run.live.published.load().undo_steps, before + 2);
+    run.ask("undo", json!({}));
+    run.ask("undo", json!({}));
+    assert_eq!(run.bits(), start);
+    run.ask("redo", json!({}));
+    let id = run.objects()[0]["id"].clone();
+    run.ask("scene.lock", json!({ "id": id, "locked": true }));
+    assert!(run.refused("mask-measured", json!({ "by": { "thin": 2.0 } })).contains("locked"));
+    let hash = run.end();
+    let opened = session::open(&session).expect("a session");
+    let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
+    assert_eq!(replayed.expect("replays").world.hash(), hash);
+}

@@ -11,6 +11,7 @@ pub mod key_map;
 pub mod keys;
 pub mod kiosk;
 pub mod layers;
+mod mask;
 pub mod messages;
 pub mod operation;
 pub mod outliner;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
+use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_daemon::decimate_job::DecimateWanted;
 use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
@@ -52,6 +53,8 @@ pub enum UiRequest {
     Remesh(Wanted),
     /// The active object gets face sets by its shape.
     MakeSets(Partition),
+    /// What is measured of the active object is masked.
+    MaskMeasured(MaskMeasure),
     /// A part of the active object becomes a new one of this thickness, in the unit of the scene.
     Extract(FaceSetPart, f64),
     /// The object gets quads that follow its shape.

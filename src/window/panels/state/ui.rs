@@ -7,6 +7,7 @@ use super::history::{HistoryVersions, StepPicture};
 use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::layers::LayerPanel;
+use super::mask::MaskPanel;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal};
 use super::outliner::Outliner;
@@ -57,6 +58,7 @@ pub struct UiState {
     pub layers: LayerPanel,
     /// The face sets as they were last counted, and what the next ones are made with.
     pub face_sets: FaceSetPanel,
+    pub mask: MaskPanel,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     /// Quads and decimation.
