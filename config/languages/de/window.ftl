@@ -336,6 +336,7 @@ history-merged = vereint
 history-split = geteilt
 history-layers = Ebenen
 history-sets = Flächengruppen
+history-mask = Maske
 history-snapped = bündig gelegt
 
 ## Page: look

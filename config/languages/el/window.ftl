@@ -333,6 +333,7 @@ history-locked = κλείδωμα
 history-reshaped = αναμόρφωση
 history-layers = στρώσεις
 history-sets = ομάδες όψεων
+history-mask = μάσκα
 history-snapped = προσαρμόστηκε
 history-boolean = Boolean
 history-merged = συγχώνευση

@@ -338,6 +338,7 @@ history-merged = merged
 history-split = split
 history-layers = layers
 history-sets = face sets
+history-mask = mask
 history-snapped = laid flush
 
 ## Page: look

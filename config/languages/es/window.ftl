@@ -333,6 +333,7 @@ history-locked = bloqueado o no
 history-reshaped = reformado
 history-layers = capas
 history-sets = conjuntos de caras
+history-mask = máscara
 history-snapped = pegado
 history-boolean = booleana
 history-merged = unido

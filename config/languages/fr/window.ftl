@@ -333,6 +333,7 @@ history-locked = verrou changé
 history-reshaped = reformé
 history-layers = calques
 history-sets = groupes de faces
+history-mask = masque
 history-snapped = plaqué
 history-boolean = booléenne
 history-merged = fusionné

@@ -336,6 +336,7 @@ history-merged = unito
 history-split = diviso
 history-layers = livelli
 history-sets = insiemi di facce
+history-mask = maschera
 history-snapped = messo a filo
 
 ## Page: look

@@ -332,6 +332,7 @@ history-locked = ロックの切り替え
 history-reshaped = 形状の変更
 history-layers = レイヤー
 history-sets = 面セット
+history-mask = マスク
 history-snapped = 面合わせ
 history-boolean = ブーリアン
 history-merged = 結合

@@ -332,6 +332,7 @@ history-locked = 锁定或解锁
 history-reshaped = 改形
 history-layers = 图层
 history-sets = 面组
+history-mask = 遮罩
 history-snapped = 已贴合
 history-boolean = 布尔
 history-merged = 合并

@@ -184,6 +184,8 @@ pub enum SceneEvent {
     Snap,
     /// Something was done to the face sets of an object.
     Sets,
+    /// Something was done to the whole mask of an object, or to that of a region.
+    Mask,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.

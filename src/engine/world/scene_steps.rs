@@ -453,8 +453,7 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Exchange(exchange) => exchange.event,
         SceneCommand::Layers(_) => SceneEvent::Layers,
         // Noted where the edit ends.
-        SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) | SceneCommand::MaskMeasured(_) => {
-            SceneEvent::Sets
-        }
+        SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) => SceneEvent::Sets,
+        SceneCommand::MaskMeasured(_) => SceneEvent::Mask,
     }
 }

@@ -125,7 +125,7 @@ impl World {
     fn close_surface_edit(&mut self, done: Result<u16, SetsError>) {
         let event = match self.surface.is_of_sets() {
             true => HistoryEvent::Scene(SceneEvent::Sets),
-            false => HistoryEvent::Step,
+            false => HistoryEvent::Scene(SceneEvent::Mask),
         };
         let result = done.map(|set| ObjectId(set.into())).map_err(SceneError::from);
         match self.surface.asked() {

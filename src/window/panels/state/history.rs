@@ -57,6 +57,7 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Split => "history-split",
             SceneEvent::Layers => "history-layers",
             SceneEvent::Sets => "history-sets",
+            SceneEvent::Mask => "history-mask",
             SceneEvent::Snap => "history-snapped",
         }),
         _ => None,
