@@ -100,6 +100,7 @@ pub fn classify(
         let surface = SurfaceView { triangles: &triangles[1 - s], at: &points.at, base: 0 };
         let mut other = WindingOracle::new(surface, bounds[1 - s], points.tolerance());
         other.around = around.filter(|_| s == 1);
+        other.of_patch = around.is_some();
         one_side(&meshes[s], pieces, &settled[s], m, &points.at, other, job)
     };
     let (a, b) = rayon::join(|| one(0, first), || one(1, second));
@@ -256,6 +257,8 @@ pub(super) struct WindingOracle<'a> {
     bounds: Span,
     /// The whole of it, where the surface is a part only.
     around: Option<Around<'a>>,
+    /// One operand is a patch of a live surface.
+    of_patch: bool,
     /// The tolerance: nearer to the surface than four of it, nothing is inside or outside.
     eps: f64,
     asked: usize,
@@ -275,7 +278,8 @@ impl<'a> WindingOracle<'a> {
     pub(super) fn new(surface: SurfaceView<'a>, bounds: Span, eps: f64) -> Self {
         // Corners on the surface may be beyond its box by the tolerance.
         let bounds = bounds.grown(4.0 * eps);
-        WindingOracle { surface, bounds, around: None, eps, asked: 0, tree: None }
+        let tree = None;
+        WindingOracle { surface, bounds, around: None, of_patch: false, eps, asked: 0, tree }
     }
 
     /// Whether a place is beyond the box of the surface, where that says that it is outside.
@@ -300,8 +304,8 @@ impl<'a> WindingOracle<'a> {
 
     /// How many pieces, and how many faces, of a surface are asked again on their own.
     fn samples(&self, faces: usize, pieces: usize) -> usize {
-        if self.around.is_some() {
-            // A patch of a live surface: its parts are small and its border is checked.
+        if self.of_patch {
+            // The parts of a patch are small, most of its faces are cut, and its border is checked.
             4
         } else if pieces * 4 > faces && pieces > 64 {
             MANY_SAMPLES
