@@ -230,4 +230,7 @@ pub enum SceneError {
     /// The clay is another than the one that the mask was measured on.
     #[error("the object has changed since its mask was measured")]
     MaskChanged,
+    /// The object is hidden, and masks are for what is seen.
+    #[error("object {0} is hidden: show it before it is masked")]
+    Hidden(ObjectId),
 }

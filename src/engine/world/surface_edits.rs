@@ -52,8 +52,11 @@ impl World {
     /// The same of what was measured of it, unless it has changed since.
     pub(super) fn mask_measured(&mut self, mask: &MeasuredMask) -> SceneResult {
         let active = self.scene.active();
-        if !active.is_editable() {
+        if active.settings.locked {
             return Err(SceneError::Locked(active.id));
+        }
+        if !active.settings.visible {
+            return Err(SceneError::Hidden(active.id));
         }
         if !mask.fits(&active.clay) {
             return Err(SceneError::MaskChanged);

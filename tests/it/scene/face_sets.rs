@@ -218,8 +218,12 @@ fn what_is_thin_or_sheltered_is_masked_by_request_taken_back_and_replayed() {
     assert_eq!(run.bits(), start);
     run.ask("redo", json!({}));
     let id = run.objects()[0]["id"].clone();
+    let thin = || run.refused("mask-measured", json!({ "by": { "thin": 2.0 } }));
+    run.ask("scene.show", json!({ "id": id, "visible": false }));
+    assert!(thin().contains("is hidden"));
+    run.ask("scene.show", json!({ "id": id, "visible": true }));
     run.ask("scene.lock", json!({ "id": id, "locked": true }));
-    assert!(run.refused("mask-measured", json!({ "by": { "thin": 2.0 } })).contains("locked"));
+    assert!(thin().contains("locked"));
     let hash = run.end();
     let opened = session::open(&session).expect("a session");
     let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
