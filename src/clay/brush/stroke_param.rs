@@ -293,7 +293,21 @@ fn laid(normal: Vec3, along: Vec3, d: Vec3) -> [f32; 2] {
     [flat.dot(along), flat.dot(normal.cross(along))]
 }
 
-/// `v`, turned as `from` must be to become `to`.
+/// `v`, turned as `from` must be to become `to`. The rotation is written out by its components: in
+/// vectors of four the fourth would be whatever lay there, often a subnormal number, and each product
+/// with one of those takes a hundred cycles.
 fn turn(from: Vec3, to: Vec3, v: Vec3) -> Vec3 {
-    if from == Vec3::ZERO || to == Vec3::ZERO { v } else { Quat::from_rotation_arc(from, to) * v }
+    if from == Vec3::ZERO || to == Vec3::ZERO {
+        return v;
+    }
+    let [x, y, z, w] = Quat::from_rotation_arc(from, to).to_array();
+    let along = w * w - (x * x + y * y + z * z);
+    let dot = v.x * x + v.y * y + v.z * z;
+    let dot = dot + dot;
+    let rotated = |v: f32, b: f32, cross: f32| (v * along + b * dot) + cross * (w + w);
+    Vec3::new(
+        rotated(v.x, x, y * v.z - z * v.y),
+        rotated(v.y, y, z * v.x - x * v.z),
+        rotated(v.z, z, x * v.y - y * v.x),
+    )
 }
