@@ -12,20 +12,37 @@ use crate::{Clay, PAGE_VERTICES, Page, Reach};
 /// A vertex by its page and its place in it.
 pub type Key = (u32, u16);
 
-/// Numbers kept for a page that was walked.
+/// What is kept of a vertex. Together, since a walk in charts reads most of it at every edge.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    /// Infinite where nobody came.
+    distance: f32,
+    /// Which source reached it, and which one it took its coordinates from; 0: none.
+    owner: [u32; 2],
+    /// Coordinates on a texture, where it has them: those of its source.
+    place: [f32; 2],
+    /// The coordinates that are told: between those of two sources.
+    told: [f32; 2],
+    /// The surface's own directions carried along: `u` and normal.
+    frame: [Vec3; 2],
+}
+
+impl Mark {
+    const UNSEEN: Self = Self {
+        distance: f32::INFINITY,
+        owner: [0; 2],
+        place: [f32::NAN; 2],
+        told: [f32::NAN; 2],
+        frame: [Vec3::ZERO; 2],
+    };
+}
+
+/// What is kept for a page that was walked.
 #[derive(Debug, Default)]
 struct Block {
     page: u32,
-    /// One an own vertex; infinite where nobody came.
-    distance: Vec<f32>,
-    /// Coordinates on a texture, where it has them: those of its source.
-    place: Vec<[f32; 2]>,
-    /// The coordinates that are told: between those of two sources.
-    told: Vec<[f32; 2]>,
-    /// The surface's own directions carried along: `u` and normal.
-    frame: Vec<[Vec3; 2]>,
-    /// Which source reached it, and which one it took its coordinates from; 0: none.
-    owner: Vec<[u32; 2]>,
+    /// One an own vertex.
+    marks: Vec<Mark>,
 }
 
 /// The share of an estimated distance below which another estimate is worth a new place in the
@@ -71,73 +88,73 @@ impl Geodesic {
         self.blocks.get(slot.checked_sub(1)?)
     }
 
+    #[inline]
+    fn mark(&self, page: u32, v: usize) -> Option<&Mark> {
+        self.find(page)?.marks.get(v)
+    }
+
+    #[inline]
+    fn mark_mut(&mut self, mesh: &Clay, (page, v): Key) -> &mut Mark {
+        &mut self.block(mesh, page).marks[v as usize]
+    }
+
+    #[inline]
     fn block(&mut self, mesh: &Clay, page: u32) -> &mut Block {
         let slot = self.block_of[page as usize] as usize;
-        if slot > 0 {
-            return &mut self.blocks[slot - 1];
+        match slot {
+            0 => self.new_block(mesh, page),
+            _ => &mut self.blocks[slot - 1],
         }
+    }
+
+    #[cold]
+    fn new_block(&mut self, mesh: &Clay, page: u32) -> &mut Block {
         if self.used == self.blocks.len() {
             // Room for any page at once: which block serves which page changes from walk to walk.
-            self.blocks.push(Block {
-                page: 0,
-                distance: Vec::with_capacity(PAGE_VERTICES),
-                place: Vec::with_capacity(PAGE_VERTICES),
-                told: Vec::with_capacity(PAGE_VERTICES),
-                frame: Vec::with_capacity(PAGE_VERTICES),
-                owner: Vec::with_capacity(PAGE_VERTICES),
-            });
+            self.blocks.push(Block { page: 0, marks: Vec::with_capacity(PAGE_VERTICES) });
         }
         let own = mesh.page(page).own();
         let block = &mut self.blocks[self.used];
         self.used += 1;
         self.block_of[page as usize] = self.used as u32;
         block.page = page;
-        block.distance.clear();
-        block.distance.resize(own, f32::INFINITY);
-        block.place.clear();
-        block.place.resize(own, [f32::NAN; 2]);
-        block.told.clear();
-        block.told.resize(own, [f32::NAN; 2]);
-        block.frame.clear();
-        block.frame.resize(own, [Vec3::ZERO; 2]);
-        block.owner.clear();
-        block.owner.resize(own, [0; 2]);
+        block.marks.clear();
+        block.marks.resize(own, Mark::UNSEEN);
         block
     }
 
     /// How far the walk had come at a vertex; `None` where it never was.
     #[inline]
     pub fn distance(&self, page: u32, v: usize) -> Option<f32> {
-        self.find(page).and_then(|b| b.distance.get(v).copied()).filter(|d| d.is_finite())
+        self.mark(page, v).map(|m| m.distance).filter(|d| d.is_finite())
     }
 
     /// The texture's coordinates at a vertex.
     #[inline]
     pub fn place(&self, page: u32, v: usize) -> Option<[f32; 2]> {
-        self.find(page).and_then(|b| b.told.get(v).copied()).filter(|p| !p[0].is_nan())
+        self.mark(page, v).map(|m| m.told).filter(|p| !p[0].is_nan())
     }
 
     /// The directions carried to a vertex: along `u`, and the normal.
     pub fn frame(&self, (page, v): Key) -> Option<[Vec3; 2]> {
-        self.find(page).and_then(|b| b.frame.get(v as usize).copied())
+        self.mark(page, v as usize).map(|m| m.frame)
     }
 
     /// A vertex's place and the directions carried to it, where it has them from this source.
     #[inline]
     pub fn settled_by(&self, (page, v): Key, owner: u32) -> Option<([f32; 2], [Vec3; 2])> {
-        let (block, v) = (self.find(page)?, v as usize);
-        (block.owner.get(v)?[1] == owner).then(|| (block.place[v], block.frame[v]))
+        let mark = self.mark(page, v as usize)?;
+        (mark.owner[1] == owner).then_some((mark.place, mark.frame))
     }
 
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
     /// Says whether it was nearer.
     pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {
-        let block = self.block(mesh, key.0);
-        let old = &mut block.distance[key.1 as usize];
-        let nearer = distance < *old;
+        let mark = self.mark_mut(mesh, key);
+        let nearer = distance < mark.distance;
         if nearer {
-            *old = distance;
-            block.owner[key.1 as usize][0] = owner;
+            mark.distance = distance;
+            mark.owner[0] = owner;
             // Distances are not negative: their bits order as they do.
             self.heap.push(Reverse((distance.to_bits(), key.0, key.1)));
         }
@@ -146,38 +163,42 @@ impl Geodesic {
 
     /// Offers a vertex to a source that makes a chart, at a distance that is only estimated: it
     /// goes to the nearest source, or to the next one where it lies ahead of a source, beyond `u`
-    /// there.
+    /// there. The distance is what `distance` says or the straight one, whichever is longer; it is
+    /// asked for only where the straight one would do.
     pub fn offer_ahead(
         &mut self,
         mesh: &Clay,
         key: Key,
         (owner, u): (u32, f32),
+        straight: f32,
         distance: impl FnOnce() -> f32,
         most: f32,
     ) {
-        let block = self.block(mesh, key.0);
-        let v = key.1 as usize;
-        let [reached, source] = block.owner[v];
+        let mark = self.mark_mut(mesh, key);
+        let [reached, source] = mark.owner;
         if source == owner {
             return;
         }
-        let d = distance();
-        let old = block.distance[v];
-        let ahead = source + 1 == owner && block.place[v][0] > u;
-        let wanted = match reached == owner {
-            true => d < old * WORTH,
-            false => ahead || d < old,
+        let ahead = source + 1 == owner && mark.place[0] > u;
+        let limit = match reached == owner {
+            true => mark.distance * WORTH,
+            false if ahead => f32::INFINITY,
+            false => mark.distance,
         };
-        if wanted && d < most {
-            block.distance[v] = d;
-            block.owner[v][0] = owner;
+        if !(straight < limit && straight < most) {
+            return;
+        }
+        let d = distance().max(straight);
+        if d < limit && d < most {
+            mark.distance = d;
+            mark.owner[0] = owner;
             self.heap.push(Reverse((d.to_bits(), key.0, key.1)));
         }
     }
 
     /// A vertex that was taken is not as far as the way to it told.
     pub fn set_distance(&mut self, mesh: &Clay, key: Key, distance: f32) {
-        self.block(mesh, key.0).distance[key.1 as usize] = distance;
+        self.mark_mut(mesh, key).distance = distance;
     }
 
     /// Lets the walk go on from a vertex again, from where it is now.
@@ -189,13 +210,12 @@ impl Geodesic {
 
     /// A vertex that has its source's coordinates tells others.
     pub fn tell(&mut self, mesh: &Clay, key: Key, place: [f32; 2]) {
-        self.block(mesh, key.0).told[key.1 as usize] = place;
+        self.mark_mut(mesh, key).told = place;
     }
 
     /// The source that a vertex has its coordinates from (0: none), and these.
     pub fn source(&self, (page, v): Key) -> (u32, [f32; 2]) {
-        let at = |b: &Block| Some((b.owner.get(v as usize)?[1], *b.place.get(v as usize)?));
-        self.find(page).and_then(at).unwrap_or((0, [f32::NAN; 2]))
+        self.mark(page, v as usize).map_or((0, [f32::NAN; 2]), |m| (m.owner[1], m.place))
     }
 
     /// Whether the mesh has other pages than when the walk began.
@@ -205,22 +225,19 @@ impl Geodesic {
 
     /// Which source reached a vertex; 0: none.
     pub fn owner(&self, page: u32, v: usize) -> u32 {
-        self.find(page).and_then(|b| b.owner.get(v)).map_or(0, |o| o[0])
+        self.mark(page, v).map_or(0, |m| m.owner[0])
     }
 
     /// Whether a vertex has its coordinates from this source.
     pub fn is_settled(&self, (page, v): Key, owner: u32) -> bool {
-        self.find(page).and_then(|b| b.owner.get(v as usize)).is_some_and(|o| o[1] == owner)
+        self.mark(page, v as usize).is_some_and(|m| m.owner[1] == owner)
     }
 
     /// Gives a vertex its coordinates and directions from the source that reached it.
     pub fn settle(&mut self, mesh: &Clay, key: Key, place: [f32; 2], frame: [Vec3; 2]) {
-        let block = self.block(mesh, key.0);
-        block.place[key.1 as usize] = place;
-        block.told[key.1 as usize] = place;
-        block.frame[key.1 as usize] = frame;
-        let owner = &mut block.owner[key.1 as usize];
-        owner[1] = owner[0];
+        let mark = self.mark_mut(mesh, key);
+        (mark.place, mark.told, mark.frame) = (place, place, frame);
+        mark.owner[1] = mark.owner[0];
     }
 
     /// The nearest vertex that was offered and not yet taken.

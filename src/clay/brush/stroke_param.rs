@@ -53,6 +53,8 @@ pub enum StrokePlace {
 const STEP: f32 = 0.19;
 /// Samples that one dab may add: the spacing is a radius at most, and a longer way is a leap.
 const MOST: f32 = 6.0;
+/// Neighbours of a vertex that are remembered from one look at its ring to the next.
+const OPEN: usize = 12;
 /// How fast charts may differ along the stroke: more is a fold, where coordinates are not one.
 const FOLD: f32 = 0.7;
 
@@ -224,7 +226,7 @@ impl StrokeParameters {
             let page = mesh.before(key.0);
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             let d = (p - from.point).length();
-            walk.offer_ahead(mesh, key, (owner, before), || d, f32::INFINITY);
+            walk.offer_ahead(mesh, key, (owner, before), d, || d, f32::INFINITY);
             if walk.owner(key.0, key.1 as usize) == owner && !walk.is_settled(key, owner) {
                 let at = laid(from.normal, from.along, p - from.point);
                 let place = [from.u + at[0], at[1]];
@@ -234,17 +236,27 @@ impl StrokeParameters {
         };
         start(walk, key);
         ring(|i| mesh.before(i), key, |to, _| start(walk, to));
+        // The neighbours of a vertex that have no coordinates in this chart yet.
+        let mut open = [((0, 0), Vec3::ZERO); OPEN];
         while let Some((key, _)) = walk.take() {
             let page = mesh.before(key.0);
+            let mut opened = OPEN + 1;
             let (p, n) = (page.point(key.1 as usize), page.normal(key.1 as usize));
             if !walk.is_settled(key, owner) {
                 let (mut place, mut sum) = (Vec2::ZERO, 0.0f32);
                 let (mut along, mut normal) = (Vec3::ZERO, Vec3::ZERO);
+                opened = 0;
                 ring(
                     |i| mesh.before(i),
                     key,
                     |other, q| {
-                        let Some((at, [e, m])) = walk.settled_by(other, owner) else { return };
+                        let Some((at, [e, m])) = walk.settled_by(other, owner) else {
+                            if let Some(slot) = open.get_mut(opened) {
+                                *slot = (other, q);
+                            }
+                            opened += 1;
+                            return;
+                        };
                         let w = 1.0 / (p - q).length().max(1e-20);
                         place += (Vec2::from(at) + Vec2::from(laid(m, e, p - q))) * w;
                         along += e * w;
@@ -262,20 +274,20 @@ impl StrokeParameters {
                 settle(walk, key, place, [flat.normalize_or(along), n]);
             }
             let Some((at, [e, m])) = walk.settled_by(key, owner) else { continue };
-            ring(
-                |i| mesh.before(i),
-                key,
-                |to, q| {
-                    // No way over a surface is shorter than the straight one. Where relief is so
-                    // steep that coordinates fold, this alone keeps the walk within the radius.
-                    let far = || {
-                        let [u, v] = laid(m, e, q - p);
-                        let told = Vec2::new(at[0] + u - from.u, at[1] + v).length();
-                        told.max((q - from.point).length())
-                    };
-                    walk.offer_ahead(mesh, to, (owner, before), far, radius);
-                },
-            );
+            let mut offer = |to: Key, q: Vec3| {
+                // No way over a surface is shorter than the straight one. Where relief is so
+                // steep that coordinates fold, this alone keeps the walk within the radius.
+                let straight = (q - from.point).length();
+                let told = || {
+                    let [u, v] = laid(m, e, q - p);
+                    Vec2::new(at[0] + u - from.u, at[1] + v).length()
+                };
+                walk.offer_ahead(mesh, to, (owner, before), straight, told, radius);
+            };
+            match open.get(..opened) {
+                Some(open) => open.iter().for_each(|&(to, q)| offer(to, q)),
+                None => ring(|i| mesh.before(i), key, offer),
+            }
         }
     }
 }
