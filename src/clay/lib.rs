@@ -90,7 +90,7 @@ pub use page::{Page, Points};
 pub use page_supply::{PageSupply, SparePage, SupplyPages};
 pub use ray::{Hit, Ray};
 pub use reach::Reach;
-pub use retopology::{Cuts, Detail, LEAST_TOPOLOGY_BUDGET, PAGE_SCAN, PAGE_WRITE};
+pub use retopology::{Cuts, Detail, LEAST_TOPOLOGY_BUDGET, PAGE_SCAN, PAGE_WRITE, Within};
 pub use snapshot::{Ranks, Snapshot};
 pub use stored::{BadPage, ObjectState};
 pub use workers::Workers;

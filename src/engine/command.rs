@@ -205,12 +205,15 @@ impl Command {
         }
     }
 
-    /// Whether it may begin an edit of the whole mask or of face sets.
+    /// Whether it may begin an edit of the whole mask, of face sets or of all triangles.
     pub fn begins_surface_edit(&self) -> bool {
         match self {
             Command::Mask(_) | Command::MaskRegion(_) => true,
             Command::Scene(
-                SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) | SceneCommand::MaskMeasured(_),
+                SceneCommand::Sets(_)
+                | SceneCommand::SetsRegion(_)
+                | SceneCommand::MaskMeasured(_)
+                | SceneCommand::RemeshLocal(_),
             ) => true,
             Command::OfClay(of) => of.command.begins_surface_edit(),
             Command::OfPerson(of) => of.command.begins_surface_edit(),

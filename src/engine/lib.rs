@@ -17,6 +17,7 @@ pub mod command;
 pub mod desktop_layout;
 pub mod hand;
 mod layer_work;
+pub mod local_remesh;
 pub mod mask_region;
 pub mod old_layout;
 pub mod payload;

@@ -1,4 +1,4 @@
-//! An edit of a whole object's mask or face sets on its way through the pages.
+//! An edit of a whole object's mask, face sets or triangles on its way through the pages.
 //!
 //! Laws kept here:
 //! * The pages follow in portions, so that no tick takes more than its share however large the
@@ -10,8 +10,10 @@
 //! * An edit is one step of undo. None is under way whenever the world is at rest: it is no part of
 //!   a saved state.
 
+use crate::local_remesh::RemeshWork;
 use crate::mask_region::MaskSeen;
 use crate::region_seen::RegionSeen;
+use crate::scene::SceneEvent;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsError, SetsWork};
 use sculptd_clay::measured_mask::MeasuredMask;
@@ -31,6 +33,8 @@ pub(crate) enum SurfaceEdit {
     MaskMeasured(MeasuredMask),
     /// Something to the face sets; where to a part, to what is seen in a region.
     Sets(SetsWork, Option<RegionSeen>),
+    /// Triangles get another size.
+    Remesh(Box<RemeshWork>),
 }
 
 /// Where the result of an edit goes.
@@ -64,9 +68,13 @@ impl SurfaceWork {
         self.edit.is_some()
     }
 
-    /// Whether the edit under way is one of face sets.
-    pub(crate) fn is_of_sets(&self) -> bool {
-        matches!(self.edit, Some(SurfaceEdit::Sets(..)))
+    /// What the edit under way is called in the history.
+    pub(crate) fn event(&self) -> SceneEvent {
+        match self.edit {
+            Some(SurfaceEdit::Sets(..)) => SceneEvent::Sets,
+            Some(SurfaceEdit::Remesh(_)) => SceneEvent::Remesh,
+            _ => SceneEvent::Mask,
+        }
     }
 
     /// Where its result goes.
@@ -95,23 +103,27 @@ impl SurfaceWork {
             }
             Some(SurfaceEdit::MaskSeen(seen, _)) => garbage.discard_owned(seen),
             Some(SurfaceEdit::MaskMeasured(mask)) => garbage.discard_owned(mask),
+            Some(SurfaceEdit::Remesh(work)) => garbage.discard_owned(work),
             Some(SurfaceEdit::Mask(_)) | None => {}
         }
         self.asked = Asked::Untold;
     }
 
     /// Does what fits in a tick. `None`: more is to follow; else the set that was made or that it
-    /// was about, 0 for none.
+    /// was about, 0 for none, or how many edges were changed.
     pub(crate) fn run(
         &mut self,
         clay: &mut Clay,
         workers: &Workers,
-    ) -> Option<Result<u16, SetsError>> {
+    ) -> Option<Result<u32, SetsError>> {
+        if let Some(SurfaceEdit::Remesh(work)) = &mut self.edit {
+            return work.run(clay, workers).map(Ok);
+        }
         self.work(clay, workers, TICK_BUDGET)
     }
 
     /// Does all that is left.
-    pub(crate) fn finish(&mut self, clay: &mut Clay, workers: &Workers) -> Result<u16, SetsError> {
+    pub(crate) fn finish(&mut self, clay: &mut Clay, workers: &Workers) -> Result<u32, SetsError> {
         self.work(clay, workers, u64::MAX).unwrap_or(Ok(0))
     }
 
@@ -120,14 +132,17 @@ impl SurfaceWork {
         clay: &mut Clay,
         workers: &Workers,
         budget: u64,
-    ) -> Option<Result<u16, SetsError>> {
+    ) -> Option<Result<u32, SetsError>> {
         let SurfaceWork { edit, next, batch, .. } = self;
         match edit.as_mut()? {
-            SurfaceEdit::Sets(work, None) => clay.run_sets(work, budget, 1, &|_, _| false),
+            SurfaceEdit::Remesh(work) => Some(Ok(work.finish(clay, workers))),
+            SurfaceEdit::Sets(work, None) => {
+                Some(clay.run_sets(work, budget, 1, &|_, _| false)?.map(u32::from))
+            }
             SurfaceEdit::Sets(work, Some(seen)) => {
                 let holds =
                     |page: &sculptd_clay::Page, v| seen.holds(page.point(v), page.normal(v));
-                clay.run_sets(work, budget, seen.cost(), &holds)
+                Some(clay.run_sets(work, budget, seen.cost(), &holds)?.map(u32::from))
             }
             SurfaceEdit::Mask(kernel) => {
                 let all = take(clay, next, batch, budget, 1);

@@ -56,6 +56,10 @@ impl Detail {
     }
 }
 
+/// Which places of the surface may be changed, beside what the balls say. It says the same of a
+/// place whenever it is asked.
+pub type Within<'a> = Option<&'a (dyn Fn(Vec3) -> bool + Sync)>;
+
 /// What was done.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cuts {

@@ -16,7 +16,7 @@ use glam::{Vec3, Vec4};
 use super::edit::{CLOSED, DEAD, Edit, MOST_NEIGHBOURS, OPEN};
 use super::scan::{Candidate, EdgeTask};
 use super::shape::{FLAT, FLIP_BELOW, FLIP_GAIN, LEAST, normal, sine2};
-use super::{Cuts, Detail, PAGE_WRITE, PROTECTED};
+use super::{Cuts, Detail, PAGE_WRITE, PROTECTED, Within};
 use crate::page::Page;
 use crate::page_sets::HIDDEN;
 
@@ -51,6 +51,7 @@ pub(crate) struct Pass<'a> {
     pub(crate) queues: &'a mut Queues,
     pub(crate) pages: &'a [Arc<Page>],
     pub(crate) balls: &'a [Detail],
+    pub(crate) within: Within<'a>,
     pub(crate) cuts: Cuts,
     /// Counted work at most.
     pub(crate) budget: usize,
@@ -139,6 +140,7 @@ impl Pass<'_> {
         self.mask(h) < PROTECTED
             && self.edit.sets[h as usize] & HIDDEN == 0
             && self.balls[ball as usize].contains(self.edit.at(h))
+            && self.within.is_none_or(|within| within(self.edit.at(h)))
     }
 
     /// The corners opposite an edge: `c` left of it, seen from `a` to `b`, and `d` right of it.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::shape::{FLIP_BELOW, sine2};
-use super::{Detail, PROTECTED};
+use super::{Detail, PROTECTED, Within};
 use crate::assembly::PAGE_VERTICES;
 use crate::page::Page;
 
@@ -48,14 +48,14 @@ impl PageScan {
 
     /// Finds each triangle's longest edge where it is too long, its shortest where it is too
     /// short, and its longest where the triangle is badly shaped; each once, the most urgent first.
-    pub(crate) fn scan(&mut self, page: &Page, balls: &[Detail]) {
+    pub(crate) fn scan(&mut self, page: &Page, balls: &[Detail], within: Within<'_>) {
         self.found.clear();
-        self.find(page, balls);
+        self.find(page, balls, within);
         self.found.sort_unstable();
         self.found.dedup();
     }
 
-    fn find(&mut self, page: &Page, balls: &[Detail]) {
+    fn find(&mut self, page: &Page, balls: &[Detail], within: Within<'_>) {
         let t = &page.topology;
         self.inside.clear();
         let mut any = 0;
@@ -69,6 +69,7 @@ impl PageScan {
                     .enumerate()
                     .fold(0, |bits, (i, b)| bits | u16::from(b.contains(at)) << i)
             };
+            let bits = if bits != 0 && !within.is_none_or(|w| w(at)) { 0 } else { bits };
             any |= bits;
             bits
         }));

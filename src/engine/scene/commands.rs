@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{ObjectId, ObjectTransform, Primitive};
+use crate::local_remesh::LocalRemesh;
 use crate::payload::PayloadId;
 use crate::view_region::SetsRegion;
 use sculptd_clay::face_sets::{SetsEdit, SetsError};
@@ -50,6 +51,9 @@ pub enum SceneCommand {
     SetsRegion(SetsRegion),
     /// What was measured of the active object is masked, beside what is masked already.
     MaskMeasured(MeasuredMask),
+    /// Triangles of the active object get another size: where it was stretched, or what is seen in
+    /// a region of the view.
+    RemeshLocal(LocalRemesh),
 }
 
 impl SceneCommand {
@@ -74,6 +78,7 @@ impl SceneCommand {
                 | SceneCommand::Snap(_)
                 | SceneCommand::SetsRegion(_)
                 | SceneCommand::MaskMeasured(_)
+                | SceneCommand::RemeshLocal(_)
         ) || matches!(self, SceneCommand::Sets(edit) if edit.owns_memory())
     }
 }
@@ -186,6 +191,8 @@ pub enum SceneEvent {
     Sets,
     /// Something was done to the whole mask of an object, or to that of a region.
     Mask,
+    /// Triangles of an object got another size.
+    Remesh,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.
@@ -231,6 +238,15 @@ pub enum SceneError {
     #[error("the object has changed since its mask was measured")]
     MaskChanged,
     /// The object is hidden, and masks are for what is seen.
-    #[error("object {0} is hidden: show it before it is masked")]
+    #[error("object {0} is hidden: show it first")]
     Hidden(ObjectId),
+    /// A wanted length of edges out of range.
+    #[error("expected an edge between a 16th and 16 times of the object's usual one")]
+    Edge,
+    /// A wanted length of edges that would make too many triangles.
+    #[error("expected a longer edge: this one would make more than 100 million triangles")]
+    Fine,
+    /// Something that is kept by vertex would have to be given up.
+    #[error("the object has layers, which are kept by vertex: flatten them first")]
+    KeptByVertex,
 }

@@ -14,7 +14,7 @@ use sculptd_clay::Clay;
 /// What a command to the scene came to: the object that it made or was about. Of
 /// [`SceneCommand::Layers`] it has the number of the layer that was made or that it was about
 /// instead; `u32::MAX` stands for the base. Of [`SceneCommand::Sets`] it has the number of the face
-/// set, 0 for none.
+/// set, 0 for none; of [`SceneCommand::RemeshLocal`] how many edges were changed.
 pub type SceneResult = Result<ObjectId, SceneError>;
 
 impl World {
@@ -34,6 +34,7 @@ impl World {
                 | SceneCommand::Sets(_)
                 | SceneCommand::SetsRegion(_)
                 | SceneCommand::MaskMeasured(_)
+                | SceneCommand::RemeshLocal(_)
         );
         if result.is_ok() && !noted {
             self.scene.touch();
@@ -130,6 +131,7 @@ impl World {
             SceneCommand::Sets(edit) => self.edit_sets(edit),
             SceneCommand::SetsRegion(asked) => self.edit_sets_seen(asked),
             SceneCommand::MaskMeasured(mask) => self.mask_measured(mask),
+            SceneCommand::RemeshLocal(asked) => self.remesh_locally(asked),
             // Carried out above.
             SceneCommand::Layers(_) => Ok(self.scene.active().id),
         }
@@ -455,5 +457,6 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         // Noted where the edit ends.
         SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) => SceneEvent::Sets,
         SceneCommand::MaskMeasured(_) => SceneEvent::Mask,
+        SceneCommand::RemeshLocal(_) => SceneEvent::Remesh,
     }
 }

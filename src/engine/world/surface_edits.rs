@@ -1,9 +1,11 @@
-//! What the world does with the mask and the face sets of its active object as a whole.
+//! What the world does with the mask, the face sets and the triangles of its active object as a
+//! whole.
 
 use super::{HistoryEvent, SceneResult, World};
+use crate::local_remesh::{LocalRemesh, RemeshWork};
 use crate::mask_region::MaskRegion;
 use crate::region_seen::RegionSeen;
-use crate::scene::{ObjectId, SceneError, SceneEvent};
+use crate::scene::{ObjectId, SceneError};
 use crate::surface_edit::{Asked, SurfaceEdit};
 use crate::view_region::{SetsRegion, ViewRegion};
 use sculptd_clay::brush::MaskAction;
@@ -51,19 +53,38 @@ impl World {
 
     /// The same of what was measured of it, unless it has changed since.
     pub(super) fn mask_measured(&mut self, mask: &MeasuredMask) -> SceneResult {
-        let active = self.scene.active();
-        if active.settings.locked {
-            return Err(SceneError::Locked(active.id));
-        }
-        if !active.settings.visible {
-            return Err(SceneError::Hidden(active.id));
-        }
-        if !mask.fits(&active.clay) {
+        self.open_to_edits()?;
+        if !mask.fits(&self.scene.active().clay) {
             return Err(SceneError::MaskChanged);
         }
         let place = Asked::Now(self.scene_results.len());
         self.begin_mask(SurfaceEdit::MaskMeasured(mask.clone()), place);
         Ok(ObjectId(0))
+    }
+
+    /// Begins to give triangles of the active object another size: one step of undo. The result has
+    /// the number of edges that were changed in the place of an object's.
+    pub(super) fn remesh_locally(&mut self, asked: &LocalRemesh) -> SceneResult {
+        self.open_to_edits()?;
+        if asked.region.as_ref().is_some_and(|region| !region.is_sane()) {
+            return Err(SceneError::Region);
+        }
+        let seen = asked.region.as_ref().map(|region| self.seen(region, false));
+        let clay = &mut self.scene.active_mut().clay;
+        let work = Box::new(RemeshWork::new(asked, seen, clay)?);
+        clay.begin_step();
+        self.surface.begin(SurfaceEdit::Remesh(work), Asked::Now(self.scene_results.len()));
+        Ok(ObjectId(0))
+    }
+
+    /// Whether the active object is neither locked nor hidden.
+    fn open_to_edits(&self) -> Result<(), SceneError> {
+        let active = self.scene.active();
+        match (active.settings.locked, active.settings.visible) {
+            (true, _) => Err(SceneError::Locked(active.id)),
+            (false, false) => Err(SceneError::Hidden(active.id)),
+            (false, true) => Ok(()),
+        }
     }
 
     fn begin_mask(&mut self, edit: SurfaceEdit, asked: Asked) {
@@ -125,12 +146,9 @@ impl World {
         done.map(|done| self.close_surface_edit(done)).is_some()
     }
 
-    fn close_surface_edit(&mut self, done: Result<u16, SetsError>) {
-        let event = match self.surface.is_of_sets() {
-            true => HistoryEvent::Scene(SceneEvent::Sets),
-            false => HistoryEvent::Scene(SceneEvent::Mask),
-        };
-        let result = done.map(|set| ObjectId(set.into())).map_err(SceneError::from);
+    fn close_surface_edit(&mut self, done: Result<u32, SetsError>) {
+        let event = HistoryEvent::Scene(self.surface.event());
+        let result = done.map(ObjectId).map_err(SceneError::from);
         match self.surface.asked() {
             Asked::Untold => {}
             Asked::Earlier => self.late_result = Some(result),
@@ -140,7 +158,7 @@ impl World {
         }
         let World { surface, timeline, scene, garbage, options, .. } = self;
         surface.end(&scene.active().clay, garbage);
-        // Nothing was moved: there is nothing that layers would have to take over.
+        // Nothing was moved, or there are no layers: nothing that they would have to take over.
         if timeline.end_step(scene, options.undo_bytes, garbage) {
             self.note(event);
         }

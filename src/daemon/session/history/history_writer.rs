@@ -353,9 +353,12 @@ impl HistoryWriter {
         let parent = Some(self.tree.cursor);
         let deed = match (moment.deed, &changes) {
             (HistoryEvent::Scene(event), None) => HistoryEvent::Scene(event),
-            (HistoryEvent::Scene(SceneEvent::Layers | SceneEvent::Sets | SceneEvent::Mask), _) => {
-                moment.deed
-            }
+            (
+                HistoryEvent::Scene(
+                    SceneEvent::Layers | SceneEvent::Sets | SceneEvent::Mask | SceneEvent::Remesh,
+                ),
+                _,
+            ) => moment.deed,
             (HistoryEvent::Scene(event), Some(c)) if c.is_empty() => HistoryEvent::Scene(event),
             (_, None) => HistoryEvent::Replace,
             (_, Some(_)) => HistoryEvent::Step,

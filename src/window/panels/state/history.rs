@@ -58,6 +58,7 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Layers => "history-layers",
             SceneEvent::Sets => "history-sets",
             SceneEvent::Mask => "history-mask",
+            SceneEvent::Remesh => "history-remesh",
             SceneEvent::Snap => "history-snapped",
         }),
         _ => None,

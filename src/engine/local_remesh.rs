@@ -1,0 +1,195 @@
+//! A part of an object gets triangles of one size: where it was stretched, or what is seen in a
+//! region.
+//!
+//! Laws kept here:
+//! * The pages follow in counted portions, as those of every edit of an object do
+//!   ([`crate::surface_edit`]); strokes wait until the last one has followed.
+//! * What is protected by the mask, hidden or on a border stays, and the triangles inside join what
+//!   stays edge by edge: there is no rim.
+//! * No vertex that is kept moves but where two become one, which then lies between both: the
+//!   surface stays where it was to within the square of an edge over the radius of its curvature.
+
+use serde::{Deserialize, Serialize};
+
+use crate::region_seen::RegionSeen;
+use crate::scene::SceneError;
+use crate::view_region::ViewRegion;
+use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
+
+/// What is asked of the triangles of the active object.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LocalRemesh {
+    /// The wanted length of edges, mesh units, between a 16th and 16 times of the usual one; `None`:
+    /// the usual one, which is the median of the object's edges.
+    pub edge: Option<f32>,
+    /// Only edges that are too long are changed, and what they leave badly shaped.
+    pub stretched_only: bool,
+    /// Only what is seen in this region of the view, all the way through; `None`: everywhere.
+    pub region: Option<ViewRegion>,
+}
+
+/// How far from the usual length of edges the wanted one may be, as a factor.
+pub const EDGE_RANGE: f32 = 16.0;
+/// Triangles that it may come to, at most.
+const MOST_TRIANGLES: f32 = 1e8;
+/// Counted work of a tick, in the units of dynamic topology: some four milliseconds on one core.
+/// Strokes wait, so it is more than they leave.
+const TICK_BUDGET: usize = 16_000;
+/// Vertices that are looked at in the time of one operation.
+const LOOKED: u64 = 10;
+/// Pages that one pass looks at together.
+const TOGETHER: usize = 8;
+/// Rounds over all pages, at most: a round finds what the round before has moved from page to page.
+const ROUNDS: u32 = 4;
+/// Passes over the same pages, at most. Each operation brings edges nearer to their length or raises
+/// an angle, so they end by themselves; the bound is for numbers that round.
+const PASSES: u32 = 256;
+/// Edges that are looked at for the usual length, at most.
+const SAMPLED: usize = 4096;
+
+/// What is still to be done.
+#[derive(Debug)]
+pub(crate) struct RemeshWork {
+    seen: Option<RegionSeen>,
+    edge: f32,
+    collapse: bool,
+    next: usize,
+    balls: Vec<Detail>,
+    passes: u32,
+    round: u32,
+    changed_in_round: bool,
+    /// Edges that were changed.
+    changes: u32,
+}
+
+impl RemeshWork {
+    /// What is asked for, of this clay.
+    ///
+    /// # Errors
+    /// [`SceneError::Edge`] for an edge out of range, [`SceneError::Fine`] where it would make too
+    /// many triangles, [`SceneError::KeptByVertex`] where the clay has layers.
+    pub(crate) fn new(
+        asked: &LocalRemesh,
+        seen: Option<RegionSeen>,
+        clay: &mut Clay,
+    ) -> Result<RemeshWork, SceneError> {
+        if clay.layer_count() > 0 {
+            return Err(SceneError::KeptByVertex);
+        }
+        let usual = usual_edge(clay).ok_or(SceneError::Edge)?;
+        let edge = asked.edge.unwrap_or(usual);
+        if !(edge >= usual / EDGE_RANGE && edge <= usual * EDGE_RANGE) {
+            return Err(SceneError::Edge);
+        }
+        let finer = (usual / edge) * (usual / edge);
+        if clay.triangle_count() as f32 * finer > MOST_TRIANGLES {
+            return Err(SceneError::Fine);
+        }
+        clay.prepare_topology();
+        clay.forget_balls();
+        Ok(RemeshWork {
+            seen,
+            edge,
+            collapse: !asked.stretched_only,
+            next: 0,
+            balls: Vec::with_capacity(TOGETHER),
+            passes: 0,
+            round: 1,
+            changed_in_round: false,
+            changes: 0,
+        })
+    }
+
+    /// Does what fits in a tick; how many edges were changed in all, once all is done.
+    pub(crate) fn run(&mut self, clay: &mut Clay, workers: &Workers) -> Option<u32> {
+        self.work(clay, workers, TICK_BUDGET)
+    }
+
+    /// Does all that is left.
+    pub(crate) fn finish(&mut self, clay: &mut Clay, workers: &Workers) -> u32 {
+        self.work(clay, workers, usize::MAX).unwrap_or(self.changes)
+    }
+
+    fn work(&mut self, clay: &mut Clay, workers: &Workers, budget: usize) -> Option<u32> {
+        let mut left = budget;
+        // With less a pass might get nowhere.
+        while left >= LEAST_TOPOLOGY_BUDGET {
+            if self.balls.is_empty() {
+                let looked = self.choose(clay);
+                left = left.saturating_sub(looked + 1);
+                if !self.balls.is_empty() || self.next < clay.page_count() {
+                    continue;
+                }
+                if !self.changed_in_round || self.round == ROUNDS {
+                    clay.forget_balls();
+                    return Some(self.changes);
+                }
+                (self.next, self.changed_in_round) = (0, false);
+                self.round += 1;
+                continue;
+            }
+            let seen = self.seen.as_ref();
+            // A region goes all the way through: where a place faces decides nothing.
+            let holds = |p| seen.is_none_or(|s| s.holds(p, glam::Vec3::ZERO));
+            let within = seen.is_some().then_some(&holds as _);
+            let done = clay.adapt_topology_within(&self.balls, within, left, workers);
+            left = left.saturating_sub(done.work + 1);
+            self.changes = self.changes.saturating_add(done.changes() as u32);
+            self.changed_in_round |= done.changes() > 0;
+            self.passes += 1;
+            if !done.unfinished || self.passes == PASSES {
+                self.balls.clear();
+                self.passes = 0;
+            }
+        }
+        None
+    }
+
+    /// The balls about the next pages that have something of the region; what looking for them
+    /// counts.
+    fn choose(&mut self, clay: &Clay) -> usize {
+        let mut looked = 0;
+        while self.next < clay.page_count() && self.balls.len() < TOGETHER {
+            let page = clay.page(self.next as u32);
+            self.next += 1;
+            let (lo, hi) = page.bounds();
+            let held = match &self.seen {
+                None => page.own() > 0,
+                Some(seen) => {
+                    looked += page.own() as u64 * seen.cost();
+                    (0..page.own()).any(|v| seen.holds(page.point(v), glam::Vec3::ZERO))
+                }
+            };
+            // Edges to the next page lie in both balls.
+            let radius = (hi - lo).length() * 0.5 + 2.0 * self.edge;
+            if held && radius.is_finite() {
+                let centre = (lo + hi) * 0.5;
+                let (split, collapse) = (true, self.collapse);
+                self.balls.push(Detail { centre, radius, edge: self.edge, split, collapse });
+            }
+            if looked / LOOKED > LEAST_TOPOLOGY_BUDGET as u64 {
+                break;
+            }
+        }
+        (looked / LOOKED) as usize
+    }
+}
+
+/// The median of edges that are spread over the clay, mesh units; `None` where it has none.
+pub(crate) fn usual_edge(clay: &Clay) -> Option<f32> {
+    let mut edges: Vec<f32> = Vec::with_capacity(SAMPLED);
+    let step = (3 * clay.triangle_count()).div_ceil(SAMPLED).max(1);
+    let mut at = 0;
+    for page in (0..clay.page_count()).map(|i| clay.page(i as u32)) {
+        let count = 3 * page.triangles().len();
+        while at < count {
+            let [p, q] = [at % 3, (at + 1) % 3].map(|k| page.corners(at / 3)[k]);
+            edges.push(p.distance(q));
+            at += step;
+        }
+        at -= count;
+    }
+    edges.retain(|e| *e > 0.0 && e.is_finite());
+    edges.sort_unstable_by(f32::total_cmp);
+    edges.get(edges.len() / 2).copied()
+}
