@@ -28,7 +28,10 @@ use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
     LayerReply, LayerSetParams, LayersReply,
 };
-use crate::retopology::{DecimateParams, DecimateReply, RemeshQuadsParams, RemeshQuadsReply};
+use crate::retopology::{
+    DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
+    RemeshQuadsReply,
+};
 use crate::scene::{
     AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
     RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
@@ -232,6 +235,10 @@ methods! {
     /// Gives the object quads that follow the shape, its creases and guide lines, or makes them the
     /// lowest of several levels: one step of undo. Masks and colours are carried over.
     "remesh.quads" RemeshQuads remesh_quads(RemeshQuadsParams) -> RemeshQuadsReply;
+    /// Gives triangles one size where the surface was stretched, or what is seen in a region: one
+    /// step of undo. What the mask protects, what is hidden and borders stay; face sets, masks and
+    /// colours are kept. An object with layers is refused.
+    "remesh.local" RemeshLocal remesh_local(RemeshLocalParams) -> RemeshLocalReply;
     /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
     /// New crossings are undone where they can be and counted, and the border of the mask stays.
     "decimate" Decimate decimate(DecimateParams) -> DecimateReply;

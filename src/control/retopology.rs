@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::brush::ViewRegion;
 #[cfg(feature = "schema")]
 use crate::range::COORDINATE;
 
@@ -55,6 +56,31 @@ pub struct RemeshQuadsReply {
     pub layers_baked: u64,
     /// What was changed first, one sentence each.
     pub warnings: Vec<String>,
+}
+
+/// Parameters of `remesh.local`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct RemeshLocalParams {
+    /// The wanted length of edges in the mesh's unit, between a 16th and 16 times of the usual
+    /// one. Without it that one: the median of the object's edges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    pub edge: Option<f32>,
+    /// Only edges that are too long are changed: where the surface was stretched.
+    pub stretched_only: bool,
+    /// Only what is seen in this region, all the way through; without it the whole object.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<ViewRegion>,
+}
+
+/// Reply of `remesh.local`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct RemeshLocalReply {
+    /// Edges that were split, drawn together or flipped; 0: the triangles had their size already.
+    pub changed: u64,
 }
 
 /// Parameters of `decimate`.

@@ -16,12 +16,21 @@ use crate::scene::SceneError;
 use crate::view_region::ViewRegion;
 use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
 
+/// The wanted length of edges.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum WantedEdge {
+    /// In mesh units; between a 16th and 16 times of the usual length.
+    Length(f32),
+    /// So many times the usual length, a 16th to 16. The usual one is the median of the object's
+    /// edges.
+    OfUsual(f32),
+}
+
 /// What is asked of the triangles of the active object.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalRemesh {
-    /// The wanted length of edges, mesh units, between a 16th and 16 times of the usual one; `None`:
-    /// the usual one, which is the median of the object's edges.
-    pub edge: Option<f32>,
+    /// How long edges are to be.
+    pub edge: WantedEdge,
     /// Only edges that are too long are changed, and what they leave badly shaped.
     pub stretched_only: bool,
     /// Only what is seen in this region of the view, all the way through; `None`: everywhere.
@@ -77,7 +86,10 @@ impl RemeshWork {
             return Err(SceneError::KeptByVertex);
         }
         let usual = usual_edge(clay).ok_or(SceneError::Edge)?;
-        let edge = asked.edge.unwrap_or(usual);
+        let edge = match asked.edge {
+            WantedEdge::Length(edge) => edge,
+            WantedEdge::OfUsual(times) => usual * times,
+        };
         if !(edge >= usual / EDGE_RANGE && edge <= usual * EDGE_RANGE) {
             return Err(SceneError::Edge);
         }

@@ -337,6 +337,7 @@ history-split = geteilt
 history-layers = Ebenen
 history-sets = Flächengruppen
 history-mask = Maske
+history-remesh = Dreiecksgröße
 history-snapped = bündig gelegt
 
 ## Page: look
@@ -510,6 +511,11 @@ remesh-along = { $count } entlang der längsten Seite
 remesh-sharp = Scharfe Kanten erhalten
 remesh-button = Remesh
     .tip = Eine Fläche gleichmäßiger Dreiecke; überlappende Teile werden eins. { $keys }
+remesh-local-heading = An Ort und Stelle
+remesh-local-edge = Kantenlänge
+    .tip = Mal die übliche Kantenlänge des Objekts
+remesh-stretched = Gedehntes verfeinern
+    .tip = Teilt zu lange Kanten im ganzen Objekt; Maskiertes und Verborgenes bleibt
 
 quads-heading = Vierecke
 quads-count = Vierecke
@@ -552,6 +558,8 @@ region-isolate = Nur zeigen
     .tip = Verbirgt alles andere; mit Strg: was im Bereich liegt
 region-face-set = Gruppe
     .tip = Was im Bereich liegt, wird eine neue Flächengruppe
+region-remesh = Dreiecksgröße
+    .tip = Dreiecke im Bereich bekommen diese Kantenlänge, durch das ganze Objekt hindurch
 region-done = Fertig
     .tip = Beendet das Zeichnen von Bereichen (Esc)
 region-note = Über die Ansicht ziehen. Strg kehrt es um, Esc beendet.

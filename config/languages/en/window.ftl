@@ -339,6 +339,7 @@ history-split = split
 history-layers = layers
 history-sets = face sets
 history-mask = mask
+history-remesh = triangle size
 history-snapped = laid flush
 
 ## Page: look
@@ -512,6 +513,11 @@ remesh-along = { $count } along the longest side
 remesh-sharp = Keep sharp edges
 remesh-button = Remesh
     .tip = One surface of even triangles; overlapping parts become one. { $keys }
+remesh-local-heading = In place
+remesh-local-edge = Edge length
+    .tip = Times the usual edge length of the object
+remesh-stretched = Refine what was stretched
+    .tip = Splits edges that are too long, in the whole object; what is masked or hidden stays
 
 quads-heading = Quads
 quads-count = quads
@@ -554,6 +560,8 @@ region-isolate = Show only
     .tip = Hides all but what is in the region; with Ctrl: what is in it
 region-face-set = Face set
     .tip = What is in the region becomes a new face set
+region-remesh = Triangle size
+    .tip = Triangles in the region get this edge length, all the way through
 region-done = Done
     .tip = Ends drawing regions (Esc)
 region-note = Drag over the view; with Ctrl the other way round. Esc ends.

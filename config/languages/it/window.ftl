@@ -337,6 +337,7 @@ history-split = diviso
 history-layers = livelli
 history-sets = insiemi di facce
 history-mask = maschera
+history-remesh = dimensione dei triangoli
 history-snapped = messo a filo
 
 ## Page: look
@@ -510,6 +511,11 @@ remesh-along = { $count } lungo il lato maggiore
 remesh-sharp = Conserva gli spigoli vivi
 remesh-button = Remesh
     .tip = Una superficie di triangoli uniformi; le parti sovrapposte diventano una. { $keys }
+remesh-local-heading = Sul posto
+remesh-local-edge = Lunghezza degli spigoli
+    .tip = Volte la lunghezza abituale degli spigoli dell’oggetto
+remesh-stretched = Affina ciò che è stirato
+    .tip = Divide gli spigoli troppo lunghi di tutto l’oggetto; ciò che è mascherato o nascosto resta
 
 quads-heading = Quadrilateri
 quads-count = quadrilateri
@@ -552,6 +558,8 @@ region-isolate = Mostra solo
     .tip = Nasconde tutto il resto; con Ctrl: ciò che è nella regione
 region-face-set = Insieme
     .tip = Ciò che è nella regione diventa un nuovo insieme
+region-remesh = Dimensione dei triangoli
+    .tip = I triangoli nella regione ricevono questa lunghezza, attraverso tutto l’oggetto
 region-done = Fine
     .tip = Finisce di disegnare regioni (Esc)
 region-note = Trascina sulla vista. Ctrl inverte, Esc termina.

@@ -34,7 +34,8 @@ use sculptd_control::face_sets as asked_sets;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::retopology::{
-    DecimateParams, DecimateReply, RemeshQuadsParams, RemeshQuadsReply,
+    DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
+    RemeshQuadsReply,
 };
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::snap::{SnapParams, SnapReply};
@@ -510,6 +511,10 @@ impl Handler for Host {
 
     fn remesh_quads(&self, params: RemeshQuadsParams) -> Result<RemeshQuadsReply, RpcError> {
         retopology::remesh_quads(self, params)
+    }
+
+    fn remesh_local(&self, params: RemeshLocalParams) -> Result<RemeshLocalReply, RpcError> {
+        retopology::remesh_local(self, params)
     }
 
     fn decimate(&self, params: DecimateParams) -> Result<DecimateReply, RpcError> {

@@ -3,6 +3,8 @@
 use glam::DVec3;
 
 use super::host::{Host, failed};
+use super::scene::ask;
+use super::view_region::region;
 use super::{face_sets, layers};
 use crate::decimate_job::{DecimateWanted, decimated};
 use crate::quad_job::{QuadsWanted, quads};
@@ -11,6 +13,8 @@ use sculptd_control::RpcError;
 use sculptd_control::edit::{RemeshParams, RemeshReply};
 use sculptd_control::retopology as asked;
 use sculptd_devices::Clock;
+use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
+use sculptd_engine::scene::SceneCommand;
 
 pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, RpcError> {
     let place = host.begin_boolean()?;
@@ -31,6 +35,19 @@ pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, R
         self_intersections: made.crossings as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
     })
+}
+
+/// Hands it to the loop and waits for what came of it.
+pub(super) fn remesh_local(
+    host: &Host,
+    params: asked::RemeshLocalParams,
+) -> Result<asked::RemeshLocalReply, RpcError> {
+    let asked::RemeshLocalParams { edge, stretched_only, region: seen } = params;
+    let edge = edge.map_or(WantedEdge::OfUsual(1.0), WantedEdge::Length);
+    let region = seen.map(region).transpose()?;
+    let wanted = LocalRemesh { edge, stretched_only, region };
+    let done = ask(host, SceneCommand::RemeshLocal(wanted))?;
+    Ok(asked::RemeshLocalReply { changed: done.id.into() })
 }
 
 pub(super) fn remesh_quads(

@@ -14,7 +14,7 @@ use sculptd_engine::view_region::{SetsRegion, ViewRegion};
 ///
 /// # Errors
 /// Where it is none: a line without a length, a polygon of too few or too many corners.
-fn region(asked: asked::ViewRegion) -> Result<ViewRegion, RpcError> {
+pub(super) fn region(asked: asked::ViewRegion) -> Result<ViewRegion, RpcError> {
     let ends = |[x, y, u, v]: [f32; 4]| [Vec2::new(x, y), Vec2::new(u, v)];
     let region = match asked {
         asked::ViewRegion::Box(corners) => ViewRegion::Box(ends(corners)),

@@ -18,6 +18,7 @@ use crate::language::tr;
 use sculptd_clay::face_sets::PartEdit;
 use sculptd_daemon::trim::Part;
 use sculptd_engine::command::Command;
+use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
 use sculptd_engine::mask_region::MaskRegion;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::view_region::{MOST_CORNERS, SetsRegion, ViewRegion};
@@ -38,12 +39,13 @@ const SHAPES: [(RegionShape, &str); 4] = [
 ];
 
 /// The purposes, each with the message of its name.
-const PURPOSES: [(RegionPurpose, &str); 5] = [
+const PURPOSES: [(RegionPurpose, &str); 6] = [
     (RegionPurpose::Mask, "region-mask"),
     (RegionPurpose::Unmask, "region-unmask"),
     (RegionPurpose::Hide, "region-hide"),
     (RegionPurpose::Isolate, "region-isolate"),
     (RegionPurpose::FaceSet, "region-face-set"),
+    (RegionPurpose::Remesh, "region-remesh"),
 ];
 
 /// The layer in which the pointer draws. It lies under everything that floats over the view.
@@ -97,7 +99,8 @@ pub fn drawn(drawing: &RegionDrawing, free: Rect, to: Pos2) -> Option<ViewRegion
 }
 
 /// What is asked for with a region.
-pub fn request(purpose: RegionPurpose, region: ViewRegion, front_faces: bool) -> UiRequest {
+pub fn request(purpose: RegionPurpose, region: ViewRegion, tool: &RegionTool) -> UiRequest {
+    let front_faces = tool.front_faces;
     let sets = |region, edit| {
         let asked = SetsRegion { region, edit, front_faces };
         UiRequest::World(Command::Scene(SceneCommand::SetsRegion(asked)))
@@ -118,6 +121,11 @@ pub fn request(purpose: RegionPurpose, region: ViewRegion, front_faces: bool) ->
         (RegionPurpose::Hide, region) => sets(region, PartEdit::Hide),
         (RegionPurpose::Isolate, region) => sets(region, PartEdit::Isolate),
         (RegionPurpose::FaceSet, region) => sets(region, PartEdit::NewSet),
+        (RegionPurpose::Remesh, region) => {
+            let edge = WantedEdge::OfUsual(tool.edge);
+            let asked = LocalRemesh { edge, stretched_only: false, region: Some(region) };
+            UiRequest::World(Command::Scene(SceneCommand::RemeshLocal(asked)))
+        }
     }
 }
 
@@ -182,7 +190,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
         let turned = ctx.input(|i| i.modifiers.command || i.modifiers.ctrl);
         let purpose = if turned { drawing.purpose.opposite() } else { drawing.purpose };
         if let Some(region) = drawn(&drawing, free, at) {
-            out.push(request(purpose, region, tool.front_faces));
+            out.push(request(purpose, region, tool));
             done = drawing.purpose == RegionPurpose::Trim;
         }
         drawing.points.clear();

@@ -1,11 +1,15 @@
-//! Voxel remeshing: how fine, and the button.
+//! Remeshing, of the whole object by voxels and of a part of it in place: how fine, and the buttons.
 
-use super::rows;
 use super::state::Action;
+use super::state::region::RegionPurpose;
 use super::state::{UiRequest, UiState, View};
 use super::theme;
+use super::{region, rows};
 use crate::language::tr;
 use sculptd_daemon::remesh_job::SIDE;
+use sculptd_engine::command::Command;
+use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
+use sculptd_engine::scene::SceneCommand;
 
 /// What a first voxel is when a person wants one of their own: so many along the longest side.
 const FIRST: f32 = 200.0;
@@ -34,4 +38,21 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     if button.on_hover_text(tip).clicked() {
         out.push(UiRequest::Remesh(wanted));
     }
+    ui.add_space(8.0);
+    local(ui, ui_state, out);
+}
+
+/// Triangles of one size where the surface was stretched, or in a region.
+fn local(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    ui.strong(tr!("remesh-local-heading"));
+    let slider = egui::Slider::new(&mut ui_state.region.edge, 0.25..=4.0).logarithmic(true);
+    rows::slider(ui, slider.suffix("×"), &tr!("remesh-local-edge"))
+        .on_hover_text(tr!("remesh-local-edge.tip"));
+    let button = ui.button(tr!("remesh-stretched")).on_hover_text(tr!("remesh-stretched.tip"));
+    if button.clicked() {
+        let edge = WantedEdge::OfUsual(ui_state.region.edge);
+        let asked = LocalRemesh { edge, stretched_only: true, region: None };
+        out.push(UiRequest::World(Command::Scene(SceneCommand::RemeshLocal(asked))));
+    }
+    region::buttons(ui, &mut ui_state.region, RegionPurpose::Remesh);
 }

@@ -25,6 +25,8 @@ pub enum RegionPurpose {
     Isolate,
     /// It becomes a face set.
     FaceSet,
+    /// Its triangles get one size.
+    Remesh,
     /// It is cut off; once, and by a box or a line only.
     Trim,
 }
@@ -37,7 +39,7 @@ impl RegionPurpose {
             RegionPurpose::Unmask => RegionPurpose::Mask,
             RegionPurpose::Hide => RegionPurpose::Isolate,
             RegionPurpose::Isolate => RegionPurpose::Hide,
-            RegionPurpose::FaceSet | RegionPurpose::Trim => self,
+            RegionPurpose::FaceSet | RegionPurpose::Remesh | RegionPurpose::Trim => self,
         }
     }
 }
@@ -63,6 +65,8 @@ pub struct RegionTool {
     pub purpose: RegionPurpose,
     /// Only what faces the eye.
     pub front_faces: bool,
+    /// How long edges are to be where triangles get one size, times the usual length.
+    pub edge: f32,
 }
 
 impl Default for RegionTool {
@@ -72,6 +76,7 @@ impl Default for RegionTool {
             shape: RegionShape::Lasso,
             purpose: RegionPurpose::Mask,
             front_faces: false,
+            edge: 1.0,
         }
     }
 }
