@@ -47,7 +47,7 @@ const TICK_BUDGET: usize = 16_000;
 /// Vertices that are looked at in the time of one operation.
 const LOOKED: u64 = 10;
 /// Pages that one pass looks at together.
-const TOGETHER: usize = 8;
+const TOGETHER: usize = 2;
 /// Rounds over all pages, at most: a round finds what the round before has moved from page to page.
 const ROUNDS: u32 = 4;
 /// Passes over the same pages, at most. Each operation brings edges nearer to their length or raises
@@ -65,6 +65,8 @@ pub(crate) struct RemeshWork {
     next: usize,
     balls: Vec<Detail>,
     passes: u32,
+    /// Counted work of a pass at most: less where pages would grow too much at once.
+    pass_budget: usize,
     round: u32,
     changed_in_round: bool,
     /// Edges that were changed.
@@ -106,6 +108,7 @@ impl RemeshWork {
             next: 0,
             balls: Vec::with_capacity(TOGETHER),
             passes: 0,
+            pass_budget: TICK_BUDGET,
             round: 1,
             changed_in_round: false,
             changes: 0,
@@ -144,14 +147,17 @@ impl RemeshWork {
             // A region goes all the way through: where a place faces decides nothing.
             let holds = |p| seen.is_none_or(|s| s.holds(p, glam::Vec3::ZERO));
             let within = seen.is_some().then_some(&holds as _);
-            let done = clay.adapt_topology_within(&self.balls, within, left, workers);
+            let budget = left.min(self.pass_budget);
+            let done = clay.adapt_topology_within(&self.balls, within, budget, workers);
             left = left.saturating_sub(done.work + 1);
             self.changes = self.changes.saturating_add(done.changes() as u32);
             self.changed_in_round |= done.changes() > 0;
             self.passes += 1;
-            if !done.unfinished || self.passes == PASSES {
+            if done.tangled && self.pass_budget > LEAST_TOPOLOGY_BUDGET {
+                self.pass_budget = LEAST_TOPOLOGY_BUDGET;
+            } else if !done.unfinished || self.passes == PASSES {
                 self.balls.clear();
-                self.passes = 0;
+                (self.passes, self.pass_budget) = (0, TICK_BUDGET);
             }
         }
         None
@@ -164,7 +170,6 @@ impl RemeshWork {
         while self.next < clay.page_count() && self.balls.len() < TOGETHER {
             let page = clay.page(self.next as u32);
             self.next += 1;
-            let (lo, hi) = page.bounds();
             let held = match &self.seen {
                 None => page.own() > 0,
                 Some(seen) => {
@@ -172,9 +177,16 @@ impl RemeshWork {
                     (0..page.own()).any(|v| seen.holds(page.point(v), glam::Vec3::ZERO))
                 }
             };
-            // Edges to the next page lie in both balls.
-            let radius = (hi - lo).length() * 0.5 + 2.0 * self.edge;
-            if held && radius.is_finite() {
+            if !held {
+                continue;
+            }
+            // Edges to the next page lie in both balls, however long they are.
+            let (lo, hi) = page
+                .point_rows()
+                .iter()
+                .fold(page.bounds(), |(lo, hi), p| (lo.min(p.truncate()), hi.max(p.truncate())));
+            let radius = (hi - lo).length() * 0.51;
+            if radius > 0.0 && radius.is_finite() {
                 let centre = (lo + hi) * 0.5;
                 let (split, collapse) = (true, self.collapse);
                 self.balls.push(Detail { centre, radius, edge: self.edge, split, collapse });

@@ -85,15 +85,18 @@ impl TopologyWork {
     }
 
     fn work(&mut self, clay: &mut Clay, workers: &Workers, budget: usize) -> Cuts {
-        let mut sum = Cuts::default();
+        let (mut sum, mut most) = (Cuts::default(), usize::MAX);
         while !self.balls.is_empty() {
             let first = self.balls.len().saturating_sub(TOGETHER);
-            let done = clay.adapt_topology(&self.balls[first..], budget - sum.work, workers);
+            let left = (budget - sum.work).min(most);
+            let done = clay.adapt_topology(&self.balls[first..], left, workers);
             sum.splits += done.splits;
             sum.collapses += done.collapses;
             sum.flips += done.flips;
             sum.work += done.work;
-            if !done.unfinished {
+            if done.tangled && most > LEAST_TOPOLOGY_BUDGET {
+                most = LEAST_TOPOLOGY_BUDGET;
+            } else if !done.unfinished {
                 self.balls.truncate(first);
             }
             // With less a pass might get nowhere.

@@ -544,6 +544,8 @@ mod face_set_tests;
 #[cfg(test)]
 mod layer_tests;
 #[cfg(test)]
+mod local_remesh_tests;
+#[cfg(test)]
 mod people_tests;
 #[cfg(test)]
 mod scene_tests;

@@ -92,7 +92,7 @@ impl Clay {
         let mut cuts = pass.cuts;
         let before = self.revision;
         if cuts.changes() > 0 && !self.rebuild(workers, &mut cuts) {
-            cuts = Cuts { work: cuts.work, ..Cuts::default() };
+            cuts = Cuts { work: cuts.work, tangled: true, ..Cuts::default() };
         }
         let Clay { topology, pages, .. } = self;
         let TopologyBuffers { pages: chosen, visits, balls: numbers, .. } = topology;

@@ -75,6 +75,9 @@ pub struct Cuts {
     /// Asking again may find more: the budget ended the work before all pages were looked through,
     /// or pages were changed, which are looked through again. Never where nothing was achieved.
     pub unfinished: bool,
+    /// Nothing was changed, since a page would have become too tangled to be written: a smaller
+    /// budget, which changes a page less at a time, may get further.
+    pub tangled: bool,
 }
 
 impl Cuts {

@@ -53,7 +53,7 @@ fn edits() -> Vec<Command> {
 }
 
 /// Does a command, and what follows of it in ticks of their own; how many there were.
-fn settle(world: &mut World, command: Command) -> usize {
+pub(super) fn settle(world: &mut World, command: Command) -> usize {
     let mut commands = vec![command];
     for ticks in 1.. {
         let tick = world.tick() + 1;
