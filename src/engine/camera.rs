@@ -105,14 +105,16 @@ impl Camera {
 
     /// Where a world point is seen; `None` behind the eye.
     pub fn project(&self, p: Vec3) -> Option<Vec2> {
+        self.projection().project(p)
+    }
+
+    /// The same of many points: what follows from the camera alone is computed once.
+    pub fn projection(&self) -> Projection {
         let (right, up) = self.axes();
-        let d = p - self.eye();
-        let depth = -d.dot(self.backward());
-        if depth <= 0.0 && !self.orthographic {
-            return None;
-        }
-        let h = self.half_height(depth);
-        Some(Vec2::new(0.5 + 0.5 * d.dot(right) / (h * self.aspect), 0.5 - 0.5 * d.dot(up) / h))
+        let (orthographic, aspect) = (self.orthographic, self.aspect);
+        let tan = (self.fov_y * 0.5).portable_tan();
+        let distance = orthographic.then_some(self.distance);
+        Projection { eye: self.eye(), back: self.backward(), right, up, tan, distance, aspect }
     }
 
     /// Moves back or forth until a box fills the view, and turns about its middle.
@@ -203,6 +205,34 @@ impl Camera {
             && (1e-6..=1e9).contains(&self.distance)
             && (0.01..=3.0).contains(&self.fov_y)
             && (0.05..=20.0).contains(&self.aspect)
+    }
+}
+
+/// How a camera sees points, made ready for many of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    eye: Vec3,
+    back: Vec3,
+    right: Vec3,
+    up: Vec3,
+    /// Of half the angle of view.
+    tan: f32,
+    /// Of a parallel view: from which the size of what is seen follows.
+    distance: Option<f32>,
+    aspect: f32,
+}
+
+impl Projection {
+    /// Where a world point is seen; `None` behind the eye.
+    pub fn project(&self, p: Vec3) -> Option<Vec2> {
+        let d = p - self.eye;
+        let depth = -d.dot(self.back);
+        if depth <= 0.0 && self.distance.is_none() {
+            return None;
+        }
+        let h = self.distance.unwrap_or(depth) * self.tan;
+        let (x, y) = (d.dot(self.right), d.dot(self.up));
+        Some(Vec2::new(0.5 + 0.5 * x / (h * self.aspect), 0.5 - 0.5 * y / h))
     }
 }
 

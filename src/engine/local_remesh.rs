@@ -41,14 +41,18 @@ pub struct LocalRemesh {
 pub const EDGE_RANGE: f32 = 16.0;
 /// Triangles that it may come to, at most.
 const MOST_TRIANGLES: f32 = 1e8;
-/// Counted work of a tick, in the units of dynamic topology: some four milliseconds on one core.
+/// Counted work of a tick, in the units of dynamic topology: some three milliseconds on one core.
 /// Strokes wait, so it is more than they leave.
-const TICK_BUDGET: usize = 16_000;
+const TICK_BUDGET: usize = 12_000;
 /// Vertices that are looked at in the time of one operation.
 const LOOKED: u64 = 10;
 /// Pages that one pass looks at together.
 const TOGETHER: usize = 2;
-/// Rounds over all pages, at most: a round finds what the round before has moved from page to page.
+/// The first time through the pages edges are split down to this power of two times the wanted
+/// length, then to half of that, until all have it: where fine triangles meet coarse ones at once,
+/// vertices come to have as many neighbours as they may, and then nothing about them can be split.
+const COARSEST: i32 = 3;
+/// Rounds over all pages at the wanted length, at most: a round finds what the round before has moved from page to page.
 const ROUNDS: u32 = 4;
 /// Passes over the same pages, at most. Each operation brings edges nearer to their length or raises
 /// an angle, so they end by themselves; the bound is for numbers that round.
@@ -67,6 +71,10 @@ pub(crate) struct RemeshWork {
     passes: u32,
     /// Counted work of a pass at most: less where pages would grow too much at once.
     pass_budget: usize,
+    /// The power of two times the wanted length that edges are split down to.
+    coarse: i32,
+    /// The longest edge of the pages that were looked through this time, before anything was split.
+    longest: f32,
     round: u32,
     changed_in_round: bool,
     /// Edges that were changed.
@@ -109,6 +117,8 @@ impl RemeshWork {
             balls: Vec::with_capacity(TOGETHER),
             passes: 0,
             pass_budget: TICK_BUDGET,
+            coarse: COARSEST,
+            longest: 0.0,
             round: 1,
             changed_in_round: false,
             changes: 0,
@@ -135,12 +145,20 @@ impl RemeshWork {
                 if !self.balls.is_empty() || self.next < clay.page_count() {
                     continue;
                 }
-                if !self.changed_in_round || self.round == ROUNDS {
+                if self.coarse == 0 && (!self.changed_in_round || self.round == ROUNDS) {
                     clay.forget_balls();
                     return Some(self.changes);
                 }
-                (self.next, self.changed_in_round) = (0, false);
-                self.round += 1;
+                match self.coarse {
+                    0 => self.round += 1,
+                    // Down to where there is something to split again.
+                    coarse => {
+                        let times = self.longest / (self.edge * (4.0 / 3.0));
+                        let power = (0..coarse).find(|p| times <= f32::powi(2.0, *p));
+                        self.coarse = power.map_or(coarse - 1, |p| (p - 1).max(0));
+                    }
+                }
+                (self.next, self.changed_in_round, self.longest) = (0, false, 0.0);
                 continue;
             }
             let seen = self.seen.as_ref();
@@ -163,36 +181,49 @@ impl RemeshWork {
         None
     }
 
-    /// The balls about the next pages that have something of the region; what looking for them
-    /// counts.
+    /// The balls about the next pages that have something of the region and edges to be changed;
+    /// what looking for them counts.
     fn choose(&mut self, clay: &Clay) -> usize {
         let mut looked = 0;
-        while self.next < clay.page_count() && self.balls.len() < TOGETHER {
+        let edge = self.edge * f32::powi(2.0, self.coarse);
+        let collapse = self.collapse && self.coarse == 0;
+        while self.next < clay.page_count()
+            && self.balls.len() < TOGETHER
+            && looked / LOOKED < LEAST_TOPOLOGY_BUDGET as u64 / 2
+        {
             let page = clay.page(self.next as u32);
             self.next += 1;
-            let held = match &self.seen {
-                None => page.own() > 0,
-                Some(seen) => {
-                    looked += page.own() as u64 * seen.cost();
-                    (0..page.own()).any(|v| seen.holds(page.point(v), glam::Vec3::ZERO))
-                }
-            };
-            if !held {
-                continue;
-            }
-            // Edges to the next page lie in both balls, however long they are.
             let (lo, hi) = page
                 .point_rows()
                 .iter()
                 .fold(page.bounds(), |(lo, hi), p| (lo.min(p.truncate()), hi.max(p.truncate())));
+            looked += 1 + page.point_rows().len() as u64 / 10;
+            if !self.seen.as_ref().is_none_or(|seen| seen.may_hold(lo, hi)) {
+                continue;
+            }
+            looked += page.triangles().len() as u64 / 2;
+            let (mut least, mut most) = (f32::INFINITY, 0.0f32);
+            for [a, b, c] in (0..page.triangles().len()).map(|i| page.corners(i)) {
+                for d2 in [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)] {
+                    (least, most) = (least.min(d2), most.max(d2));
+                }
+            }
+            self.longest = self.longest.max(most.sqrt());
+            if most.sqrt() <= edge * (4.0 / 3.0) && !(collapse && least.sqrt() < edge * 0.5) {
+                continue;
+            }
+            if let Some(seen) = &self.seen {
+                looked += page.own() as u64 * seen.cost();
+                let rows = page.point_rows().iter();
+                if !rows.into_iter().any(|p| seen.holds(p.truncate(), glam::Vec3::ZERO)) {
+                    continue;
+                }
+            }
+            // The halo too: edges to the next page lie in both balls, however long they are.
             let radius = (hi - lo).length() * 0.51;
             if radius > 0.0 && radius.is_finite() {
                 let centre = (lo + hi) * 0.5;
-                let (split, collapse) = (true, self.collapse);
-                self.balls.push(Detail { centre, radius, edge: self.edge, split, collapse });
-            }
-            if looked / LOOKED > LEAST_TOPOLOGY_BUDGET as u64 {
-                break;
+                self.balls.push(Detail { centre, radius, edge, split: true, collapse });
             }
         }
         (looked / LOOKED) as usize

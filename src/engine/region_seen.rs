@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::scene::ObjectTransform;
 use crate::view_region::{ViewRegion, crosses};
 
@@ -12,6 +12,7 @@ pub(crate) struct RegionSeen {
     region: ViewRegion,
     /// Of a polygon.
     bands: Option<Bands>,
+    projection: Projection,
     camera: Camera,
     /// From the object to the world.
     transform: ObjectTransform,
@@ -31,7 +32,8 @@ impl RegionSeen {
             ViewRegion::Polygon(corners) => Some(Bands::new(corners)),
             _ => None,
         };
-        RegionSeen { region: region.clone(), bands, camera: *camera, transform, front_faces }
+        let (region, projection) = (region.clone(), camera.projection());
+        RegionSeen { region, bands, projection, camera: *camera, transform, front_faces }
     }
 
     /// Whether a vertex of the object, place and normal, is seen in the region.
@@ -46,7 +48,32 @@ impl RegionSeen {
             Some(bands) => bands.hold(at),
             None => self.region.holds(at, camera.aspect),
         };
-        (!self.front_faces || facing()) && camera.project(p).is_some_and(within)
+        (!self.front_faces || facing()) && self.projection.project(p).is_some_and(within)
+    }
+
+    /// Whether a vertex within a box of the object may be seen in the region: false only where none
+    /// is.
+    pub(crate) fn may_hold(&self, lo: Vec3, hi: Vec3) -> bool {
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for corner in 0..8u32 {
+            let side = |bit: u32| corner >> bit & 1 == 1;
+            let p = Vec3::select(glam::BVec3::new(side(0), side(1), side(2)), hi, lo);
+            // Partly behind the eye, it may be seen anywhere.
+            let Some(at) = self.projection.project(self.transform.point(p)) else { return true };
+            (low, high) = (low.min(at), high.max(at));
+        }
+        let ends = |all: &[Vec2]| {
+            let first = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+            all.iter().fold(first, |(l, h), p| (l.min(*p), h.max(*p)))
+        };
+        let (from, to) = match &self.region {
+            ViewRegion::Box(corners) => ends(corners),
+            ViewRegion::Polygon(corners) => ends(corners),
+            ViewRegion::Line(_) => return true,
+        };
+        // What rounds: a place on the box may be projected a little beyond its corners.
+        let slack = (high - low) * 1e-3 + 1e-4;
+        (low - slack).cmple(to).all() && (high + slack).cmpge(from).all()
     }
 
     /// What a vertex costs, as a multiple of what writing it does.

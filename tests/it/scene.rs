@@ -2,6 +2,7 @@
 
 mod face_sets;
 mod layers;
+mod local_remesh;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};

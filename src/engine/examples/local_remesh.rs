@@ -25,7 +25,8 @@ fn main() {
         WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
     let workers = Workers::new(2);
     let mut world = World::new(clay, Camera::default(), BrushSettings::default(), workers, options);
-    for (half, times) in [(0.05, 1.0), (0.05, 0.5), (0.1, 0.5), (0.1, 1.0), (0.2, 1.5)] {
+    for (half, times) in [(0.05, 1.0), (0.03, 0.5), (0.05, 0.5), (0.1, 0.5), (0.1, 1.0), (0.2, 1.5)]
+    {
         let corner = |i: usize| Vec2::splat(0.5) + half * Vec2::from_angle(i as f32 / 10.0);
         let circle = ViewRegion::Polygon(Arc::new((0..62).map(corner).collect()));
         let edge = WantedEdge::OfUsual(times);

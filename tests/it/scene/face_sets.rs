@@ -14,7 +14,7 @@ impl Running {
         sets.iter().map(|s| s["set"].as_u64().expect("a number")).collect()
     }
 
-    fn bits(&self) -> Value {
+    pub(super) fn bits(&self) -> Value {
         self.objects();
         self.ask("hash", json!({}))["hash"].clone()
     }
