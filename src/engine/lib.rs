@@ -22,6 +22,7 @@ pub mod mask_region;
 pub mod old_layout;
 pub mod payload;
 mod region_seen;
+mod remesh_work;
 pub mod scene;
 pub mod stroke;
 mod surface_edit;

@@ -10,9 +10,9 @@
 //! * An edit is one step of undo. None is under way whenever the world is at rest: it is no part of
 //!   a saved state.
 
-use crate::local_remesh::RemeshWork;
 use crate::mask_region::MaskSeen;
 use crate::region_seen::RegionSeen;
+use crate::remesh_work::RemeshWork;
 use crate::scene::SceneEvent;
 use sculptd_clay::brush::mask_all::MaskAll;
 use sculptd_clay::face_sets::{SetsError, SetsWork};

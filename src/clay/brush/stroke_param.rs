@@ -306,7 +306,7 @@ fn laid(normal: Vec3, along: Vec3, d: Vec3) -> [f32; 2] {
 }
 
 /// `v`, turned as `from` must be to become `to`. The rotation is written out by its components: in
-/// vectors of four the fourth would be whatever lay there, often a subnormal number, and each product
+/// vectors of four the fourth would be whatever lay there, often a subnormal number, and a product
 /// with one of those takes a hundred cycles.
 fn turn(from: Vec3, to: Vec3, v: Vec3) -> Vec3 {
     if from == Vec3::ZERO || to == Vec3::ZERO {

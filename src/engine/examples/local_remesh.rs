@@ -1,7 +1,9 @@
-//! How long a local remesh takes: of a region of about so many vertices of a large ball.
+//! How long a local remesh takes: of a region of a large ball, by ticks.
 //!
-//! `cargo run --release --example local_remesh -p sculptd-engine -- [VERTICES OF THE BALL]`
+//! `cargo run --release -p sculptd-engine --example local_remesh -- [VERTICES]`
+#![allow(clippy::print_stdout, clippy::disallowed_methods)] // It measures and prints.
 
+use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -17,10 +19,10 @@ use sculptd_engine::view_region::ViewRegion;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::{job::Job, shapes};
 
-fn main() {
+fn main() -> Result<(), Box<dyn Error>> {
     let wanted = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(1_000_000.0f64);
     let ball = shapes::icosphere(1.0, (wanted / 10.0).sqrt() as u32);
-    let clay = Clay::build(&ball, &Job::default()).expect("a ball");
+    let clay = Clay::build(&ball, &Job::default())?;
     let options =
         WorldOptions { dab_budget: 400_000, undo_bytes: 1 << 30, hands: HandSettings::default() };
     let workers = Workers::new(2);
@@ -57,4 +59,5 @@ fn main() {
         let tick = world.tick() + 1;
         world.step(tick, &[], &[Command::Undo]);
     }
+    Ok(())
 }

@@ -2,9 +2,10 @@
 //! whole.
 
 use super::{HistoryEvent, SceneResult, World};
-use crate::local_remesh::{LocalRemesh, RemeshWork};
+use crate::local_remesh::LocalRemesh;
 use crate::mask_region::MaskRegion;
 use crate::region_seen::RegionSeen;
+use crate::remesh_work::RemeshWork;
 use crate::scene::{ObjectId, SceneError};
 use crate::surface_edit::{Asked, SurfaceEdit};
 use crate::view_region::{SetsRegion, ViewRegion};

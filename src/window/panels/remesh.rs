@@ -1,4 +1,5 @@
-//! Remeshing, of the whole object by voxels and of a part of it in place: how fine, and the buttons.
+//! Remeshing, of the whole object by voxels and of a part of it in place: how fine, and the
+//! buttons.
 
 use super::state::Action;
 use super::state::region::RegionPurpose;

@@ -1,0 +1,230 @@
+//! A part of an object gets triangles of one size: where it was stretched, or what is seen in a
+//! region.
+//!
+//! Laws kept here:
+//! * The pages follow in counted portions, as those of every edit of an object do
+//!   ([`crate::surface_edit`]); strokes wait until the last one has followed.
+//! * What is protected by the mask, hidden or on a border stays, and the triangles inside join what
+//!   stays edge by edge: there is no rim.
+//! * No vertex that is kept moves but where two become one, which then lies between both: the
+//!   surface stays where it was to within the square of an edge over the radius of its curvature.
+
+use glam::Vec3;
+
+use crate::local_remesh::{LocalRemesh, WantedEdge};
+use crate::region_seen::RegionSeen;
+use crate::scene::SceneError;
+use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
+
+/// How far from the usual length of edges the wanted one may be, as a factor.
+const EDGE_RANGE: f32 = 16.0;
+/// Triangles that it may come to, at most.
+const MOST_TRIANGLES: f32 = 1e8;
+/// Counted work of a tick, in the units of dynamic topology: some three milliseconds on one core.
+/// Strokes wait, so it is more than they leave.
+const TICK_BUDGET: usize = 12_000;
+/// Vertices that are looked at in the time of one operation.
+const LOOKED: u64 = 10;
+/// Pages that one pass looks at together.
+const TOGETHER: usize = 2;
+/// The first time through the pages edges are split down to this power of two times the wanted
+/// length, then to half of that, until all have it: where fine triangles meet coarse ones at once,
+/// vertices come to have as many neighbours as they may, and then nothing about them can be split.
+const COARSEST: u32 = 3;
+/// Rounds over all pages at the wanted length, at most: a round finds what the one before has moved
+/// from page to page.
+const ROUNDS: u32 = 4;
+/// Passes over the same pages, at most. Each operation brings edges nearer to their length or makes
+/// an angle wider, so they end by themselves; the bound is for numbers that round.
+const PASSES: u32 = 256;
+/// Edges that are looked at for the usual length, at most.
+const SAMPLED: usize = 4096;
+
+/// What is still to be done.
+#[derive(Debug)]
+pub(crate) struct RemeshWork {
+    seen: Option<RegionSeen>,
+    edge: f32,
+    collapse: bool,
+    next: usize,
+    balls: Vec<Detail>,
+    passes: u32,
+    /// Counted work of a pass at most: less where pages would grow too much at once.
+    pass_budget: usize,
+    /// The power of two times the wanted length that edges are split down to.
+    coarse: u32,
+    /// The longest edge of the pages that were looked through this time, before anything was split.
+    longest: f32,
+    round: u32,
+    changed_in_round: bool,
+    /// Edges that were changed.
+    changes: u32,
+}
+
+impl RemeshWork {
+    /// What is asked for, of this clay.
+    ///
+    /// # Errors
+    /// [`SceneError::Edge`] for an edge out of range, [`SceneError::Fine`] where it would make too
+    /// many triangles, [`SceneError::KeptByVertex`] where the clay has layers.
+    pub(crate) fn new(
+        asked: &LocalRemesh,
+        seen: Option<RegionSeen>,
+        clay: &mut Clay,
+    ) -> Result<RemeshWork, SceneError> {
+        if clay.layer_count() > 0 {
+            return Err(SceneError::KeptByVertex);
+        }
+        let usual = usual_edge(clay).ok_or(SceneError::Edge)?;
+        let edge = match asked.edge {
+            WantedEdge::Length(edge) => edge,
+            WantedEdge::OfUsual(times) => usual * times,
+        };
+        if !(edge >= usual / EDGE_RANGE && edge <= usual * EDGE_RANGE) {
+            return Err(SceneError::Edge);
+        }
+        let finer = (usual / edge) * (usual / edge);
+        if clay.triangle_count() as f32 * finer > MOST_TRIANGLES {
+            return Err(SceneError::Fine);
+        }
+        clay.prepare_topology();
+        clay.forget_balls();
+        Ok(RemeshWork {
+            seen,
+            edge,
+            collapse: !asked.stretched_only,
+            next: 0,
+            balls: Vec::with_capacity(TOGETHER),
+            passes: 0,
+            pass_budget: TICK_BUDGET,
+            coarse: COARSEST,
+            longest: 0.0,
+            round: 1,
+            changed_in_round: false,
+            changes: 0,
+        })
+    }
+
+    /// Does what fits in a tick; how many edges were changed in all, once all is done.
+    pub(crate) fn run(&mut self, clay: &mut Clay, workers: &Workers) -> Option<u32> {
+        self.work(clay, workers, TICK_BUDGET)
+    }
+
+    /// Does all that is left.
+    pub(crate) fn finish(&mut self, clay: &mut Clay, workers: &Workers) -> u32 {
+        self.work(clay, workers, usize::MAX).unwrap_or(self.changes)
+    }
+
+    fn work(&mut self, clay: &mut Clay, workers: &Workers, budget: usize) -> Option<u32> {
+        let mut left = budget;
+        // With less a pass might get nowhere.
+        while left >= LEAST_TOPOLOGY_BUDGET {
+            if self.balls.is_empty() {
+                let looked = self.choose(clay);
+                left = left.saturating_sub(looked + 1);
+                if !self.balls.is_empty() || self.next < clay.page_count() {
+                    continue;
+                }
+                if self.coarse == 0 && (!self.changed_in_round || self.round == ROUNDS) {
+                    clay.forget_balls();
+                    return Some(self.changes);
+                }
+                match self.coarse {
+                    0 => self.round += 1,
+                    // Down to where there is something to split again.
+                    coarse => {
+                        let times = self.longest / (self.edge * (4.0 / 3.0));
+                        let power = (0..coarse).find(|p| times <= (1u32 << *p) as f32);
+                        self.coarse = power.map_or(coarse - 1, |p| p.saturating_sub(1));
+                    }
+                }
+                (self.next, self.changed_in_round, self.longest) = (0, false, 0.0);
+                continue;
+            }
+            let seen = self.seen.as_ref();
+            // A region goes all the way through: where a place faces decides nothing.
+            let holds = |p| seen.is_none_or(|s| s.holds(p, Vec3::ZERO));
+            let within = seen.is_some().then_some(&holds as _);
+            let budget = left.min(self.pass_budget);
+            let done = clay.adapt_topology_within(&self.balls, within, budget, workers);
+            left = left.saturating_sub(done.work + 1);
+            self.changes = self.changes.saturating_add(done.changes() as u32);
+            self.changed_in_round |= done.changes() > 0;
+            self.passes += 1;
+            if done.tangled && self.pass_budget > LEAST_TOPOLOGY_BUDGET {
+                self.pass_budget = LEAST_TOPOLOGY_BUDGET;
+            } else if !done.unfinished || self.passes == PASSES {
+                self.balls.clear();
+                (self.passes, self.pass_budget) = (0, TICK_BUDGET);
+            }
+        }
+        None
+    }
+
+    /// The balls about the next pages that have something of the region and edges to be changed;
+    /// what looking for them counts.
+    fn choose(&mut self, clay: &Clay) -> usize {
+        let mut looked = 0;
+        let edge = self.edge * (1u32 << self.coarse) as f32;
+        let collapse = self.collapse && self.coarse == 0;
+        while self.next < clay.page_count()
+            && self.balls.len() < TOGETHER
+            && looked / LOOKED < LEAST_TOPOLOGY_BUDGET as u64 / 2
+        {
+            let page = clay.page(self.next as u32);
+            self.next += 1;
+            let (lo, hi) = page
+                .point_rows()
+                .iter()
+                .fold(page.bounds(), |(lo, hi), p| (lo.min(p.truncate()), hi.max(p.truncate())));
+            looked += 1 + page.point_rows().len() as u64 / 10;
+            if !self.seen.as_ref().is_none_or(|seen| seen.may_hold(lo, hi)) {
+                continue;
+            }
+            looked += page.triangles().len() as u64 / 2;
+            let (mut least, mut most) = (f32::INFINITY, 0.0f32);
+            for [a, b, c] in (0..page.triangles().len()).map(|i| page.corners(i)) {
+                for d2 in [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)] {
+                    (least, most) = (least.min(d2), most.max(d2));
+                }
+            }
+            self.longest = self.longest.max(most.sqrt());
+            if most.sqrt() <= edge * (4.0 / 3.0) && !(collapse && least.sqrt() < edge * 0.5) {
+                continue;
+            }
+            if let Some(seen) = &self.seen {
+                looked += page.own() as u64 * seen.cost();
+                let rows = page.point_rows().iter();
+                if !rows.into_iter().any(|p| seen.holds(p.truncate(), Vec3::ZERO)) {
+                    continue;
+                }
+            }
+            // The halo too: edges to the next page lie in both balls, however long they are.
+            let radius = (hi - lo).length() * 0.51;
+            if radius > 0.0 && radius.is_finite() {
+                let centre = (lo + hi) * 0.5;
+                self.balls.push(Detail { centre, radius, edge, split: true, collapse });
+            }
+        }
+        (looked / LOOKED) as usize
+    }
+}
+
+/// The median of edges that are spread over the clay, mesh units; `None` where it has none.
+pub(crate) fn usual_edge(clay: &Clay) -> Option<f32> {
+    let mut edges: Vec<f32> = Vec::with_capacity(SAMPLED);
+    let step = (3 * clay.triangle_count()).div_ceil(SAMPLED).max(1);
+    let mut at = 0;
+    for page in (0..clay.page_count()).map(|i| clay.page(i as u32)) {
+        let count = 3 * page.triangles().len();
+        while at < count {
+            let [p, q] = [at % 3, (at + 1) % 3].map(|k| page.corners(at / 3)[k]);
+            edges.push(p.distance(q));
+            at += step;
+        }
+        at -= count;
+    }
+    edges.retain(|e| *e > 0.0 && e.is_finite());
+    edges.sort_unstable_by(f32::total_cmp);
+    edges.get(edges.len() / 2).copied()
+}
