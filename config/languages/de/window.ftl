@@ -988,6 +988,7 @@ task-done = { $operation }: fertig
 task-snapped = Die Flächen liegen aneinander
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
+task-remesh-local = Geänderte Kanten: { $count }
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %; Durchdringungen: { $crossings }
 task-quads = { $quads } Vierecke und { $triangles } Dreiecke; Durchdringungen: { $crossings }
 task-decimated = Aus { $before } Dreiecken wurden { $now }; neue Durchdringungen: { $crossings }

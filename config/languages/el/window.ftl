@@ -988,6 +988,7 @@ task-done = { $operation }: έγινε
 task-snapped = Οι έδρες εφάπτονται
 task-trimmed = Περικόπηκε
 task-level = Επίπεδο { $at } από { $all }
+task-remesh-local = Ακμές που άλλαξαν: { $count }
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %· τομές: { $crossings }
 task-quads = { $quads } τετράπλευρα και { $triangles } τρίγωνα· τομές: { $crossings }
 task-decimated = { $before } τρίγωνα έγιναν { $now }· νέες τομές: { $crossings }

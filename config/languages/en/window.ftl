@@ -990,6 +990,7 @@ task-done = { $operation }: done
 task-snapped = The faces lie on each other
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
+task-remesh-local = Edges changed: { $count }
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %; crossings: { $crossings }
 task-quads = { $quads } quads and { $triangles } triangles; crossings: { $crossings }
 task-decimated = { $before } triangles became { $now }; new crossings: { $crossings }

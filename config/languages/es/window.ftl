@@ -988,6 +988,7 @@ task-done = { $operation }: hecho
 task-snapped = Las caras están a ras
 task-trimmed = Recortado
 task-level = Nivel { $at } de { $all }
+task-remesh-local = Aristas cambiadas: { $count }
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %; intersecciones: { $crossings }
 task-quads = { $quads } cuadriláteros y { $triangles } triángulos; intersecciones: { $crossings }
 task-decimated = { $before } triángulos pasaron a { $now }; nuevas intersecciones: { $crossings }

@@ -988,6 +988,7 @@ task-done = { $operation } : fait
 task-snapped = Les faces sont l’une contre l’autre
 task-trimmed = Rogné
 task-level = Niveau { $at } sur { $all }
+task-remesh-local = Arêtes changées : { $count }
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %; intersections : { $crossings }
 task-quads = { $quads } quadrilatères et { $triangles } triangles ; intersections : { $crossings }
 task-decimated = { $before } triangles sont devenus { $now } ; nouvelles intersections : { $crossings }

@@ -988,6 +988,7 @@ task-done = { $operation }: fatto
 task-snapped = Le facce combaciano
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
+task-remesh-local = Spigoli cambiati: { $count }
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %; intersezioni: { $crossings }
 task-quads = { $quads } quadrilateri e { $triangles } triangoli; intersezioni: { $crossings }
 task-decimated = { $before } triangoli sono diventati { $now }; nuove intersezioni: { $crossings }

@@ -984,6 +984,7 @@ task-done = { $operation }: 完了
 task-snapped = 面が合いました
 task-trimmed = トリムしました
 task-level = レベル { $at } / { $all }
+task-remesh-local = 変更された辺: { $count }
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %、交差: { $crossings }
 task-quads = 四角形 { $quads } 枚、三角形 { $triangles } 枚、交差: { $crossings }
 task-decimated = 三角形 { $before } 枚が { $now } 枚に、新しい交差: { $crossings }

@@ -984,6 +984,7 @@ task-done = { $operation }: 完成
 task-snapped = 两个面已贴合
 task-trimmed = 已修剪
 task-level = 级别 { $at } / { $all }
+task-remesh-local = 已更改的边：{ $count }
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %; 相交: { $crossings }
 task-quads = 四边形 { $quads }, 三角面 { $triangles }; 相交: { $crossings }
 task-decimated = 三角面由 { $before } 减为 { $now }; 新相交: { $crossings }

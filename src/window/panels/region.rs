@@ -124,7 +124,7 @@ pub fn request(purpose: RegionPurpose, region: ViewRegion, tool: &RegionTool) ->
         (RegionPurpose::Remesh, region) => {
             let edge = WantedEdge::OfUsual(tool.edge);
             let asked = LocalRemesh { edge, stretched_only: false, region: Some(region) };
-            UiRequest::World(Command::Scene(SceneCommand::RemeshLocal(asked)))
+            UiRequest::RemeshLocal(asked)
         }
     }
 }

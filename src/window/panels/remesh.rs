@@ -8,9 +8,7 @@ use super::theme;
 use super::{region, rows};
 use crate::language::tr;
 use sculptd_daemon::remesh_job::SIDE;
-use sculptd_engine::command::Command;
 use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
-use sculptd_engine::scene::SceneCommand;
 
 /// What a first voxel is when a person wants one of their own: so many along the longest side.
 const FIRST: f32 = 200.0;
@@ -49,11 +47,11 @@ fn local(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let slider = egui::Slider::new(&mut ui_state.region.edge, 0.25..=4.0).logarithmic(true);
     rows::slider(ui, slider.suffix("×"), &tr!("remesh-local-edge"))
         .on_hover_text(tr!("remesh-local-edge.tip"));
-    let button = ui.button(tr!("remesh-stretched")).on_hover_text(tr!("remesh-stretched.tip"));
-    if button.clicked() {
+    let button = ui.add_enabled(!ui_state.joining, egui::Button::new(tr!("remesh-stretched")));
+    if button.on_hover_text(tr!("remesh-stretched.tip")).clicked() {
         let edge = WantedEdge::OfUsual(ui_state.region.edge);
         let asked = LocalRemesh { edge, stretched_only: true, region: None };
-        out.push(UiRequest::World(Command::Scene(SceneCommand::RemeshLocal(asked))));
+        out.push(UiRequest::RemeshLocal(asked));
     }
     region::buttons(ui, &mut ui_state.region, RegionPurpose::Remesh);
 }

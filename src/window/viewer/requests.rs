@@ -86,6 +86,10 @@ impl WindowState {
                 self.ui_state.joining = true;
                 self.tasks.remesh(wanted, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::RemeshLocal(asked) => {
+                self.ui_state.joining = true;
+                self.tasks.remesh_local(asked, wiring.commands.clone());
+            }
             UiRequest::MakeSets(by) => {
                 self.ui_state.joining = true;
                 self.tasks.make_sets(by, wiring.published.clone(), wiring.commands.clone());

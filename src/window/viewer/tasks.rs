@@ -42,6 +42,7 @@ use sculptd_daemon::{
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{HeldObject, MenuItem};
+use sculptd_engine::local_remesh::LocalRemesh;
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
     NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
@@ -375,6 +376,24 @@ impl Tasks {
                 crossings = crossings
             );
             Ok((vec![command], text))
+        });
+    }
+
+    /// Triangles of one size in a part of the active object; what came of it is told.
+    pub fn remesh_local(&self, asked: LocalRemesh, commands: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-remesh", move || {
+            let (answer, result) = cc::bounded(1);
+            let command = Command::Scene(SceneCommand::RemeshLocal(asked));
+            let queued = QueuedCommand { scene_result: Some(answer), ..command.into() };
+            let sent = commands.send(queued).is_ok();
+            let (text, wrong) = match result.recv() {
+                Ok(Ok(changed)) if sent => (tr!("task-remesh-local", count = changed.0), false),
+                Ok(Err(e)) => (e.to_string(), true),
+                _ => (JoinError::Ended.to_string(), true),
+            };
+            let _ = say.send(TaskReport::Message(text, wrong));
+            let _ = say.send(TaskReport::Joined);
         });
     }
 

@@ -7,6 +7,7 @@ use glam::Vec2;
 use sculptd_clay::brush::{BrushKind, draw_face_sets};
 use sculptd_clay::face_sets::PartEdit;
 use sculptd_engine::command::Command;
+use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
 use sculptd_engine::mask_region::MaskRegion;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::view_region::{MOST_CORNERS, SetsRegion, ViewRegion};
@@ -55,7 +56,7 @@ fn around() -> Vec<Pos2> {
 
 #[test]
 fn a_lasso_masks_and_frees_until_escape_ends_it() {
-    let mut h = harness(Tab::Scene);
+    let mut h = harness(Tab::Look);
     h.get_by_role_and_label(Role::DisclosureTriangle, "Mask").click();
     h.run_steps(8);
     h.get_by_label("Lasso").scroll_to_me();
@@ -107,6 +108,30 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
     let [UiRequest::World(Command::MaskRegion(long))] = &all[..] else { panic!("{all:?}") };
     let ViewRegion::Polygon(corners) = &long.region else { panic!("a lasso") };
     assert!(corners.len() > MOST_CORNERS / 3 && long.is_sane(), "{}", corners.len());
+}
+
+#[test]
+fn triangles_of_a_region_or_of_what_was_stretched_get_one_size() {
+    let mut h = harness(Tab::Scene);
+    h.state_mut().ui_state.region.edge = 0.5;
+    h.get_by_label("Refine what was stretched").scroll_to_me();
+    h.run_steps(3);
+    h.get_by_label("Refine what was stretched").click();
+    h.run_steps(3);
+    let edge = WantedEdge::OfUsual(0.5);
+    let all = asked(&mut h);
+    let [UiRequest::RemeshLocal(stretched)] = &all[..] else { panic!("{all:?}") };
+    assert_eq!(*stretched, LocalRemesh { edge, stretched_only: true, region: None });
+    h.get_by_label("Lasso").scroll_to_me();
+    h.run_steps(3);
+    h.get_by_label("Lasso").click();
+    h.run_steps(3);
+    assert_eq!(h.state().ui_state.region.now(), Some((RegionShape::Lasso, RegionPurpose::Remesh)));
+    drag(&mut h, &around());
+    let all = asked(&mut h);
+    let [UiRequest::RemeshLocal(part)] = &all[..] else { panic!("{all:?}") };
+    assert!(part.edge == edge && !part.stretched_only);
+    assert!(matches!(part.region, Some(ViewRegion::Polygon(_))), "{part:?}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use sculptd_devices::pad_actions::{Binding, Control};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
+use sculptd_engine::local_remesh::LocalRemesh;
 use sculptd_engine::scene::{ObjectId, Primitive};
 
 use super::action::Action;
@@ -53,6 +54,8 @@ pub enum UiRequest {
     Remesh(Wanted),
     /// The active object gets face sets by its shape.
     MakeSets(Partition),
+    /// Triangles of a part of the active object get one size.
+    RemeshLocal(LocalRemesh),
     /// What is measured of the active object is masked.
     MaskMeasured(MaskMeasure),
     /// A part of the active object becomes a new one of this thickness, in the unit of the scene.
