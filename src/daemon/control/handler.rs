@@ -214,7 +214,9 @@ impl Handler for Host {
     }
 
     fn mask(&self, params: asked::MaskParams) -> Result<SentReply, RpcError> {
-        self.send(Command::Mask(convert(params.action)?))?;
+        let command = Command::Mask(convert(params.action)?);
+        mask::may_mask(self)?;
+        self.send(command)?;
         Ok(SENT)
     }
 
@@ -226,7 +228,9 @@ impl Handler for Host {
     }
 
     fn mask_region(&self, params: asked::MaskRegionParams) -> Result<SentReply, RpcError> {
-        self.send(Command::MaskRegion(mask_region(params)?))?;
+        let command = Command::MaskRegion(mask_region(params)?);
+        mask::may_mask(self)?;
+        self.send(command)?;
         Ok(SENT)
     }
 

@@ -6,8 +6,19 @@ use crate::mask_jobs;
 use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_control::RpcError;
 use sculptd_control::brush as asked;
-use sculptd_engine::scene::SceneCommand;
+use sculptd_engine::scene::{SceneCommand, SceneError};
 use sculptd_geometry::job::Job;
+
+/// Refuses to mask an object that is locked or hidden: the loop would leave it as it is.
+pub(super) fn may_mask(host: &Host) -> Result<(), RpcError> {
+    let shown = host.published.load();
+    let Some(active) = shown.scene.active() else { return Ok(()) };
+    match (active.settings.locked, active.settings.visible) {
+        (true, _) => Err(failed(SceneError::Locked(active.id))),
+        (false, false) => Err(failed(SceneError::Hidden(active.id))),
+        (false, true) => Ok(()),
+    }
+}
 
 /// Measures the active object on this thread and has the loop mask it.
 pub(super) fn measured(

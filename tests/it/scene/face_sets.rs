@@ -221,9 +221,15 @@ fn what_is_thin_or_sheltered_is_masked_by_request_taken_back_and_replayed() {
     let thin = || run.refused("mask-measured", json!({ "by": { "thin": 2.0 } }));
     run.ask("scene.show", json!({ "id": id, "visible": false }));
     assert!(thin().contains("is hidden"));
+    run.objects();
+    let fill = || run.refused("mask", json!({ "action": "fill" }));
+    let all = || run.refused("mask-region", json!({ "region": { "box": [0, 0, 1, 1] } }));
+    assert!(fill().contains("is hidden") && all().contains("is hidden"));
     run.ask("scene.show", json!({ "id": id, "visible": true }));
     run.ask("scene.lock", json!({ "id": id, "locked": true }));
     assert!(thin().contains("locked"));
+    run.objects();
+    assert!(fill().contains("locked") && all().contains("locked"));
     let hash = run.end();
     let opened = session::open(&session).expect("a session");
     let replayed = session::replay::replay(&opened, None, Workers::new(3), &Job::default());
