@@ -1,4 +1,4 @@
-//! What is asked of the triangles of a part of an object; [`crate::remesh_work`] does it.
+//! What is asked of the triangles of a part of an object; `remesh_work` does it.
 
 use serde::{Deserialize, Serialize};
 
