@@ -39,8 +39,12 @@ pub fn list(
     now: impl Into<WidgetText>,
     all: impl FnOnce(&mut Ui),
 ) -> Response {
-    let gap = ui.spacing().item_spacing.x;
-    if LIST + gap + width(ui, name) <= ui.available_width() {
+    let (now, spacing) = (now.into(), ui.spacing());
+    let gap = spacing.item_spacing.x;
+    // A list grows with what is chosen, and would press its name into two lines.
+    let frame = 2.0 * spacing.button_padding.x + spacing.icon_spacing + spacing.icon_width;
+    let list = LIST.max(width(ui, now.text()) + frame);
+    if list + gap + width(ui, name) <= ui.available_width() {
         let list = ComboBox::from_label(name).selected_text(now).width(LIST).truncate();
         return list.show_ui(ui, all).response;
     }
