@@ -18,8 +18,10 @@ use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
 
 /// How far from the usual length of edges the wanted one may be, as a factor.
 const EDGE_RANGE: f32 = 16.0;
-/// Triangles that it may come to, at most.
+/// Triangles that an object may come to, at most.
 const MOST_TRIANGLES: f32 = 1e8;
+/// Triangles that may be made of a whole object, at most: strokes wait meanwhile, half a minute.
+const MOST_NEW: f32 = 8e6;
 /// Counted work of a tick, in the units of dynamic topology: some three milliseconds on one core.
 /// Strokes wait, so it is more than they leave.
 const TICK_BUDGET: usize = 12_000;
@@ -84,7 +86,8 @@ impl RemeshWork {
             return Err(SceneError::Edge);
         }
         let finer = (usual / edge) * (usual / edge);
-        if clay.triangle_count() as f32 * finer > MOST_TRIANGLES {
+        let (now, then) = (clay.triangle_count() as f32, clay.triangle_count() as f32 * finer);
+        if then > MOST_TRIANGLES || (seen.is_none() && then - now > MOST_NEW) {
             return Err(SceneError::Fine);
         }
         clay.prepare_topology();

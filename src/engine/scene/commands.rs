@@ -244,7 +244,10 @@ pub enum SceneError {
     #[error("expected an edge between a 16th and 16 times of the object's usual one")]
     Edge,
     /// A wanted length of edges that would make too many triangles.
-    #[error("expected a longer edge: this one would make more than 100 million triangles")]
+    #[error(
+        "expected a longer edge: this one would make more than 8 million new triangles of the whole \
+         object, or give it more than 100 million"
+    )]
     Fine,
     /// Something that is kept by vertex would have to be given up.
     #[error("the object has layers, which are kept by vertex: flatten them first")]

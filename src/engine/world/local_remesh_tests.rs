@@ -153,6 +153,8 @@ fn what_cannot_be_done_is_refused_and_nothing_changes() {
     for edge in [0.0, 0.05, 17.0, f32::NAN, f32::INFINITY, -1.0] {
         assert_eq!(ask(&mut world, remesh(edge, true, None)), Err(SceneError::Edge), "{edge}");
     }
+    // 36,000 vertices, each edge in sixteen, come to 18 million triangles.
+    assert_eq!(ask(&mut world, remesh(1.0 / 16.0, true, None)), Err(SceneError::Fine));
     let region = Some(ViewRegion::Line([Vec2::ZERO; 2]));
     assert_eq!(ask(&mut world, remesh(1.0, true, region)), Err(SceneError::Region));
     assert_eq!(world.hash(), hash);
