@@ -245,8 +245,8 @@ pub enum SceneError {
     Edge,
     /// A wanted length of edges that would make too many triangles.
     #[error(
-        "expected a longer edge: this one would make more than 8 million new triangles of the whole \
-         object, or give it more than 100 million"
+        "expected a longer edge: this one would make more than 8 million new triangles of the \
+         whole object, or give it more than 100 million"
     )]
     Fine,
     /// Something that is kept by vertex would have to be given up.
