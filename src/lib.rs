@@ -31,19 +31,19 @@
 //!    [`sculptd_clay::GarbageSink`].
 //!    Dynamic topology is bounded by counted work, scanning and writing pages included; what does
 //!    not fit is carried over to the next tick. A thread makes its pages in advance. Two ticks may
-//!    be late for it: the one that first takes up a brush that changes topology, which makes room
-//!    by the number of pages, and one with an undo, which finishes what was carried over, some
-//!    twenty milliseconds at most.
-//!    An edit of the whole mask or of face sets, of a region of the view too, goes through pages in
-//!    portions counted by what looking and writing cost, and strokes wait; commands that need the
-//!    surface wait in [`sculptd_daemon::live`] until it is done.
+//!    be late for it: the one that first takes up a brush that changes topology, or first remeshes
+//!    locally, which makes room by the number of pages, and one with an undo, which finishes what
+//!    was carried over, some twenty milliseconds at most.
+//!    An edit of the whole mask, of face sets or of triangles in place, of a region too,
+//!    goes through pages in portions counted by what looking and writing cost, and strokes wait;
+//!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done.
 //!    Four more exceptions: an edit of face sets, and dynamic topology on an object that has some,
 //!    as a stroke that draws them, allocates two bytes a vertex that it writes; the end of a
 //!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface
 //!    while layers are still being summed up finishes them in its tick, and so do a hand's menu and
-//!    commands of a shared sculpture with an edit of a mask or of face sets; and in a shared
-//!    sculpture (feature `network`) ticks allocate, and each replica builds a mesh that a command
-//!    brings on this thread.
+//!    commands of a shared sculpture with such an edit; and in a shared sculpture (feature
+//!    `network`) ticks allocate, and each replica builds a mesh that a command brings on this
+//!    thread.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.

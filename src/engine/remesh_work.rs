@@ -16,9 +16,10 @@ use crate::region_seen::RegionSeen;
 use crate::scene::SceneError;
 use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
 
-/// How far from the usual length of edges the wanted one may be, as a factor.
+/// How far from the usual length of edges the wanted one may be, as a factor: a slip of a digit
+/// would make a hundred times the triangles.
 const EDGE_RANGE: f32 = 16.0;
-/// Triangles that an object may come to, at most.
+/// Triangles that an object may come to, at most: some 5 GB of clay.
 const MOST_TRIANGLES: f32 = 1e8;
 /// Triangles that may be made of a whole object, at most: strokes wait meanwhile, half a minute.
 const MOST_NEW: f32 = 8e6;
@@ -27,6 +28,9 @@ const MOST_NEW: f32 = 8e6;
 const TICK_BUDGET: usize = 12_000;
 /// Vertices that are looked at in the time of one operation.
 const LOOKED: u64 = 10;
+/// What finding out about a vertex costs, as [`RegionSeen::cost`] says it, where a pass takes twice
+/// the time that it counts.
+const COSTLY: u64 = 8;
 /// Pages that one pass looks at together.
 const TOGETHER: usize = 2;
 /// The first time through the pages edges are split down to this power of two times the wanted
@@ -148,9 +152,10 @@ impl RemeshWork {
             // A region goes all the way through: where a place faces decides nothing.
             let holds = |p| seen.is_none_or(|s| s.holds(p, Vec3::ZERO));
             let within = seen.is_some().then_some(&holds as _);
-            let budget = left.min(self.pass_budget);
+            let weight = 1 + (seen.map_or(0, RegionSeen::cost) / COSTLY) as usize;
+            let budget = (left / weight).max(LEAST_TOPOLOGY_BUDGET).min(self.pass_budget);
             let done = clay.adapt_topology_within(&self.balls, within, budget, workers);
-            left = left.saturating_sub(done.work + 1);
+            left = left.saturating_sub(done.work * weight + 1);
             self.changes = self.changes.saturating_add(done.changes() as u32);
             self.changed_in_round |= done.changes() > 0;
             self.passes += 1;

@@ -97,6 +97,7 @@ impl TopologyWork {
             if done.tangled && most > LEAST_TOPOLOGY_BUDGET {
                 most = LEAST_TOPOLOGY_BUDGET;
             } else if !done.unfinished {
+                self.dropped += if done.tangled { (self.balls.len() - first) as u64 } else { 0 };
                 self.balls.truncate(first);
             }
             // With less a pass might get nowhere.

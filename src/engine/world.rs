@@ -5,8 +5,8 @@
 //! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
 //!   samples and commands, same bits, with any number of workers.
 //! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
-//!   topology, whose budget is what dabs leave. Edits of layers, of the whole mask and of face sets
-//!   go through the pages in portions.
+//!   topology, whose budget is what dabs leave. Edits of layers, of the whole mask, of face sets
+//!   and of triangles in place go through the pages in portions.
 
 mod hands;
 mod held;
