@@ -2,7 +2,7 @@
 //! other way round (Shift, or the other end of the pen) it relaxes them, each vertex towards the
 //! middle of its neighbours.
 //!
-//! A vertex goes in its tangent plane by less than a third of its shortest edge over a fifth of the
+//! A vertex goes in its tangent plane by at most two fifths of its shortest edge over a fifth of the
 //! radius, so that no triangle turns over and closer dabs do not take it further, and is put back
 //! upon the triangles that it came from: it never leaves the surface as the dab found it. A border
 //! stays.
@@ -14,7 +14,7 @@ use super::dab::Dab;
 use crate::brush::surface_query::SurfaceQuery;
 
 /// Of the shortest edge about a vertex, the furthest that a dab takes it for which `span` is 1.
-const SAFE: f32 = 0.3;
+const SAFE: f32 = 0.4;
 
 /// One dab of slide relax, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -37,13 +37,16 @@ impl Brush for SlideRelaxBrush {
         let by = match self.by {
             Some(by) => by * dab.strength,
             None => (spot.middle() - spot.p) * dab.evening(dab.strength),
-        } * spot.weight;
+        };
         let mut shortest = f32::INFINITY;
         for k in spot.page.ring(spot.v) {
             shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
         }
         let most = SAFE * dab.span.min(1.0) * shortest.sqrt();
-        let flat = (by - n * by.dot(n)).clamp_length_max(most);
+        // The falloff shapes the way that is left after the bound: were it bounded afterwards, the
+        // whole inside of the brush would go as one, and a rim of the stroke would tell how closely
+        // its dabs lay.
+        let flat = (by - n * by.dot(n)).clamp_length_max(most) * spot.weight;
         VertexChange::by(put_back(spot, flat))
     }
 }

@@ -1,12 +1,16 @@
 //! Trim: cuts off what stands over a plane set a little below the surface, as a knife does:
-//! whatever is deep within the brush comes to lie on the plane at once. The other way round it
+//! whatever the middle of the brush goes over comes to lie on the plane. The other way round it
 //! fills to a plane set over the surface. The surface is that which the stroke found (unless the
 //! stroke accumulates), so a stroke does not dig itself in.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::dab::{Dab, FASTEST, part};
+use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
+
+/// The share of what stands over the plane that goes over a fifth of the radius in the middle of
+/// the brush. A faster knife would keep the lowest of the planes that its dabs happened to have.
+const RATE: f32 = 0.75;
 
 /// One dab of trim, made ready.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +32,7 @@ impl Brush for TrimBrush {
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self {
         TrimBrush {
             plane: on.plane(dab, -dab.sign * dab.extra(0) * dab.strength),
-            pace: dab.pace_of(FASTEST),
+            pace: dab.pace_of(RATE),
         }
     }
 
@@ -38,7 +42,6 @@ impl Brush for TrimBrush {
         if h * dab.sign <= 0.0 {
             return VertexChange::default();
         }
-        // A knife has no soft edge: a third of the falloff is all the fading there is.
-        VertexChange::by(self.plane.normal * (-h * part(self.pace, (spot.weight * 3.0).min(1.0))))
+        VertexChange::by(self.plane.normal * (-h * part(self.pace, spot.weight)))
     }
 }

@@ -373,7 +373,8 @@ fn layer_and_clay_strips_leave_a_flat_top() {
 
 #[test]
 fn neither_the_rate_of_reports_nor_the_spacing_changes_the_surface() {
-    for kind in RAISING.into_iter().chain([BrushKind::Crease, BrushKind::Texture]) {
+    use BrushKind::{Crease, MultiplaneScrape, Texture, Trim};
+    for kind in RAISING.into_iter().chain([Crease, Texture, Trim, MultiplaneScrape]) {
         let trial = Trial { across: 30, ..Trial::new(sculptd::presets().of(kind)) };
         let section = trial.draw().section(1.0);
         let height = section.iter().fold(0.0f32, |h, v| h.max(v.abs()));
@@ -435,12 +436,13 @@ fn what_levels_or_draws_together_does_not_depend_on_the_spacing_either() {
 }
 
 #[test]
-fn sliding_triangles_go_as_far_with_any_spacing() {
-    // Where they go to is off by some hundredths; without a bound over the way it would be by more
-    // than the whole.
-    let brush = sculptd::presets().of(BrushKind::SlideRelax);
-    let off = off_by_spacing(brush, Vec2::new(19.0, 23.0));
-    assert!(off < 0.06, "{off}");
+fn a_knife_cuts_and_triangles_slide_as_far_with_any_spacing() {
+    for kind in [BrushKind::Trim, BrushKind::SlideRelax] {
+        for waves in [[19.0, 23.0], [9.0, 8.0], [3.0, 4.0], [12.0, 1.0]] {
+            let off = off_by_spacing(sculptd::presets().of(kind), Vec2::from(waves));
+            assert!(off < 0.02, "{kind} on {waves:?}: {off}");
+        }
+    }
 }
 
 #[test]
@@ -451,10 +453,11 @@ fn nor_does_what_raises_on_relief() {
     }
     // Where relief bends more sharply than the brush is wide, coordinates along the surface fold,
     // and a pattern laid by them with it.
-    let alpha = Alpha::Waves;
-    let brush = BrushSettings { alpha, ..sculptd::presets().of(BrushKind::Texture) };
-    let off = off_by_spacing(brush, Vec2::new(9.0, 8.0));
-    assert!(off < 0.02, "texture: {off}");
+    for alpha in [Alpha::Waves, Alpha::Scales, Alpha::Studs, Alpha::Rope, Alpha::Cracks] {
+        let brush = BrushSettings { alpha, ..sculptd::presets().of(BrushKind::Texture) };
+        let off = off_by_spacing(brush, Vec2::new(9.0, 8.0));
+        assert!(off < 0.02, "texture of {alpha:?}: {off}");
+    }
 }
 
 #[test]
