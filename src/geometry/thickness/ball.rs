@@ -22,6 +22,9 @@ const SAME_SIDE: f32 = 0.94;
 const CORNER: f32 = -0.766;
 /// The ball has settled when no point is deeper inside it than this share of its radius.
 const SETTLED: f32 = 1e-5;
+/// The error of the test that leaves triangles out, in units of the largest distance of a corner.
+const SLACK: f32 = 1.5e-6;
+/// Steps towards one triangle: near a sharp edge each takes the ball only a part of the way.
 const STEPS: usize = 40;
 
 /// The settled ball.
@@ -50,28 +53,12 @@ impl Caster<'_> {
                 (hi - lo).length()
             }
         };
-        for _ in 0..STEPS {
-            let centre = site.point - site.away * r;
-            let limit = r * (1.0 - SETTLED);
-            let accept = |t: u32| {
-                self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE
-                    && !site.owns(t)
-            };
-            let query = BallSearch { tree: self.tree, centre, limit, accept };
-            let Some(q) = wide::dispatch(self.tree.scalar(), query) else { break };
-            let to = site.point.as_dvec3() - q.as_dvec3();
-            let along = site.away.as_dvec3().dot(to);
-            if along <= 0.0 {
-                // Rounding only: a point above the tangent plane cannot be inside the ball.
-                break;
-            }
-            let next = (to.length_squared() / (2.0 * along)) as f32;
-            touch = Some(q);
-            if next >= r {
-                break;
-            }
-            r = next;
-        }
+        let accept = |t: u32| {
+            self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE && !site.owns(t)
+        };
+        let search =
+            BallSearch { tree: self.tree, point: site.point, away: site.away, r, touch, accept };
+        (r, touch) = wide::dispatch(self.tree.scalar(), search);
         let q = touch?;
         let centre = site.point - site.away * r;
         let cos = (q - centre).normalize_or_zero().dot(site.away);
@@ -81,26 +68,29 @@ impl Caster<'_> {
     }
 }
 
-/// The nearest surface point within `limit` of `centre` on a triangle that `accept` takes.
+/// The largest ball that touches the surface at `point`, is at most `r` large, and into which no
+/// triangle reaches that `accept` takes. One walk over the tree is enough: the ball only ever
+/// shrinks into itself, so what was outside of it stays outside.
 struct BallSearch<'a, A> {
     tree: &'a Bvh8,
-    centre: Vec3,
-    limit: f32,
+    point: Vec3,
+    away: Vec3,
+    r: f32,
+    /// What the ball of radius `r` touches besides `point`.
+    touch: Option<Vec3>,
     accept: A,
 }
 
 impl<A: Fn(u32) -> bool> WideWork for BallSearch<'_, A> {
-    type Output = Option<Vec3>;
+    type Output = (f32, Option<Vec3>);
 
     #[inline(always)]
-    fn run<W: Wide>(self, _: W) -> Option<Vec3> {
+    fn run<W: Wide>(self, wide: W) -> (f32, Option<Vec3>) {
         let (nodes, packs) = (self.tree.nodes(), self.tree.packs());
+        let mut ball = Shrinking::new(&self);
         if nodes.is_empty() {
-            return None;
+            return (ball.r, ball.touch);
         }
-        let c = self.centre.to_array();
-        let mut bound = self.limit * self.limit;
-        let mut best = None::<(u32, Vec3)>;
         let mut inline = [(0u32, 0f32); 96];
         let mut heap = Vec::new();
         let need = self.tree.stack_need();
@@ -113,52 +103,102 @@ impl<A: Fn(u32) -> bool> WideWork for BallSearch<'_, A> {
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let (at, near) = stack[top];
-            if near > bound {
-                continue;
-            }
+            let at = stack[top].0;
             if at & LEAF != 0 {
                 let pack = &packs[(at & !LEAF) as usize];
+                // Of the ball as it is now: a lane before may shrink it, and so move its centre.
+                let bound = ball.bound;
+                let (mut low, mut high) = ([0.0f32; 4], [0.0f32; 4]);
+                wide.near_triangles(ball.centre.to_array(), pack, SLACK, &mut low, &mut high);
                 for lane in 0..4 {
                     let id = pack.id[lane];
                     if id == NO_TRIANGLE {
                         break;
                     }
-                    let q = nearest_on(pack, lane, self.centre);
-                    let d = (q - self.centre).length_squared();
-                    let nearer = d < bound || (d == bound && best.is_some_and(|b| id < b.0));
-                    if nearer && (self.accept)(id) {
-                        bound = d;
-                        best = Some((id, q));
+                    if low[lane] * low[lane] >= bound || !(self.accept)(id) {
+                        continue;
+                    }
+                    let q = nearest_on(pack, lane, ball.centre);
+                    if ball.holds(q) {
+                        ball.shrink(q, |centre| nearest_on(pack, lane, centre));
                     }
                 }
                 continue;
             }
             let node = &nodes[at as usize];
-            let mut d = [0f32; 8];
-            for i in 0..8 {
-                for axis in 0..3 {
-                    let out = (node.planes[axis][i] - c[axis])
-                        .max(c[axis] - node.planes[3 + axis][i])
-                        .max(0.0);
-                    d[i] += out * out;
-                }
-            }
+            let mut near = [0.0f32; 8];
+            let mut inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
             // Pushed so that the nearest comes off first.
             let base = top;
-            for i in 0..8 {
-                if d[i] <= bound {
-                    let mut j = top;
-                    while j > base && stack[j - 1].1 < d[i] {
-                        stack[j] = stack[j - 1];
-                        j -= 1;
-                    }
-                    stack[j] = (node.child[i], d[i]);
-                    top += 1;
+            while inside != 0 {
+                let i = inside.trailing_zeros() as usize & 7;
+                inside &= inside - 1;
+                let mut j = top;
+                while j > base && stack[j - 1].1 < near[i] {
+                    stack[j] = stack[j - 1];
+                    j -= 1;
                 }
+                stack[j] = (node.child[i], near[i]);
+                top += 1;
             }
         }
-        best.map(|b| b.1)
+        (ball.r, ball.touch)
+    }
+}
+
+/// A ball that touches the surface at a site.
+struct Shrinking {
+    point: Vec3,
+    away: Vec3,
+    r: f32,
+    centre: Vec3,
+    /// The square of the radius within which a point is inside.
+    bound: f32,
+    touch: Option<Vec3>,
+}
+
+impl Shrinking {
+    #[inline(always)]
+    fn new<A>(search: &BallSearch<'_, A>) -> Shrinking {
+        let BallSearch { point, away, r, touch, .. } = *search;
+        let mut ball = Shrinking { point, away, r, centre: point, bound: 0.0, touch };
+        ball.resize(r);
+        ball
+    }
+
+    #[inline(always)]
+    fn resize(&mut self, r: f32) {
+        let within = r * (1.0 - SETTLED);
+        (self.r, self.centre, self.bound) = (r, self.point - self.away * r, within * within);
+    }
+
+    #[inline(always)]
+    fn holds(&self, q: Vec3) -> bool {
+        (q - self.centre).length_squared() < self.bound
+    }
+
+    /// Shrinks until no point of the triangle of `q`, whose nearest point to a place is asked of
+    /// `nearest`, is inside.
+    #[inline(always)]
+    fn shrink(&mut self, mut q: Vec3, nearest: impl Fn(Vec3) -> Vec3) {
+        for _ in 0..STEPS {
+            let to = self.point.as_dvec3() - q.as_dvec3();
+            let along = self.away.as_dvec3().dot(to);
+            if along <= 0.0 {
+                // Rounding only: a point above the tangent plane cannot be inside the ball.
+                return;
+            }
+            let next = (to.length_squared() / (2.0 * along)) as f32;
+            self.touch = Some(q);
+            if next >= self.r {
+                return;
+            }
+            self.resize(next);
+            q = nearest(self.centre);
+            if !self.holds(q) {
+                return;
+            }
+        }
     }
 }
 
