@@ -253,7 +253,7 @@ impl LiveMap {
             return (f32::NAN, (point, point));
         }
         let own = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
-        let site = Site { point, away, own };
+        let site = Site { point, away, own, clear: f32::INFINITY };
         let (x, y) = frame(away);
         let (mut lo, mut hi) = (point, point);
         let mut found = Vec::with_capacity(self.cone.dirs.len());

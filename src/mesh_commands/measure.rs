@@ -82,21 +82,26 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     let (part, notes) = load(&args.mesh, &args.how, &job)?;
     let clock = Clock::monotonic();
     let file = args.mesh.display().to_string();
-    let checked =
-        check(&file, &part, &args.how.settings(), ThicknessLimits::default(), &job, || {
-            clock.now_us() as f64 * 1e-6
-        })
-        .map_err(|e| Fail::Usage(e.to_string()))?;
-    let m = measures(&part.mesh);
+    let checked = check(
+        &file,
+        &part.mesh,
+        part.walls.as_ref(),
+        &args.how.settings(),
+        ThicknessLimits::default(),
+        &job,
+        || clock.now_us() as f64 * 1e-6,
+    )
+    .map_err(|e| Fail::Usage(e.to_string()))?;
+    let m = measures(part.whole());
     let along =
-        |d: Vec3| projected_area(&part.mesh, d, &job).map_err(|e| Fail::Input(e.to_string()));
+        |d: Vec3| projected_area(part.whole(), d, &job).map_err(|e| Fail::Input(e.to_string()));
     let s = checked.answer.summary;
     let mut warnings = notes;
     warnings.extend(checked.answer.warnings);
     let faults = checked.thickness.surface.faults;
     let closed = faults.boundary_edges == 0 && faults.crowded_edges == 0;
     let overlapping =
-        closed && overlaps(&part.mesh, &job).map_err(|e| Fail::Input(e.to_string()))?;
+        closed && overlaps(part.whole(), &job).map_err(|e| Fail::Input(e.to_string()))?;
     if overlapping {
         warnings.push(
             "shells overlap: volume, area and centroid count the common part once for each; \
@@ -111,7 +116,7 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
         volume: closed.then_some(m.volume),
         area: m.area,
         dimensions: m.dimensions,
-        centroid: m.centroid.filter(|_| closed).map(|c| (c + part.centre).to_array()),
+        centroid: m.centroid.filter(|_| closed).map(|c| (c + part.mesh.centre).to_array()),
         projected_area: Projected { x: along(Vec3::X)?, y: along(Vec3::Y)?, z: along(Vec3::Z)? },
         directions: args
             .direction
@@ -127,8 +132,8 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
             valid: s.valid,
             error_bound: s.error_bound,
         },
-        vertices: part.counts[0],
-        triangles: part.counts[1],
+        vertices: part.mesh.counts[0],
+        triangles: part.mesh.counts[1],
         closed,
         overlapping,
         warnings,

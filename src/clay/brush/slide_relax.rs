@@ -2,10 +2,10 @@
 //! other way round (Shift, or the other end of the pen) it relaxes them, each vertex towards the
 //! middle of its neighbours.
 //!
-//! A vertex goes in its tangent plane by at most two fifths of its shortest edge over a fifth of the
-//! radius, so that no triangle turns over and closer dabs do not take it further, and is put back
-//! upon the triangles that it came from: it never leaves the surface as the dab found it. A border
-//! stays.
+//! A vertex goes in its tangent plane by at most two fifths of its shortest edge over a fifth of
+//! the radius, so that no triangle turns over and closer dabs do not take it further, and is put
+//! back upon the triangles that it came from: it never leaves the surface as the dab found it. A
+//! border stays.
 
 use glam::Vec3;
 

@@ -53,11 +53,14 @@ impl Caster<'_> {
                 (hi - lo).length()
             }
         };
-        let accept = |t: u32| {
-            self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE && !site.owns(t)
+        // From how far on a triangle counts; none: it does not.
+        let from = |t: u32| {
+            let other = self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE;
+            let from = if site.owns(t) { site.clear } else { 0.0 };
+            (other && from < f32::INFINITY).then_some(from)
         };
         let search =
-            BallSearch { tree: self.tree, point: site.point, away: site.away, r, touch, accept };
+            BallSearch { tree: self.tree, point: site.point, away: site.away, r, touch, from };
         (r, touch) = wide::dispatch(self.tree.scalar(), search);
         let q = touch?;
         let centre = site.point - site.away * r;
@@ -69,19 +72,19 @@ impl Caster<'_> {
 }
 
 /// The largest ball that touches the surface at `point`, is at most `r` large, and into which no
-/// triangle reaches that `accept` takes. One walk over the tree is enough: the ball only ever
-/// shrinks into itself, so what was outside of it stays outside.
-struct BallSearch<'a, A> {
+/// triangle reaches, from that distance from `point` on which `from` tells. One walk over the tree
+/// is enough: the ball only ever shrinks into itself, so what was outside of it stays outside.
+struct BallSearch<'a, F> {
     tree: &'a Bvh8,
     point: Vec3,
     away: Vec3,
     r: f32,
     /// What the ball of radius `r` touches besides `point`.
     touch: Option<Vec3>,
-    accept: A,
+    from: F,
 }
 
-impl<A: Fn(u32) -> bool> WideWork for BallSearch<'_, A> {
+impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
     type Output = (f32, Option<Vec3>);
 
     #[inline(always)]
@@ -115,12 +118,20 @@ impl<A: Fn(u32) -> bool> WideWork for BallSearch<'_, A> {
                     if id == NO_TRIANGLE {
                         break;
                     }
-                    if low[lane] * low[lane] >= bound || !(self.accept)(id) {
+                    if low[lane] * low[lane] >= bound {
                         continue;
                     }
-                    let q = nearest_on(pack, lane, ball.centre);
-                    if ball.holds(q) {
-                        ball.shrink(q, |centre| nearest_on(pack, lane, centre));
+                    if let Some(from) = (self.from)(id) {
+                        ball.shrink(|centre| {
+                            let q = nearest_on(pack, lane, centre);
+                            let way = q - self.point;
+                            let length = way.length();
+                            if length < from && length > 0.0 {
+                                self.point + way * (from / length)
+                            } else {
+                                q
+                            }
+                        });
                     }
                 }
                 continue;
@@ -159,7 +170,7 @@ struct Shrinking {
 
 impl Shrinking {
     #[inline(always)]
-    fn new<A>(search: &BallSearch<'_, A>) -> Shrinking {
+    fn new<F>(search: &BallSearch<'_, F>) -> Shrinking {
         let BallSearch { point, away, r, touch, .. } = *search;
         let mut ball = Shrinking { point, away, r, centre: point, bound: 0.0, touch };
         ball.resize(r);
@@ -177,11 +188,15 @@ impl Shrinking {
         (q - self.centre).length_squared() < self.bound
     }
 
-    /// Shrinks until no point of the triangle of `q`, whose nearest point to a place is asked of
-    /// `nearest`, is inside.
+    /// Shrinks until no point of a triangle, whose nearest point to a place is asked of `nearest`,
+    /// is inside.
     #[inline(always)]
-    fn shrink(&mut self, mut q: Vec3, nearest: impl Fn(Vec3) -> Vec3) {
+    fn shrink(&mut self, nearest: impl Fn(Vec3) -> Vec3) {
         for _ in 0..STEPS {
+            let q = nearest(self.centre);
+            if !self.holds(q) {
+                return;
+            }
             let to = self.point.as_dvec3() - q.as_dvec3();
             let along = self.away.as_dvec3().dot(to);
             if along <= 0.0 {
@@ -194,10 +209,6 @@ impl Shrinking {
                 return;
             }
             self.resize(next);
-            q = nearest(self.centre);
-            if !self.holds(q) {
-                return;
-            }
         }
     }
 }

@@ -9,7 +9,8 @@ use super::summary::ThicknessSummary;
 use super::warnings::warnings;
 use super::worst::ThinRegion;
 use super::{
-    Thickness, ThicknessError, ThicknessMethod, ThicknessSettings, WeldedSurface, measure,
+    Thickness, ThicknessError, ThicknessMethod, ThicknessSettings, Walls, WeldedSurface,
+    measure_at_places,
 };
 use crate::job::Job;
 use crate::measure::measures;
@@ -23,10 +24,10 @@ const PLACES: usize = 20_000;
 /// More than this many are too many: long thin triangles take several times what their area says.
 const MOST_PLACES: usize = 50_000;
 
-/// Puts places to measure on walls that have none. `spacing` is the longest edge that stays,
-/// millimetres; without it, a part of which more than half of the vertices lie on sharp edges (by
-/// `crease`, degrees) gets about 20,000 of them, other parts none.
-pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) {
+/// Puts places to measure on walls that have none, and gives the walls as they were. `spacing` is
+/// the longest edge that stays, millimetres; without it, a part of which more than half of the
+/// vertices lie on sharp edges (by `crease`, degrees) gets about 20,000 of them, other parts none.
+pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) -> Option<Walls> {
     let told = spacing.is_some();
     let spacing = spacing.or_else(|| {
         if mesh.triangles.len() > PLACES {
@@ -37,16 +38,17 @@ pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) {
         let area = measures(mesh).area as f32;
         (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
     });
-    let Some(mut spacing) = spacing.filter(|s| *s > 0.0 && s.is_finite()) else { return };
+    let mut spacing = spacing.filter(|s| *s > 0.0 && s.is_finite())?;
     let mut fine = refine(mesh, spacing);
     for _ in 0..4 {
-        if told || fine.positions.len() <= MOST_PLACES {
+        if told || fine.mesh.positions.len() <= MOST_PLACES {
             break;
         }
-        spacing *= (fine.positions.len() as f32 / (1.5 * PLACES as f32)).sqrt();
+        spacing *= (fine.mesh.positions.len() as f32 / (1.5 * PLACES as f32)).sqrt();
         fine = refine(mesh, spacing);
     }
-    *mesh = fine;
+    let whole = std::mem::replace(mesh, fine.mesh);
+    Some(Walls { mesh: whole, of: fine.of })
 }
 
 /// Limits, millimetres. A value fails when it is strictly below, or strictly above.
@@ -169,17 +171,19 @@ pub struct CheckedPart {
     pub spots: Vec<ThinRegion>,
 }
 
-/// Measures `part` and judges it. `seconds` reads a clock that the caller started.
+/// Measures `part`, whose walls are `walls` where [`add_places`] gave them, and judges it.
+/// `seconds` reads a clock that the caller started.
 pub fn check(
     file: &str,
     part: &CentredMesh,
+    walls: Option<&Walls>,
     settings: &ThicknessSettings,
     limits: ThicknessLimits,
     job: &Job,
     seconds: impl Fn() -> f64,
 ) -> Result<CheckedPart, ThicknessError> {
     let began = seconds();
-    let thickness = measure(&part.mesh, settings, job)?;
+    let thickness = measure_at_places(&part.mesh, walls, settings, job)?;
     let took = seconds() - began;
     let summary = thickness.summary();
     let sizes = measures(&part.mesh);

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::ray::{Caster, Site};
+use super::walls::OwnWalls;
 use super::{EdgePolicy, Reason, SiteValue, ThicknessMethod, ThicknessSettings, WeldedSurface};
 
 /// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along
@@ -14,6 +15,7 @@ const REACH: f32 = 1.5;
 pub(super) fn apply(
     caster: &Caster<'_>,
     surface: &WeldedSurface,
+    own: &OwnWalls<'_>,
     settings: &ThicknessSettings,
     values: &mut [SiteValue],
 ) {
@@ -29,7 +31,8 @@ pub(super) fn apply(
         EdgePolicy::Sphere => {
             for v in marked {
                 let away = surface.normals[v] * caster.sign;
-                let site = Site { point: surface.positions[v], away, own: surface.around(v) };
+                let (point, clear) = (surface.positions[v], own.clear(v));
+                let site = Site { point, away, own: own.at(v), clear };
                 if let Some(ball) = caster.ball(&site) {
                     values[v] = SiteValue {
                         value: ball.diameter,
@@ -44,7 +47,7 @@ pub(super) fn apply(
             let mut alone = marked;
             spread(surface, values, &mut alone);
             for v in alone {
-                if let Some(value) = under_faces(caster, surface, v) {
+                if let Some(value) = under_faces(caster, surface, own, v) {
                     values[v] = value;
                 }
             }
@@ -127,7 +130,12 @@ fn spread(surface: &WeldedSurface, values: &mut [SiteValue], marked: &mut Vec<us
 
 /// The smallest of the walls under the faces around `v`, each measured along its own normal from a
 /// point one per cent of the way into the face.
-fn under_faces(caster: &Caster<'_>, surface: &WeldedSurface, v: usize) -> Option<SiteValue> {
+fn under_faces(
+    caster: &Caster<'_>,
+    surface: &WeldedSurface,
+    own: &OwnWalls<'_>,
+    v: usize,
+) -> Option<SiteValue> {
     let mut least = f32::INFINITY;
     for &t in surface.around(v) {
         let [a, b, c] = surface.corners(t as usize)?;
@@ -135,7 +143,8 @@ fn under_faces(caster: &Caster<'_>, surface: &WeldedSurface, v: usize) -> Option
         let site = Site {
             point,
             away: surface.face_normals[t as usize] * caster.sign,
-            own: surface.around(v),
+            own: own.at(v),
+            clear: f32::INFINITY,
         };
         let found = caster.hit(&site, -site.away).map(|h| h.t);
         least = least.min(found.unwrap_or(f32::INFINITY));

@@ -24,12 +24,13 @@ pub mod refine;
 pub mod report;
 pub mod summary;
 pub mod surface;
+mod walls;
 pub mod warnings;
 pub mod worst;
 
 use std::borrow::Cow;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::TriMesh;
@@ -40,6 +41,8 @@ pub use cone::{Cone, Outliers, Weights};
 pub use ray::Correction;
 use ray::{Caster, ConeScratch, Site};
 pub use surface::{MeshFaults, WeldedSurface};
+use walls::OwnWalls;
+pub use walls::Walls;
 
 /// How thickness is defined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -243,50 +246,63 @@ pub fn measure(
     settings: &ThicknessSettings,
     job: &Job,
 ) -> Result<Thickness, ThicknessError> {
+    measure_at_places(mesh, None, settings, job)
+}
+
+/// The same where `mesh` is a surface in smaller triangles: rays and balls meet the `walls` that it
+/// was cut from. Walls of another mesh, and such as would only cost more, are left out of account.
+pub fn measure_at_places(
+    mesh: &TriMesh,
+    walls: Option<&Walls>,
+    settings: &ThicknessSettings,
+    job: &Job,
+) -> Result<Thickness, ThicknessError> {
     settings.check()?;
-    if let Some((turned, surface)) = turned(mesh, settings) {
-        let tree = Bvh8::build_for_rays(&turned.mesh, job)?;
-        let mut done = measure_prepared(Cow::Owned(turned.surface), &tree, settings, job)?;
-        done.surface = surface;
-        return Ok(done);
+    let walls = walls.filter(|w| w.serve(mesh));
+    let solid = walls.map_or(mesh, |w| &w.mesh);
+    let of = |m: &TriMesh| WeldedSurface::new(m, settings.crease.to_radians());
+    let measured = |surface: Cow<'_, WeldedSurface>, solid: &TriMesh| {
+        let (tree, whole) =
+            rayon::join(|| Bvh8::build_for_rays(solid, job), || walls.map(|_| of(solid)));
+        let walls = whole.as_ref().zip(walls.map(|w| &w.of[..]));
+        measure_prepared(surface, walls, &tree?, settings, job)
+    };
+    let surface = of(mesh);
+    if let Some(turn) = turn(solid) {
+        let own = of(&turned(mesh, turn));
+        // The same vertices and triangles, though they are rounded anew.
+        if own.weld == surface.weld && own.triangles == surface.triangles {
+            let mut done = measured(Cow::Owned(own), &turned(solid, turn))?;
+            done.surface = surface;
+            return Ok(done);
+        }
     }
-    let (tree, surface) = rayon::join(
-        || Bvh8::build_for_rays(mesh, job),
-        || WeldedSurface::new(mesh, settings.crease.to_radians()),
-    );
-    measure_prepared(Cow::Owned(surface), &tree?, settings, job)
+    measured(Cow::Owned(surface), solid)
 }
 
-/// A mesh in another frame.
-struct TurnedMesh {
-    mesh: TriMesh,
-    surface: WeldedSurface,
-}
-
-/// The mesh in a frame in which the boxes of its triangles are small, where that makes them much
-/// smaller, and its surface as it is. Along long thin triangles that run along no axis every ray
-/// would meet every box.
-fn turned(mesh: &TriMesh, settings: &ThicknessSettings) -> Option<(TurnedMesh, WeldedSurface)> {
+/// The turn into a frame in which the boxes of the mesh's triangles are much smaller, where there
+/// is one. Along long thin triangles that run along no axis every ray would meet every box.
+fn turn(mesh: &TriMesh) -> Option<DMat3> {
     let positions: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
     if mesh.triangles.iter().flatten().any(|&v| v as usize >= positions.len()) {
         return None;
     }
-    let turn = tight_frame(&positions, &mesh.triangles)?;
-    let turned = TriMesh {
-        positions: positions.iter().map(|p| (turn * *p).as_vec3()).collect(),
-        triangles: mesh.triangles.clone(),
-        colours: None,
-    };
-    let of = |m: &TriMesh| WeldedSurface::new(m, settings.crease.to_radians());
-    let (own, surface) = rayon::join(|| of(&turned), || of(mesh));
-    // The same vertices and triangles, though they are rounded anew.
-    let same = own.weld == surface.weld && own.triangles == surface.triangles;
-    same.then_some((TurnedMesh { mesh: turned, surface: own }, surface))
+    tight_frame(&positions, &mesh.triangles)
 }
 
-/// The same with the tree and the surface at hand, for several measures of one mesh.
+fn turned(mesh: &TriMesh, turn: DMat3) -> TriMesh {
+    TriMesh {
+        positions: mesh.positions.iter().map(|p| (turn * p.as_dvec3()).as_vec3()).collect(),
+        triangles: mesh.triangles.clone(),
+        colours: None,
+    }
+}
+
+/// The same with the tree and the surface at hand, for several measures of one mesh. `walls`: the
+/// surface that the tree was built from and [`Walls::of`], where that is not `surface` itself.
 pub fn measure_prepared(
     surface: Cow<'_, WeldedSurface>,
+    walls: Option<(&WeldedSurface, &[u32])>,
     tree: &Bvh8,
     settings: &ThicknessSettings,
     job: &Job,
@@ -295,13 +311,17 @@ pub fn measure_prepared(
     let chord = settings.method == ThicknessMethod::Ray
         && settings.correction == Correction::Chord
         && settings.rays > 1;
-    let corner_normals =
-        if chord { surface.corner_normals(settings.crease.to_radians()) } else { Vec::new() };
+    let whole = walls.map_or(&*surface, |w| w.0);
+    let mut corner_normals =
+        if chord { whole.corner_normals(settings.crease.to_radians()) } else { Vec::new() };
+    if let Some((_, of)) = walls.filter(|_| chord) {
+        walls::flatten_what_was_cut(&mut corner_normals, &whole.face_normals, of);
+    }
     let cone = Cone::new(settings.rays, settings.opening.to_radians(), settings.weights);
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
     let caster = Caster {
         tree,
-        face_normals: &surface.face_normals,
+        face_normals: &whole.face_normals,
         corner_normals: &corner_normals,
         sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
         cone: &cone,
@@ -310,10 +330,13 @@ pub fn measure_prepared(
         // normals.
         correction: if settings.rays == 1 { Correction::None } else { settings.correction },
     };
-    let order = spatial_order(&surface, tree);
+    let own = OwnWalls::new(&surface, walls.map(|w| w.1));
+    let faces = own.in_order(tree);
+    let order = vertices_in_order(&surface, &faces);
     job.progress(0.2);
     let at_vertex = |v: usize, scratch: &mut ConeScratch| -> SiteValue {
-        let own = surface.around(v);
+        let clear = own.clear(v);
+        let own = own.at(v);
         if own.is_empty() {
             return SiteValue::missing(Reason::NoFace);
         }
@@ -321,21 +344,22 @@ pub fn measure_prepared(
         if n == Vec3::ZERO {
             return SiteValue::missing(Reason::NoNormal);
         }
-        let site = Site { point: surface.positions[v], away: n * caster.sign, own };
+        let site = Site { point: surface.positions[v], away: n * caster.sign, own, clear };
         one(&caster, &site, settings, surface.sharp[v], scratch)
     };
     let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
-    edges::apply(&caster, &surface, settings, &mut welded);
+    edges::apply(&caster, &surface, &own, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
     let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
         let Some([a, b, c]) = surface.corners(t) else {
             return SiteValue::missing(Reason::NoFace);
         };
-        let own = [t as u32];
+        let own = [own.of(t as u32)];
         let site = Site {
             point: (a + b + c) / 3.0,
             away: surface.face_normals[t] * caster.sign,
             own: &own,
+            clear: f32::INFINITY,
         };
         one(&caster, &site, settings, false, scratch)
     };
@@ -358,16 +382,7 @@ pub fn measure_prepared(
         area_values[t as usize] = centroids[t as usize].value;
     }
     if settings.at == MeasuredPlaces::VerticesAndFaces {
-        let mut seen = vec![false; surface.triangles.len()];
-        let order: Vec<u32> = tree
-            .packs()
-            .iter()
-            .flat_map(|p| p.id)
-            .filter(|&t| {
-                seen.get_mut(t as usize).is_some_and(|seen| !std::mem::replace(seen, true))
-            })
-            .collect();
-        let faces = scattered(&order, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
+        let faces = scattered(&faces, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
         face_values = faces.iter().map(|v| v.value).collect();
         face_reasons = faces.iter().map(|v| v.reason).collect();
     }
@@ -458,17 +473,13 @@ fn scattered(
     Ok(out)
 }
 
-/// Welded vertices in the order of the tree's leaves: neighbours in space are neighbours in time,
-/// and the caches stay warm.
-fn spatial_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
+/// The welded vertices in the order of their faces.
+fn vertices_in_order(surface: &WeldedSurface, faces: &[u32]) -> Vec<u32> {
     let mut seen = vec![false; surface.positions.len()];
     let mut order = Vec::with_capacity(seen.len());
-    for &t in tree.packs().iter().flat_map(|p| &p.id) {
-        let Some(corners) = surface.triangles.get(t as usize) else { continue };
-        for &v in corners {
-            if let Some(s) = seen.get_mut(v as usize)
-                && !std::mem::replace(s, true)
-            {
+    for &t in faces {
+        for v in surface.triangles[t as usize] {
+            if !std::mem::replace(&mut seen[v as usize], true) {
                 order.push(v);
             }
         }
@@ -493,8 +504,7 @@ mod tests {
             *p = (turn * p.as_dvec3()).as_vec3();
         }
         let settings = ThicknessSettings { rays: 1, ..ThicknessSettings::default() };
-        assert!(turned(&rod, &settings).is_none());
-        assert!(turned(&slanted, &settings).is_some());
+        assert!(super::turn(&rod).is_none() && super::turn(&slanted).is_some());
         let of = |m: &TriMesh| measure(m, &settings, &job).expect("measured");
         let (straight, slanted) = (of(&rod), of(&slanted));
         for (v, (a, b)) in straight.values.iter().zip(&slanted.values).enumerate() {

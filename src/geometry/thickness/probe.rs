@@ -98,7 +98,7 @@ pub fn probe(
         correction: if settings.rays == 1 { Correction::None } else { settings.correction },
     };
     let away = normal.normalize() * caster.sign;
-    let site = Site { point: nearest.point.as_vec3(), away, own: &own };
+    let site = Site { point: nearest.point.as_vec3(), away, own: &own, clear: f32::INFINITY };
     let by_rays = match settings.method {
         ThicknessMethod::Ray => {
             caster.measure(&site, &mut ConeScratch::default()).map(|(f, _)| (f.value, f.error))

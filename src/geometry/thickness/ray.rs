@@ -40,9 +40,11 @@ pub struct Site<'a> {
     pub point: Vec3,
     /// Away from what is measured, of unit length.
     pub away: Vec3,
-    /// Triangles that the point lies on.
-    /// Rising.
+    /// Triangles that the point lies on, rising.
     pub own: &'a [u32],
+    /// How far its own triangles are left out of account by balls, mesh units; infinity: all the
+    /// way.
+    pub clear: f32,
 }
 
 impl Site<'_> {

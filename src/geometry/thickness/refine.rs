@@ -20,17 +20,27 @@ const SLIVER: f32 = 0.1;
 const LOW: f32 = 0.01;
 const ROUNDINGS: f32 = 64.0;
 
+/// A surface in smaller triangles.
+#[derive(Debug, Clone)]
+pub struct Refined {
+    /// The surface. The vertices that it had before come first.
+    pub mesh: TriMesh,
+    /// Of each of its triangles, the triangle that it was cut from.
+    pub of: Vec<u32>,
+}
+
 /// The same surface with every triangle that is longer than `spacing` halved across its longest
 /// edge that may be cut, until none is (slivers excepted, see `SLIVER` and `LOW`) or two million
 /// are reached. The mesh's own vertices keep their indices; both triangles of an edge are cut at
 /// the same point, so a closed mesh stays closed.
-pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
+pub fn refine(mesh: &TriMesh, spacing: f32) -> Refined {
     let mut out = TriMesh { colours: None, ..mesh.clone() };
+    let mut of: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let usable = |t: &[u32; 3]| {
         t.iter().all(|&v| mesh.positions.get(v as usize).is_some_and(|p| p.is_finite()))
     };
     if !(spacing > 0.0 && out.triangles.iter().all(usable)) {
-        return out;
+        return Refined { mesh: out, of };
     }
     let reach = mesh.positions.iter().fold(0.0f32, |r, p| r.max(p.abs().max_element()));
     let least = (LOW * spacing).max(ROUNDINGS * f32::EPSILON * reach);
@@ -57,17 +67,20 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> TriMesh {
             }
         }
         if cut.is_empty() || out.triangles.len() + 2 * cut.len() > MOST {
-            return out;
+            return Refined { mesh: out, of };
         }
         let mut middles = vec![glam::Vec3::ZERO; cut.len()];
         for (&(a, b), &m) in &cut {
             middles[m as usize - out.positions.len()] =
                 (out.positions[a as usize] + out.positions[b as usize]) * 0.5;
         }
-        for &[a, b, c] in &out.triangles {
+        let mut next_of = Vec::with_capacity(of.len());
+        for (&[a, b, c], &whole) in out.triangles.iter().zip(&of) {
             let mid = |x: u32, y: u32| cut.get(&(x.min(y), x.max(y))).copied();
             split([a, b, c], [mid(a, b), mid(b, c), mid(c, a)], &mut next);
+            next_of.resize(next.len(), whole);
         }
+        of = next_of;
         out.positions.extend(middles);
         out.triangles = next;
     }
@@ -118,7 +131,7 @@ mod tests {
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
             colours: None,
         };
-        let fine = refine(&mesh, 0.5);
+        let Refined { mesh: fine, of } = refine(&mesh, 0.5);
         let (a, b) = (measures(&mesh), measures(&fine));
         assert!((a.volume / b.volume - 1.0).abs() < 1e-6 && (a.area / b.area - 1.0).abs() < 1e-6);
         let s = super::super::WeldedSurface::new(&fine, 0.7);
@@ -126,8 +139,12 @@ mod tests {
             (s.faults.boundary_edges, s.faults.crowded_edges, s.faults.inverted_edges),
             (0, 0, 0)
         );
+        assert_eq!(of.len(), fine.triangles.len());
         for t in 0..fine.triangles.len() {
             let [a, b, c] = fine.corners(t);
+            let [p, q, r] = mesh.corners(of[t] as usize);
+            let normal = (q - p).cross(r - p).normalize();
+            assert!([a, b, c].iter().all(|x| (*x - p).dot(normal).abs() < 1e-5), "{t}");
             let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
             assert!(
                 longest <= 0.5 || (b - a).cross(c - a).length() * 0.5 <= 0.25 * SLIVER * 1.0001,
@@ -153,7 +170,7 @@ mod tests {
         triangles.extend([[2, 3, top], [2, 0, 3], [0, 2, 1]]);
         triangles.retain(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
         let mesh = TriMesh { positions, triangles, colours: None };
-        let fine = refine(&mesh, 2.0);
+        let fine = refine(&mesh, 2.0).mesh;
         // About 51,000 square millimetres: ten triangles for each square of the spacing.
         assert!(fine.triangles.len() < 128_000, "{}", fine.triangles.len());
         for t in 0..fine.triangles.len() {

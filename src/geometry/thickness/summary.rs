@@ -307,7 +307,7 @@ mod tests {
         let slab = cuboid(-half, half).triangulate().0;
         // Two faces of 100 by 100, 3 thick; four rims of 100 by 3, 100 thick.
         let mean = (20_000.0 * 3.0 + 1_200.0 * 100.0) / 21_200.0;
-        for mesh in [slab.clone(), refine(&slab, 12.0), refine(&slab, 5.0)] {
+        for mesh in [slab.clone(), refine(&slab, 12.0).mesh, refine(&slab, 5.0).mesh] {
             let s = measure(&mesh, &ThicknessSettings::default(), &Job::default())
                 .expect("measured")
                 .summary();

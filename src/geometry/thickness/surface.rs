@@ -280,13 +280,16 @@ impl WeldedSurface {
                 return [own; 3];
             }
             self.triangles[t].map(|v| {
-                if !self.sharp[v as usize] {
+                // Not only at sharp edges: about the tip of a cone no edge is sharp, and yet its
+                // far side is another wall.
+                let beside = |&u: &u32| self.face_normals[u as usize].dot(own) >= turn;
+                if !self.sharp[v as usize] && self.around(v as usize).iter().all(beside) {
                     return self.normals[v as usize];
                 }
                 let mut sum = Vec3::ZERO;
                 for &u in self.around(v as usize) {
                     let n = self.face_normals[u as usize];
-                    if n.dot(own) >= turn {
+                    if beside(&u) {
                         let corners = self.triangles[u as usize];
                         let k = corners.iter().position(|&x| x == v).unwrap_or(0);
                         sum += n * corner_angle(corners.map(|x| self.positions[x as usize]), k);

@@ -10,7 +10,6 @@ use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
-use sculptd_geometry::CentredMesh;
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::picture::{Camera, draw};
@@ -23,8 +22,9 @@ use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
     Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, Thickness, ThicknessMethod,
-    ThicknessSettings, Weights,
+    ThicknessSettings, Walls, Weights,
 };
+use sculptd_geometry::{CentredMesh, TriMesh};
 
 #[derive(Debug, clap::Args)]
 pub struct ThicknessArgs {
@@ -238,15 +238,30 @@ fn named<'a>(name: &str, presets: &'a [Preset]) -> Result<&'a Preset, String> {
         .ok_or_else(|| format!("no preset is called \"{name}\"; there are {known}"))
 }
 
-/// A part read from its file.
-pub fn load(path: &Path, how: &How, job: &Job) -> Result<(CentredMesh, Vec<String>), Fail> {
+/// A part read from its file, with places to measure at.
+#[derive(Debug)]
+pub struct Part {
+    pub mesh: CentredMesh,
+    /// Its walls without those places, where any were put on them.
+    pub walls: Option<Walls>,
+}
+
+impl Part {
+    /// The part in the triangles of its file.
+    pub fn whole(&self) -> &TriMesh {
+        self.walls.as_ref().map_or(&self.mesh.mesh, |w| &w.mesh)
+    }
+}
+
+/// A part, and what to say of its file.
+pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fail> {
     let loaded = read_mesh(path, job)?;
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    let mut part = CentredMesh::new(&loaded.mesh, how.unit.scale());
-    add_places(&mut part.mesh, how.spacing, how.crease);
-    Ok((part, loaded.warnings))
+    let mut mesh = CentredMesh::new(&loaded.mesh, how.unit.scale());
+    let walls = add_places(&mut mesh.mesh, how.spacing, how.crease);
+    Ok((Part { mesh, walls }, loaded.warnings))
 }
 
 /// Three numbers with commas between.
@@ -347,12 +362,19 @@ fn one(
     limits: ThicknessLimits,
     job: &Job,
 ) -> Result<(CentredMesh, CheckedPart), Fail> {
-    let (part, notes) = load(path, &args.how, job)?;
+    let (Part { mesh: part, walls }, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
-    let mut checked =
-        check(&path.display().to_string(), &part, &args.how.settings(), limits, job, seconds)
-            .map_err(|e| Fail::Usage(e.to_string()))?;
+    let mut checked = check(
+        &path.display().to_string(),
+        &part,
+        walls.as_ref(),
+        &args.how.settings(),
+        limits,
+        job,
+        seconds,
+    )
+    .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
     Ok((part, checked))
 }
