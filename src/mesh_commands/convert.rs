@@ -175,15 +175,32 @@ fn file_facts(
 
 /// Writes `mesh` and says so: the end of every command that makes a mesh.
 pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
+    deliver_checked(path, mesh, None, warnings, json)
+}
+
+/// The same; `crossings` as of [`write_checked`].
+fn deliver_checked(
+    path: &Path,
+    mesh: &PolyMesh,
+    crossings: Option<f64>,
+    warnings: Vec<String>,
+    json: bool,
+) -> Outcome {
     if mesh.positions.iter().any(|p| !p.as_vec3().is_finite()) {
         return Err(Fail::Check(
             "the result has coordinates beyond 3.4e38; nothing was written".into(),
         ));
     }
-    let facts = write_checked(path, mesh, None, &Job::default())?;
+    let facts = write_checked(path, mesh, crossings, &Job::default())?;
     let file = path.display().to_string();
     let mut all = warnings;
     all.extend(facts.warnings);
+    if crossings.is_some() && !facts.closed {
+        all.push(format!(
+            "{file} is not closed as it was written: rounded to the format, some triangles have no \
+             extent; PLY, OBJ and OFF hold what was made"
+        ));
+    }
     let written = Written {
         file,
         vertices: facts.vertices,
@@ -225,6 +242,7 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     if args.scale < 0.0 {
         repair::flip(&mut mesh);
     }
+    let mut crossings = None;
     let mut done = |n: usize, what: &str| {
         if n > 0 {
             warnings.push(format!("{n} {what}"));
@@ -250,7 +268,11 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
                 "shells within others that face outwards made one solid with them",
             );
             match boolean::solve(&mesh, &job) {
-                Ok(solved) => mesh = solved,
+                Ok(solved) => {
+                    mesh = solved;
+                    // What the solver knows exactly is rounded to doubles, and may cross itself so.
+                    crossings = Some(0.0);
+                }
                 Err(e) => return Err(Fail::Check(format!("shells overlap and {e}"))),
             }
         }
@@ -258,5 +280,5 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     if args.triangulate {
         mesh = written::triangulated(&mesh);
     }
-    deliver(output, &mesh, warnings, json)
+    deliver_checked(output, &mesh, crossings, warnings, json)
 }
