@@ -66,6 +66,7 @@ pub use solve::solve;
 
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
+use crate::self_intersection;
 
 /// One of the four Boolean operations on two solids A and B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -254,6 +255,7 @@ pub fn compute(
     report.precision = Some(default.precision);
     let wanted = options.tolerance.unwrap_or(default.tolerance).max(floor).max(f64::MIN_POSITIVE);
     let mut why = String::new();
+    let mut tried = None;
     // Where the first tolerance falls between what is and is not in contact, another does not.
     for factor in [1.0, 0.125, 16.0, 1.0 / 64.0] {
         let eps = (wanted * factor).max(floor);
@@ -287,22 +289,56 @@ pub fn compute(
                 }
                 return Ok((solids, report));
             }
-            Err(reason) => {
-                if why.is_empty() {
-                    why = reason;
+            Err(reason) if why.is_empty() => {
+                why = reason;
+                // Operands that cross themselves are hardly ever one tolerance away from a result.
+                if crosses_itself(operands, job)? {
+                    let made = globally(
+                        operands,
+                        volumes,
+                        operations,
+                        options,
+                        floor,
+                        job,
+                        &now,
+                        &mut report,
+                    );
+                    match made {
+                        Ok(solids) => return Ok((solids, told(report, &why, floor))),
+                        Err(BooleanError::Inconsistent(failed)) => tried = Some(failed),
+                        Err(other) => return Err(other),
+                    }
                 }
             }
+            Err(_) => {}
         }
     }
+    if let Some(failed) = tried {
+        return Err(BooleanError::Inconsistent(failed));
+    }
+    let solids = globally(operands, volumes, operations, options, floor, job, &now, &mut report)?;
+    Ok((solids, told(report, &why, floor)))
+}
+
+/// The report on a result of the global engine, which takes the coordinates as they are.
+fn told(mut report: BooleanReport, why: &str, floor: f64) -> BooleanReport {
     report
         .warnings
         .push(format!("no consistent result within the tolerance ({why}): global engine taken"));
-    // The global engine takes the coordinates as they are.
     report.tolerance = floor;
     report.depends_on_tolerance = true;
     report.contact = Contact::default();
-    let solids = globally(operands, volumes, operations, options, floor, job, &now, &mut report)?;
-    Ok((solids, report))
+    report
+}
+
+/// Whether triangles of one operand go through each other.
+fn crosses_itself(operands: [&PolyMesh; 2], job: &Job) -> Result<bool, Cancelled> {
+    for mesh in operands {
+        if !self_intersection::pairs(&mesh.positions, &mesh.triangles().0, job)?.is_empty() {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The largest coordinate.
