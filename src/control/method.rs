@@ -237,7 +237,8 @@ methods! {
     "remesh.quads" RemeshQuads remesh_quads(RemeshQuadsParams) -> RemeshQuadsReply;
     /// Gives triangles one size where the surface was stretched, or what is seen in a region: one
     /// step of undo. What the mask protects, what is hidden and borders stay; face sets, masks and
-    /// colours are kept. An object with layers is refused.
+    /// colours are kept. An object with layers is refused. An `undo` meanwhile takes it back at
+    /// once, and is told as an error.
     "remesh.local" RemeshLocal remesh_local(RemeshLocalParams) -> RemeshLocalReply;
     /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
     /// New crossings are undone where they can be and counted, and the border of the mask stays.

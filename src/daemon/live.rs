@@ -227,14 +227,20 @@ impl Ticking {
             self.trail.send(&now.samples);
             // What needs the surface would finish in this tick what an edit of all of it has left.
             let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
+            let mut begins = false;
             for _ in 0..COMMANDS_PER_TICK {
                 let next = now.held.pop_front().or_else(|| self.inbox.try_recv().ok());
                 let Some(mut queued) = next else { break };
+                // An edit that begins in this tick is there to be taken back in the next one.
+                if edits && !begins && self.world.is_taken_back_by(&queued.command) {
+                    edits = false;
+                }
                 if edits && queued.command.needs_surface() {
                     now.held.push_front(queued);
                     break;
                 }
-                edits |= self.shared.is_none() && queued.command.begins_surface_edit();
+                begins |= self.shared.is_none() && queued.command.begins_surface_edit();
+                edits |= begins;
                 if let Some(shared) = &mut self.shared {
                     if !shared.refuses(&queued) {
                         now.waiting.push_back((queued.result.take(), queued.scene_result.take()));

@@ -190,7 +190,8 @@ impl Command {
     /// Whether it needs or changes the surface of objects, or the list of them: while an edit of
     /// the whole mask or of face sets is under way, it finishes that within its tick. Who feeds a
     /// world that must keep its time lets such commands, and all that follow them, wait until
-    /// [`crate::world::World::is_in_surface_edit`] is false.
+    /// [`crate::world::World::is_in_surface_edit`] is false, but for one by which
+    /// [`crate::world::World::is_taken_back_by`] the edit is taken back.
     pub fn needs_surface(&self) -> bool {
         match self {
             Command::Brush(_)

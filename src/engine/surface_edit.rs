@@ -68,6 +68,11 @@ impl SurfaceWork {
         self.edit.is_some()
     }
 
+    /// Whether it is one that gives triangles another size.
+    pub(crate) fn is_remesh(&self) -> bool {
+        matches!(self.edit, Some(SurfaceEdit::Remesh(_)))
+    }
+
     /// What the edit under way is called in the history.
     pub(crate) fn event(&self) -> SceneEvent {
         match self.edit {

@@ -248,7 +248,7 @@ impl World {
                 }
             }
             // A curve that a pen has laid is newer than the last step.
-            Command::Undo if self.put_away() => {}
+            Command::Undo if self.put_away() || self.take_back_remesh() => {}
             Command::CurveStroke(act) => match act {
                 CurveAction::Apply => self.own_pens().for_each(|s| s.track.apply()),
                 CurveAction::Cancel => {

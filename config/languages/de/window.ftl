@@ -514,6 +514,7 @@ remesh-button = Remesh
 remesh-local-heading = An Ort und Stelle
 remesh-local-edge = Kantenlänge
     .tip = Mal die übliche Kantenlänge des Objekts
+remesh-local-undo = { $keys } nimmt es jederzeit zurück, auch solange es läuft.
 remesh-stretched = Gedehntes verfeinern
     .tip = Teilt zu lange Kanten im ganzen Objekt; Maskiertes und Verborgenes bleibt
 
@@ -989,6 +990,7 @@ task-snapped = Die Flächen liegen aneinander
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
 task-remesh-local = Geänderte Kanten: { $count }
+task-remesh-taken-back = Das neue Netz wurde zurückgenommen, bevor es fertig war.
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %; Durchdringungen: { $crossings }
 task-quads = { $quads } Vierecke und { $triangles } Dreiecke; Durchdringungen: { $crossings }
 task-decimated = Aus { $before } Dreiecken wurden { $now }; neue Durchdringungen: { $crossings }

@@ -514,6 +514,7 @@ remesh-button = Remesh
 remesh-local-heading = Επί τόπου
 remesh-local-edge = Μήκος ακμής
     .tip = Φορές το συνηθισμένο μήκος ακμής του αντικειμένου
+remesh-local-undo = Με { $keys } αναιρείται ανά πάσα στιγμή, ακόμη και όσο εκτελείται.
 remesh-stretched = Λεπτομέρεια όπου τεντώθηκε
     .tip = Χωρίζει τις πολύ μακριές ακμές όλου του αντικειμένου· ό,τι έχει μάσκα ή κρύβεται μένει
 
@@ -989,6 +990,7 @@ task-snapped = Οι έδρες εφάπτονται
 task-trimmed = Περικόπηκε
 task-level = Επίπεδο { $at } από { $all }
 task-remesh-local = Ακμές που άλλαξαν: { $count }
+task-remesh-taken-back = Το νέο πλέγμα αναιρέθηκε πριν ολοκληρωθεί.
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %· τομές: { $crossings }
 task-quads = { $quads } τετράπλευρα και { $triangles } τρίγωνα· τομές: { $crossings }
 task-decimated = { $before } τρίγωνα έγιναν { $now }· νέες τομές: { $crossings }

@@ -516,6 +516,7 @@ remesh-button = Remesh
 remesh-local-heading = In place
 remesh-local-edge = Edge length
     .tip = Times the usual edge length of the object
+remesh-local-undo = { $keys } takes it back at any time, also while it is under way.
 remesh-stretched = Refine what was stretched
     .tip = Splits edges that are too long, in the whole object; what is masked or hidden stays
 
@@ -991,6 +992,7 @@ task-snapped = The faces lie on each other
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remesh-local = Edges changed: { $count }
+task-remesh-taken-back = The remesh was taken back before it was done.
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %; crossings: { $crossings }
 task-quads = { $quads } quads and { $triangles } triangles; crossings: { $crossings }
 task-decimated = { $before } triangles became { $now }; new crossings: { $crossings }

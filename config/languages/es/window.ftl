@@ -514,6 +514,7 @@ remesh-button = Remallar
 remesh-local-heading = En el lugar
 remesh-local-edge = Longitud de arista
     .tip = Veces la longitud de arista habitual del objeto
+remesh-local-undo = { $keys } lo deshace en todo momento, también mientras está en curso.
 remesh-stretched = Refinar lo estirado
     .tip = Divide las aristas demasiado largas de todo el objeto; lo enmascarado u oculto se queda
 
@@ -989,6 +990,7 @@ task-snapped = Las caras están a ras
 task-trimmed = Recortado
 task-level = Nivel { $at } de { $all }
 task-remesh-local = Aristas cambiadas: { $count }
+task-remesh-taken-back = La nueva malla se deshizo antes de terminar.
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %; intersecciones: { $crossings }
 task-quads = { $quads } cuadriláteros y { $triangles } triángulos; intersecciones: { $crossings }
 task-decimated = { $before } triángulos pasaron a { $now }; nuevas intersecciones: { $crossings }

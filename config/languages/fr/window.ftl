@@ -514,6 +514,7 @@ remesh-button = Remailler
 remesh-local-heading = Sur place
 remesh-local-edge = Longueur d’arête
     .tip = Fois la longueur d’arête habituelle de l’objet
+remesh-local-undo = { $keys } l’annule à tout moment, même en cours.
 remesh-stretched = Affiner ce qui est étiré
     .tip = Divise les arêtes trop longues de tout l’objet ; ce qui est masqué ou caché reste
 
@@ -989,6 +990,7 @@ task-snapped = Les faces sont l’une contre l’autre
 task-trimmed = Rogné
 task-level = Niveau { $at } sur { $all }
 task-remesh-local = Arêtes changées : { $count }
+task-remesh-taken-back = Le remaillage a été annulé avant d’être terminé.
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %; intersections : { $crossings }
 task-quads = { $quads } quadrilatères et { $triangles } triangles ; intersections : { $crossings }
 task-decimated = { $before } triangles sont devenus { $now } ; nouvelles intersections : { $crossings }

@@ -514,6 +514,7 @@ remesh-button = Remesh
 remesh-local-heading = Sul posto
 remesh-local-edge = Lunghezza degli spigoli
     .tip = Volte la lunghezza abituale degli spigoli dell’oggetto
+remesh-local-undo = { $keys } lo annulla in ogni momento, anche mentre è in corso.
 remesh-stretched = Affina ciò che è stirato
     .tip = Divide gli spigoli troppo lunghi di tutto l’oggetto; ciò che è mascherato o nascosto resta
 
@@ -989,6 +990,7 @@ task-snapped = Le facce combaciano
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
 task-remesh-local = Spigoli cambiati: { $count }
+task-remesh-taken-back = Il rifacimento della maglia è stato annullato prima della fine.
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %; intersezioni: { $crossings }
 task-quads = { $quads } quadrilateri e { $triangles } triangoli; intersezioni: { $crossings }
 task-decimated = { $before } triangoli sono diventati { $now }; nuove intersezioni: { $crossings }

@@ -513,6 +513,7 @@ remesh-button = リメッシュ
 remesh-local-heading = その場で
 remesh-local-edge = 辺の長さ
     .tip = オブジェクトの通常の辺の長さに対する倍率
+remesh-local-undo = { $keys } でいつでも、実行中でも元に戻せます。
 remesh-stretched = 伸びた部分を細かく
     .tip = オブジェクト全体で長すぎる辺を分割します。マスクや非表示の部分は変わりません
 
@@ -985,6 +986,7 @@ task-snapped = 面が合いました
 task-trimmed = トリムしました
 task-level = レベル { $at } / { $all }
 task-remesh-local = 変更された辺: { $count }
+task-remesh-taken-back = リメッシュは完了する前に元に戻されました。
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %、交差: { $crossings }
 task-quads = 四角形 { $quads } 枚、三角形 { $triangles } 枚、交差: { $crossings }
 task-decimated = 三角形 { $before } 枚が { $now } 枚に、新しい交差: { $crossings }

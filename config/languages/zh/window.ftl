@@ -513,6 +513,7 @@ remesh-button = 重构网格
 remesh-local-heading = 就地
 remesh-local-edge = 边长
     .tip = 对象通常边长的倍数
+remesh-local-undo = 随时可按 { $keys } 撤销，进行中也可以。
 remesh-stretched = 细化拉伸处
     .tip = 在整个对象中分割过长的边；被遮罩或隐藏的部分保持不变
 
@@ -985,6 +986,7 @@ task-snapped = 两个面已贴合
 task-trimmed = 已修剪
 task-level = 级别 { $at } / { $all }
 task-remesh-local = 已更改的边：{ $count }
+task-remesh-taken-back = 重新网格化在完成前已被撤销。
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %; 相交: { $crossings }
 task-quads = 四边形 { $quads }, 三角面 { $triangles }; 相交: { $crossings }
 task-decimated = 三角面由 { $before } 减为 { $now }; 新相交: { $crossings }

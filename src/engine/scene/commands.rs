@@ -252,4 +252,7 @@ pub enum SceneError {
     /// Something that is kept by vertex would have to be given up.
     #[error("the object has layers, which are kept by vertex: flatten them first")]
     KeptByVertex,
+    /// An undo took back what was under way.
+    #[error("taken back by an undo before it was done")]
+    TakenBack,
 }

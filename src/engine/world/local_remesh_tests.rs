@@ -161,3 +161,27 @@ fn what_cannot_be_done_is_refused_and_nothing_changes() {
     ask(&mut world, SceneCommand::Layers(LayerEdit::Add("one".into()))).expect("a layer");
     assert_eq!(ask(&mut world, remesh(1.0, true, None)), Err(SceneError::KeptByVertex));
 }
+
+#[test]
+fn an_undo_takes_back_what_is_under_way() {
+    for workers in [1, 3] {
+        let mut world = stretched(workers);
+        let (before, steps) = (shape(&world), world.undo_steps());
+        let samples = [];
+        world.step(100, &samples, &[Command::Scene(remesh(0.3, true, None))]);
+        world.step(101, &samples, &[]);
+        assert!(world.is_in_surface_edit(), "it takes more than two ticks");
+        assert!(world.is_taken_back_by(&Command::Undo));
+        assert_ne!(shape(&world).triangles.len(), before.triangles.len());
+        world.step(102, &samples, &[Command::Undo]);
+        assert_eq!(world.late_result(), Some(Err(SceneError::TakenBack)));
+        assert!(!world.is_in_surface_edit() && !world.is_taken_back_by(&Command::Undo));
+        assert!(shape(&world) == before, "to the bit");
+        assert_eq!((world.undo_steps(), world.redo_steps()), (steps, 0));
+        world.verify_invariants().expect("in order");
+        // It may be asked for again, and is one step as ever.
+        settle(&mut world, Command::Scene(remesh(1.0, true, None)));
+        assert_whole(&shape(&world));
+        assert_eq!(world.undo_steps(), steps + 1);
+    }
+}

@@ -2,6 +2,7 @@
 //! whole.
 
 use super::{HistoryEvent, SceneResult, World};
+use crate::command::Command;
 use crate::local_remesh::LocalRemesh;
 use crate::mask_region::MaskRegion;
 use crate::region_seen::RegionSeen;
@@ -147,9 +148,35 @@ impl World {
         done.map(|done| self.close_surface_edit(done)).is_some()
     }
 
-    fn close_surface_edit(&mut self, done: Result<u32, SetsError>) {
+    /// Whether a command takes back what is under way, and need not wait for its end.
+    pub fn is_taken_back_by(&self, command: &Command) -> bool {
+        matches!(command, Command::Undo) && self.surface.is_remesh()
+    }
+
+    /// Gives a local remesh up and the object as it was before. False: none is under way.
+    pub(super) fn take_back_remesh(&mut self) -> bool {
+        if !self.surface.is_remesh() {
+            return false;
+        }
+        self.tell_surface_edit(Err(SceneError::TakenBack));
         let event = HistoryEvent::Scene(self.surface.event());
-        let result = done.map(ObjectId).map_err(SceneError::from);
+        let World { surface, timeline, scene, garbage, options, .. } = self;
+        scene.active_mut().clay.forget_balls();
+        surface.end(&scene.active().clay, garbage);
+        if timeline.end_step(scene, options.undo_bytes, garbage) {
+            if self.undo_step() {
+                // Half of a remesh is nothing that anybody would do again.
+                let World { timeline, scene, garbage, .. } = self;
+                timeline.forget_future(scene, garbage);
+            } else {
+                // It was too large for the bytes of undo, and stays.
+                self.note(event);
+            }
+        }
+        true
+    }
+
+    fn tell_surface_edit(&mut self, result: SceneResult) {
         match self.surface.asked() {
             Asked::Untold => {}
             Asked::Earlier => self.late_result = Some(result),
@@ -157,6 +184,11 @@ impl World {
                 self.scene_results.get_mut(place).into_iter().for_each(|r| *r = result);
             }
         }
+    }
+
+    fn close_surface_edit(&mut self, done: Result<u32, SetsError>) {
+        let event = HistoryEvent::Scene(self.surface.event());
+        self.tell_surface_edit(done.map(ObjectId).map_err(SceneError::from));
         let World { surface, timeline, scene, garbage, options, .. } = self;
         surface.end(&scene.active().clay, garbage);
         // Nothing was moved, or there are no layers: nothing that they would have to take over.

@@ -38,11 +38,11 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         out.push(UiRequest::Remesh(wanted));
     }
     ui.add_space(8.0);
-    local(ui, ui_state, out);
+    local(ui, view, ui_state, out);
 }
 
 /// Triangles of one size where the surface was stretched, or in a region.
-fn local(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+fn local(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     ui.strong(tr!("remesh-local-heading"));
     let slider = egui::Slider::new(&mut ui_state.region.edge, 0.25..=4.0).logarithmic(true);
     rows::slider(ui, slider.suffix("×"), &tr!("remesh-local-edge"))
@@ -53,5 +53,7 @@ fn local(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
         let asked = LocalRemesh { edge, stretched_only: true, region: None };
         out.push(UiRequest::RemeshLocal(asked));
     }
+    let tip = tr!("remesh-local-undo", keys = view.keys.text(Action::Undo));
+    ui.colored_label(theme::quiet(ui), tip);
     region::buttons(ui, &mut ui_state.region, RegionPurpose::Remesh);
 }

@@ -45,7 +45,7 @@ use sculptd_engine::hand::{HeldObject, MenuItem};
 use sculptd_engine::local_remesh::LocalRemesh;
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
-    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
+    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand, SceneError,
 };
 use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_scene};
 use sculptd_geometry::job::Job;
@@ -389,6 +389,7 @@ impl Tasks {
             let sent = commands.send(queued).is_ok();
             let (text, wrong) = match result.recv() {
                 Ok(Ok(changed)) if sent => (tr!("task-remesh-local", count = changed.0), false),
+                Ok(Err(SceneError::TakenBack)) => (tr!("task-remesh-taken-back"), false),
                 Ok(Err(e)) => (e.to_string(), true),
                 _ => (JoinError::Ended.to_string(), true),
             };

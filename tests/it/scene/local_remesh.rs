@@ -57,6 +57,22 @@ fn what_was_stretched_is_remeshed_by_request_taken_back_and_replayed() {
     run.ask("scene.lock", json!({ "id": id, "locked": true }));
     assert!(refused().contains("locked"));
     run.ask("scene.lock", json!({ "id": id, "locked": false }));
+    // An undo does not wait for the end of what it takes back.
+    let (begun, count) = (run.bits(), || run.live.published.load().mesh.triangle_count());
+    let (steps, triangles) = (run.live.published.load().undo_steps, count());
+    std::thread::scope(|scope| {
+        let long = json!({ "edge": 0.04 });
+        let asked = scope.spawn(|| run.refused("remesh.local", long));
+        while count() == triangles && !asked.is_finished() {
+            std::thread::yield_now();
+        }
+        run.ask("undo", json!({}));
+        let said = asked.join().expect("it ends");
+        assert!(said.contains("taken back by an undo"), "{said}");
+    });
+    assert!(run.bits() == begun, "to the bit");
+    assert_eq!(run.live.published.load().undo_steps, steps);
+
     run.ask("remesh.local", json!({}));
     let hash = run.end();
     let opened = session::open(&session).expect("a session");
