@@ -14,6 +14,7 @@ use sculptd_clay::{GarbageSink, Hit, Ray, Snapshot};
 use sculptd_devices::sample::MAX_HANDS;
 use sculptd_devices::{DeviceId, Hands};
 use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
 use sculptd_engine::hand::{HeldObject, Pose, Volume};
 use sculptd_engine::scene::{ObjectId, ObjectTransform, SceneView};
 use sculptd_engine::stroke::{CurveStroke, PenPoint};
@@ -69,6 +70,7 @@ pub struct Published {
     pub fatigue: (f32, bool),
     /// The next hands are measured for their reach.
     pub calibrating: bool,
+    /// Steps that an undo can take back, with the edit under way where it is one.
     pub undo_steps: usize,
     pub redo_steps: usize,
     pub figures: PublishedFigures,
@@ -146,7 +148,7 @@ impl Published {
             menu: tools.menu().showing(),
             fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),
             calibrating: tools.is_calibrating(),
-            undo_steps: world.undo_steps(),
+            undo_steps: world.undo_steps() + usize::from(world.is_taken_back_by(&Command::Undo)),
             redo_steps: world.redo_steps(),
             figures,
         }
