@@ -369,6 +369,9 @@ look-camera = Kamera
 look-orthographic = Orthografisch
 look-angle = Winkel
     .tip = Blickfeld, Grad
+look-keep = Ansicht merken
+    .tip = Merkt sich diese Ansicht unter einer Nummer
+    .show = Zeigt diese Ansicht wieder; ein Rechtsklick vergisst sie
 legend-measuring = misst
 
 ## Page: scene

@@ -369,6 +369,9 @@ look-camera = Κάμερα
 look-orthographic = Ορθογραφική
 look-angle = Γωνία
     .tip = Οπτικό πεδίο, μοίρες
+look-keep = Φύλαξη όψης
+    .tip = Φυλάει αυτή την όψη με έναν αριθμό, για επιστροφή
+    .show = Δείχνει ξανά αυτή την όψη· με δεξί κλικ διαγράφεται
 legend-measuring = μετρά
 
 ## Page: scene

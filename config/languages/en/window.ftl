@@ -371,6 +371,9 @@ look-camera = Camera
 look-orthographic = Orthographic
 look-angle = Angle
     .tip = Field of view, degrees
+look-keep = Keep view
+    .tip = Keeps this view under a number, to come back to
+    .show = Shows this view again; a right click forgets it
 legend-measuring = measuring
 
 ## Page: scene

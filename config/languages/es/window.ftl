@@ -369,6 +369,9 @@ look-camera = Cámara
 look-orthographic = Ortográfica
 look-angle = Ángulo
     .tip = Campo de visión, grados
+look-keep = Guardar la vista
+    .tip = Guarda esta vista con un número, para volver a ella
+    .show = Muestra de nuevo esta vista; un clic derecho la olvida
 legend-measuring = midiendo
 
 ## Page: scene

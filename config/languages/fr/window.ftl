@@ -369,6 +369,9 @@ look-camera = Caméra
 look-orthographic = Orthographique
 look-angle = Angle
     .tip = Champ de vision, degrés
+look-keep = Garder la vue
+    .tip = Garde cette vue sous un numéro, pour y revenir
+    .show = Montre à nouveau cette vue ; un clic droit l’oublie
 legend-measuring = mesure
 
 ## Page: scene

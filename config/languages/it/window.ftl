@@ -369,6 +369,9 @@ look-camera = Camera
 look-orthographic = Ortografica
 look-angle = Angolo
     .tip = Campo visivo, gradi
+look-keep = Conserva la vista
+    .tip = Conserva questa vista con un numero, per tornarci
+    .show = Mostra di nuovo questa vista; un clic destro la dimentica
 legend-measuring = misuro
 
 ## Page: scene

@@ -368,6 +368,9 @@ look-camera = カメラ
 look-orthographic = 平行投影
 look-angle = 画角
     .tip = 視野角、度
+look-keep = 視点を保存
+    .tip = この視点を番号で保存し、後で戻れます
+    .show = この視点に戻ります。右クリックで削除
 legend-measuring = 計測中
 
 ## Page: scene

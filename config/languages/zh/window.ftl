@@ -368,6 +368,9 @@ look-camera = 摄像机
 look-orthographic = 正交
 look-angle = 角度
     .tip = 视野, 度
+look-keep = 保存视角
+    .tip = 以编号保存此视角，以便返回
+    .show = 再次显示此视角；右键单击可删除
 legend-measuring = 测量中
 
 ## Page: scene

@@ -76,6 +76,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     if ui.button(Action::Frame.title()).on_hover_text(view.tip(Action::Frame)).clicked() {
         super::act::act(Action::Frame, &ui.ctx().clone(), view, ui_state, out);
     }
+    super::kept_views::ui(ui, view, ui_state, out);
     if camera != view.camera {
         out.push(UiRequest::Camera(camera));
     }

@@ -18,6 +18,7 @@ pub mod help;
 pub mod hints;
 pub mod history;
 pub mod history_tree;
+pub mod kept_views;
 pub mod keys;
 pub mod kiosk;
 pub mod layers;

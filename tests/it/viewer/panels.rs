@@ -8,6 +8,7 @@ use sculptd_clay::brush::{BrushKind, Method};
 use sculptd_daemon::Published;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
+use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::stroke::CurveAction;
@@ -566,4 +567,23 @@ fn an_export_asks_before_it_replaces_a_file() {
     h.get_by_label("Replace").click();
     h.run_steps(4);
     assert_eq!(exports(&h), 1);
+}
+
+#[test]
+fn a_view_is_kept_under_a_number_shown_again_and_forgotten() {
+    let mut h = harness(Tab::Look);
+    let before = h.state().published.camera;
+    h.get_by_label("Keep view").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.prefs.kept_views, [before]);
+    let turned = Camera { yaw: before.yaw + 1.0, ..before };
+    h.state_mut().published.camera = turned;
+    h.run_steps(2);
+    h.get_by_label("1").click();
+    h.run_steps(2);
+    let [UiRequest::Camera(asked)] = h.state().asked[..] else { panic!("{:?}", h.state().asked) };
+    assert_eq!(asked, before);
+    h.get_by_label("1").click_secondary();
+    h.run_steps(2);
+    assert!(h.state().ui_state.prefs.kept_views.is_empty());
 }

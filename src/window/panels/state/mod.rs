@@ -42,7 +42,7 @@ pub use messages::Message;
 pub use operation::{BooleanTrial, Modal, ModalSetting, TrialStatus};
 pub use outliner::{Outliner, Pairing, SnapPicks};
 pub use pens::PenTrace;
-pub use preferences::{Hint, HintsFollowed, Preferences, SCALE, TwoFingers};
+pub use preferences::{Hint, HintsFollowed, Preferences, SCALE, TwoFingers, VIEWS};
 pub use request::UiRequest;
 pub use retopology::{CREASE, Retopology};
 pub use search::SearchBox;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::key_map::KeySettings;
 use crate::look::Look;
+use sculptd_engine::camera::Camera;
 
 /// The first lesson, a hint at a time. Each was followed, in any order.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -74,6 +75,8 @@ pub const SCALE: (f32, f32) = (0.7, 3.0);
 
 /// Recent files kept.
 const RECENT: usize = 8;
+/// Views that are kept, at most.
+pub const VIEWS: usize = 9;
 
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
@@ -96,6 +99,8 @@ pub struct Preferences {
     pub look: Look,
     pub keys: KeySettings,
     pub recent: Vec<PathBuf>,
+    /// Views to come back to.
+    pub kept_views: Vec<Camera>,
 }
 
 impl Default for Preferences {
@@ -112,6 +117,7 @@ impl Default for Preferences {
             look: Look::default(),
             keys: KeySettings::default(),
             recent: Vec::new(),
+            kept_views: Vec::new(),
         }
     }
 }
@@ -126,6 +132,8 @@ impl Preferences {
         let mut p: Preferences = toml::from_str(text).map_err(|e| e.to_string())?;
         p.scale = if p.scale.is_finite() { p.scale.clamp(SCALE.0, SCALE.1) } else { 1.0 };
         p.recent.truncate(RECENT);
+        p.kept_views.retain(Camera::is_sane);
+        p.kept_views.truncate(VIEWS);
         Ok(p)
     }
 
@@ -148,6 +156,10 @@ mod tests {
             p.used(format!("/a/{i}.stl").into());
         }
         p.used("/a/9.stl".into());
+        p.kept_views = vec![Camera::default(), Camera { distance: -1.0, ..Camera::default() }];
+        let bad = p.clone();
+        p.kept_views.pop();
+        assert_eq!(Preferences::read(&toml::to_string(&bad).expect("plain data")), Ok(p.clone()));
         let back = Preferences::read(&toml::to_string(&p).expect("plain data")).expect("read");
         assert_eq!(back, p);
         assert_eq!(back.recent.len(), RECENT);
