@@ -261,23 +261,30 @@ pub fn measure_at_places(
     let walls = walls.filter(|w| w.serve(mesh));
     let solid = walls.map_or(mesh, |w| &w.mesh);
     let of = |m: &TriMesh| WeldedSurface::new(m, settings.crease.to_radians());
-    let measured = |surface: Cow<'_, WeldedSurface>, solid: &TriMesh| {
-        let (tree, whole) =
-            rayon::join(|| Bvh8::build_for_rays(solid, job), || walls.map(|_| of(solid)));
-        let walls = whole.as_ref().zip(walls.map(|w| &w.of[..]));
-        measure_prepared(surface, walls, &tree?, settings, job)
+    let ready = |mesh: &TriMesh, solid: &TriMesh| {
+        let (tree, surfaces) = rayon::join(
+            || Bvh8::build_for_rays(solid, job),
+            || (of(mesh), walls.map(|_| of(solid))),
+        );
+        Ok::<_, Cancelled>((tree?, surfaces))
     };
-    let surface = of(mesh);
+    let measured = |(tree, (surface, whole)): (Bvh8, (WeldedSurface, Option<WeldedSurface>))| {
+        let walls = whole.as_ref().zip(walls.map(|w| &w.of[..]));
+        measure_prepared(Cow::Owned(surface), walls, &tree, settings, job)
+    };
     if let Some(turn) = turn(solid) {
-        let own = of(&turned(mesh, turn));
+        let (made, surface) =
+            rayon::join(|| ready(&turned(mesh, turn), &turned(solid, turn)), || of(mesh));
+        let made = made?;
+        let own = &made.1.0;
         // The same vertices and triangles, though they are rounded anew.
         if own.weld == surface.weld && own.triangles == surface.triangles {
-            let mut done = measured(Cow::Owned(own), &turned(solid, turn))?;
+            let mut done = measured(made)?;
             done.surface = surface;
             return Ok(done);
         }
     }
-    measured(Cow::Owned(surface), solid)
+    measured(ready(mesh, solid)?)
 }
 
 /// The turn into a frame in which the boxes of the mesh's triangles are much smaller, where there

@@ -128,22 +128,26 @@ impl<'a> OwnWalls<'a> {
     /// are neighbours in time, and the caches stay warm.
     pub(super) fn in_order(&self, tree: &Bvh8) -> Vec<u32> {
         let count = self.surface.triangles.len();
-        let mut rank = vec![DROPPED; count];
-        let mut next = 0;
-        for &t in tree.packs().iter().flat_map(|p| &p.id) {
-            if let Some(rank) = rank.get_mut(t as usize)
-                && *rank == DROPPED
-            {
-                (*rank, next) = (next, next + 1);
-            }
-        }
+        let kept = |t: &u32| self.surface.triangles[*t as usize][0] != DROPPED;
+        let mut seen = vec![false; count];
         // A wall has at most as many triangles as the surface that was cut from it.
-        let rank = |t: &u32| rank.get(self.of(*t) as usize).copied().unwrap_or(DROPPED);
-        let mut order: Vec<u32> = (0..count as u32)
-            .filter(|t| self.surface.triangles[*t as usize][0] != DROPPED)
-            .collect();
-        order.sort_by_key(rank);
-        order
+        let walls = tree.packs().iter().flat_map(|p| p.id).filter(|&t| {
+            seen.get_mut(t as usize).is_some_and(|seen| !std::mem::replace(seen, true))
+        });
+        let Some(cut) = &self.cut else { return walls.filter(kept).collect() };
+        // Of each wall its parts: `parts[first[w]..first[w + 1]]`.
+        let mut first = vec![0u32; count + 1];
+        cut.of.iter().for_each(|&w| first[w as usize + 1] += 1);
+        for w in 0..count {
+            first[w + 1] += first[w];
+        }
+        let (mut next, mut parts) = (first.clone(), vec![0u32; count]);
+        for (t, &w) in cut.of.iter().enumerate() {
+            parts[next[w as usize] as usize] = t as u32;
+            next[w as usize] += 1;
+        }
+        let of = |w: u32| first[w as usize] as usize..first[w as usize + 1] as usize;
+        walls.flat_map(|w| &parts[of(w)]).copied().filter(kept).collect()
     }
 }
 
