@@ -26,6 +26,7 @@ impl Walls {
     /// triangles are mostly empty, and those of their parts are not.
     pub(super) fn serve(&self, fine: &TriMesh) -> bool {
         let right = self.of.len() == fine.triangles.len()
+            && self.mesh.triangles.len() <= self.of.len()
             && self.of.iter().all(|&t| (t as usize) < self.mesh.triangles.len());
         let (lo, hi) = self.mesh.bounds();
         let (whole, parts) = (boxes(&self.mesh), boxes(fine));
@@ -194,6 +195,8 @@ mod tests {
         of.pop();
         assert!(!Walls { mesh: whole.clone(), of }.serve(&mesh));
         let of = vec![12; mesh.triangles.len()];
-        assert!(!Walls { mesh: whole, of }.serve(&mesh));
+        assert!(!Walls { mesh: whole.clone(), of }.serve(&mesh));
+        let of = vec![0; whole.triangles.len()];
+        assert!(!Walls { mesh, of }.serve(&whole), "more of them than there are parts");
     }
 }
