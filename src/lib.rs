@@ -36,7 +36,8 @@
 //!    was carried over, some twenty milliseconds at most.
 //!    An edit of the whole mask, of face sets or of triangles in place, of a region too,
 //!    goes through pages in portions counted by what looking and writing cost, and strokes wait;
-//!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done.
+//!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done, but for an
+//!    undo, which takes new triangles in place back at once.
 //!    Four more exceptions: an edit of face sets, and dynamic topology on an object that has some,
 //!    as a stroke that draws them, allocates two bytes a vertex that it writes; the end of a
 //!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface

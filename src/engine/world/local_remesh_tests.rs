@@ -164,7 +164,7 @@ fn what_cannot_be_done_is_refused_and_nothing_changes() {
 
 #[test]
 fn an_undo_takes_back_what_is_under_way() {
-    for workers in [1, 3] {
+    for workers in [1, 2, 3, 7, 16] {
         let mut world = stretched(workers);
         let (before, steps) = (shape(&world), world.undo_steps());
         let samples = [];

@@ -193,20 +193,8 @@ impl WideWork for NearestSearch<'_> {
             if at & LEAF == 0 {
                 let node = &tree.nodes[at as usize];
                 let mut near = [0.0f32; 8];
-                let mut mask = wide.near_boxes(p, node, bound, &mut near);
-                let base = top;
-                while mask != 0 {
-                    let i = mask.trailing_zeros() as usize & 7;
-                    mask &= mask - 1;
-                    // The farthest at the bottom.
-                    let mut j = top;
-                    while j > base && stack[j - 1].0 < near[i] {
-                        stack[j] = stack[j - 1];
-                        j -= 1;
-                    }
-                    stack[j] = (near[i], node.child[i]);
-                    top += 1;
-                }
+                let mask = wide.near_boxes(p, node, bound, &mut near);
+                top = push_children(stack, top, mask, &near, &node.child);
             } else {
                 let number = at & !LEAF;
                 let (mut low, mut high) = ([0.0f32; 4], [0.0f32; 4]);
@@ -249,6 +237,31 @@ impl WideWork for NearestSearch<'_> {
         }
         exactly.best
     }
+}
+
+/// Puts the children of a node that `mask` tells, each with how near it is, on the stack at `top`,
+/// the farthest at the bottom. Returns the new top.
+#[inline(always)]
+pub(crate) fn push_children(
+    stack: &mut [(f32, u32)],
+    mut top: usize,
+    mut mask: u32,
+    near: &[f32; 8],
+    child: &[u32; 8],
+) -> usize {
+    let base = top;
+    while mask != 0 {
+        let i = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        let mut j = top;
+        while j > base && stack[j - 1].0 < near[i] {
+            stack[j] = stack[j - 1];
+            j -= 1;
+        }
+        stack[j] = (near[i], child[i]);
+        top += 1;
+    }
+    top
 }
 
 /// Triangles that wait for the double-precision test.

@@ -37,6 +37,7 @@ pub use refit::Parents;
 pub use traverse::TraversalStack;
 
 pub use crate::simd::wide::{LEAF, NO_TRIANGLE, Pack, WideNode};
+pub(crate) use closest::push_children;
 pub use closest::{Feature, NearestPoint, REACH, nearest_on_triangle};
 
 /// A ray; `dir` need not be of unit length, `t` counts in its lengths. Hits with `t_min <= t <=

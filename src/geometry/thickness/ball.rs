@@ -11,7 +11,7 @@
 use glam::Vec3;
 
 use super::ray::{Caster, Site};
-use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
@@ -94,11 +94,11 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
         if nodes.is_empty() {
             return (ball.r, ball.touch);
         }
-        let mut inline = [(0u32, 0f32); 96];
+        let mut inline = [(0f32, 0u32); 96];
         let mut heap = Vec::new();
         let need = self.tree.stack_need();
         let stack = if need > inline.len() {
-            heap.resize(need, (0, 0.0));
+            heap.resize(need, (0.0, 0));
             &mut heap[..]
         } else {
             &mut inline[..]
@@ -106,7 +106,7 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let at = stack[top].0;
+            let at = stack[top].1;
             if at & LEAF != 0 {
                 let pack = &packs[(at & !LEAF) as usize];
                 // Of the ball as it is now: a lane before may shrink it, and so move its centre.
@@ -138,20 +138,8 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
             }
             let node = &nodes[at as usize];
             let mut near = [0.0f32; 8];
-            let mut inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
-            // Pushed so that the nearest comes off first.
-            let base = top;
-            while inside != 0 {
-                let i = inside.trailing_zeros() as usize & 7;
-                inside &= inside - 1;
-                let mut j = top;
-                while j > base && stack[j - 1].1 < near[i] {
-                    stack[j] = stack[j - 1];
-                    j -= 1;
-                }
-                stack[j] = (node.child[i], near[i]);
-                top += 1;
-            }
+            let inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
+            top = push_children(stack, top, inside, &near, &node.child);
         }
         (ball.r, ball.touch)
     }
@@ -163,7 +151,7 @@ struct Shrinking {
     away: Vec3,
     r: f32,
     centre: Vec3,
-    /// The square of the radius within which a point is inside.
+    /// The square of the radius within which a point is inside; finite.
     bound: f32,
     touch: Option<Vec3>,
 }
@@ -180,7 +168,8 @@ impl Shrinking {
     #[inline(always)]
     fn resize(&mut self, r: f32) {
         let within = r * (1.0 - SETTLED);
-        (self.r, self.centre, self.bound) = (r, self.point - self.away * r, within * within);
+        self.bound = (within * within).min(f32::MAX);
+        (self.r, self.centre) = (r, self.point - self.away * r);
     }
 
     #[inline(always)]
