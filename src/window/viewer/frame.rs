@@ -125,7 +125,7 @@ impl WindowState {
         }
         let samples = self.gpu.samples(self.ui_state.prefs.smooth_edges);
         if samples != self.samples {
-            self.renderer = Renderer::new(&self.gpu, self.config.format, samples);
+            self.renderer = Renderer::new(&self.gpu, self.clay_format, samples);
             self.samples = samples;
             self.clay_key = None;
         }
@@ -166,7 +166,7 @@ impl WindowState {
     ) {
         let (corner, size) = self.view_rect();
         let size = (size.x as u32, size.y as u32);
-        let part = self.takes_copies() && self.free.is_some();
+        let part = self.takes_copies();
         let target = if part { self.clay_picture(size) } else { surface.clone() };
         let pages = state.mesh.page_count();
         let first = self.first_picture.as_ref().filter(|p| p.pages == pages);
@@ -235,7 +235,7 @@ impl WindowState {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: self.config.format,
+            format: self.clay_format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });

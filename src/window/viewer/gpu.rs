@@ -72,3 +72,63 @@ impl Gpu {
         format!("{} ({:?})", info.name, info.backend)
     }
 }
+
+/// Sets the format of a surface that offers these, and returns that of the pictures of the clay
+/// which go onto it. Light adds up linearly in an sRGB format; egui's letters keep their weight
+/// where they are blended as stored. A copy between the two keeps every byte, so both are had where
+/// the surface takes copies; elsewhere all is sRGB.
+pub fn choose_formats(
+    config: &mut wgpu::SurfaceConfiguration,
+    offered: &[wgpu::TextureFormat],
+) -> wgpu::TextureFormat {
+    let copies = config.usage.contains(wgpu::TextureUsages::COPY_DST);
+    let eight_bit = |f: &&wgpu::TextureFormat| {
+        matches!(
+            f.remove_srgb_suffix(),
+            wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Rgba8Unorm
+        )
+    };
+    if let Some(plain) = offered.iter().filter(eight_bit).find(|f| !f.is_srgb())
+        && copies
+    {
+        config.format = *plain;
+        return plain.add_srgb_suffix();
+    }
+    if let Some(srgb) = offered.iter().find(|f| f.is_srgb()) {
+        config.format = *srgb;
+    }
+    config.format
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::TextureFormat::{
+        Bgra8Unorm, Bgra8UnormSrgb, Rgba8Unorm, Rgba8UnormSrgb, Rgba16Float,
+    };
+
+    #[test]
+    fn letters_are_blended_as_stored_where_the_surface_takes_copies() {
+        let of = |usage, offered: &[wgpu::TextureFormat]| {
+            let mut config = wgpu::SurfaceConfiguration {
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                format: offered[0],
+                width: 1,
+                height: 1,
+                present_mode: wgpu::PresentMode::Fifo,
+                desired_maximum_frame_latency: 2,
+                alpha_mode: wgpu::CompositeAlphaMode::Auto,
+                view_formats: Vec::new(),
+                color_space: Default::default(),
+            };
+            let clay = choose_formats(&mut config, offered);
+            (config.format, clay)
+        };
+        let (copies, none) = (wgpu::TextureUsages::COPY_DST, wgpu::TextureUsages::empty());
+        let all = [Bgra8UnormSrgb, Rgba16Float, Bgra8Unorm];
+        assert_eq!(of(copies, &all), (Bgra8Unorm, Bgra8UnormSrgb));
+        assert_eq!(of(none, &all), (Bgra8UnormSrgb, Bgra8UnormSrgb));
+        assert_eq!(of(copies, &[Rgba8Unorm]), (Rgba8Unorm, Rgba8UnormSrgb));
+        assert_eq!(of(copies, &[Rgba8UnormSrgb]), (Rgba8UnormSrgb, Rgba8UnormSrgb));
+    }
+}

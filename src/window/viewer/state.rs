@@ -10,7 +10,7 @@ use winit::window::Window;
 use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPictureKey;
 use super::fingers::Fingers;
-use super::gpu::{Gpu, NoViewer, instance_on};
+use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::overlay;
 use super::overlay_mesh::Triangles;
 use super::pacing::{FrameSum, Pacing};
@@ -56,6 +56,9 @@ pub(super) struct WindowState {
     pub(super) window: Arc<Window>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
+    /// What the clay is drawn in: light adds up linearly there, while the panels blend in the
+    /// surface's own format, where thin letters keep their weight.
+    pub(super) clay_format: wgpu::TextureFormat,
     pub(super) gpu: Gpu,
     pub(super) adapter: String,
     pub(super) renderer: Renderer,
@@ -161,12 +164,9 @@ impl WindowState {
         let mut config = surface
             .get_default_config(&gpu.adapter, size.width.max(1), size.height.max(1))
             .ok_or_else(|| no_window("the adapter cannot draw on this window".into()))?;
-        let formats = surface.get_capabilities(&gpu.adapter).formats;
-        if let Some(srgb) = formats.iter().find(|f| f.is_srgb()) {
-            config.format = *srgb;
-        }
-        let usages = surface.get_capabilities(&gpu.adapter).usages;
-        config.usage |= usages & wgpu::TextureUsages::COPY_DST;
+        let capabilities = surface.get_capabilities(&gpu.adapter);
+        config.usage |= capabilities.usages & wgpu::TextureUsages::COPY_DST;
+        let clay_format = choose_formats(&mut config, &capabilities.formats);
         // Frames come by this window's own pace: presenting must not block the event loop, which
         // first-in-first-out does for seconds on a screen without a vertical blank.
         let modes = surface.get_capabilities(&gpu.adapter).present_modes;
@@ -189,7 +189,7 @@ impl WindowState {
         }
         ui_state.walls.presets.clone_from(&wiring.thickness_presets);
         let samples = gpu.samples(ui_state.prefs.smooth_edges);
-        let renderer = Renderer::new(&gpu, config.format, samples);
+        let renderer = Renderer::new(&gpu, clay_format, samples);
         let context = egui::Context::default();
         let scale = window.scale_factor() as f32;
         let mut egui = egui_winit::State::new(
@@ -224,6 +224,7 @@ impl WindowState {
             window,
             surface,
             config,
+            clay_format,
             gpu,
             renderer,
             samples,

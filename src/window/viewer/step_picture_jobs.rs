@@ -70,7 +70,7 @@ impl WindowState {
     fn take(&mut self, state: &Published, step: usize, mark: u64) {
         let device = &self.gpu.device;
         let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
-        let format = self.config.format;
+        let format = self.clay_format;
         let texture = self.step_pictures.target.get_or_insert_with(|| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("thumb"),
@@ -148,7 +148,7 @@ impl WindowState {
         let Ok(data) = pending.bytes.slice(..).get_mapped_range() else { return false };
         let mut pixels = data.to_vec();
         if matches!(
-            self.config.format,
+            self.clay_format,
             wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb
         ) {
             pixels.chunks_exact_mut(4).for_each(|p| p.swap(0, 2));
