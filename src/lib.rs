@@ -156,6 +156,8 @@
 //!   person.
 //! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's own file
 //!   chooser. Waits for: the disk.
+//! * `sculptd-look`, made by `window::viewer::tasks`: reads and keeps pictures for the look of the
+//!   clay. Waits for: the disk.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by

@@ -9,7 +9,8 @@ use sculptd_daemon::config::CameraConfig;
 use sculptd_daemon::startup;
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::job::Job;
-use sculptd_window::look::{Look, MATERIALS};
+use sculptd_window::look::{Light, Look, MATERIALS};
+use sculptd_window::viewer::look_files::{read_environment, read_matcap};
 use sculptd_window::viewer::picture::{Painter, write_png};
 use sculptd_window::viewer::renderer::Scene;
 
@@ -29,7 +30,19 @@ pub struct RenderArgs {
     #[arg(long)]
     pub orthographic: bool,
     #[arg(long, default_value = "clay", value_parser = materials())]
-    pub matcap: String,
+    pub material: String,
+    /// A picture of a lit ball stands for material and light: PNG, JPEG or WebP.
+    #[arg(long, value_name = "FILE")]
+    pub matcap: Option<PathBuf>,
+    /// Light from a picture of surroundings: Radiance HDR or EXR.
+    #[arg(long, value_name = "FILE", conflicts_with = "matcap")]
+    pub environment: Option<PathBuf>,
+    /// Light from the room that comes with the program.
+    #[arg(long, conflicts_with_all = ["matcap", "environment"])]
+    pub room: bool,
+    /// How far the surroundings are turned about the upright axis, degrees.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub turned: f32,
     /// One tone a triangle.
     #[arg(long)]
     pub flat: bool,
@@ -48,7 +61,7 @@ pub struct RenderArgs {
 }
 
 fn materials() -> clap::builder::PossibleValuesParser {
-    MATERIALS.map(|m| m.name).into()
+    MATERIALS.map(|m| m.short_name()).into()
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -111,8 +124,20 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
     camera.frame(lo, hi);
     let no_adapter = |e: sculptd_window::viewer::NoViewer| Fail::Device(e.to_string());
     let mut painter = Painter::new().map_err(no_adapter)?;
+    let unreadable = |e: String| Fail::Input(e);
+    let mut light = if args.room { Light::Room } else { Light::Studio };
+    if let Some(path) = &args.matcap {
+        painter.set_matcap(&read_matcap(path).map_err(unreadable)?);
+        light = Light::Matcap;
+    }
+    if let Some(path) = &args.environment {
+        painter.set_environment(&read_environment(path).map_err(unreadable)?);
+        light = Light::Environment;
+    }
     let look = Look {
-        material: MATERIALS.iter().position(|m| m.name == args.matcap).unwrap_or(0),
+        material: MATERIALS.iter().position(|m| m.short_name() == args.material).unwrap_or(0),
+        light,
+        turned: args.turned,
         flat: args.flat,
         cavity: args.cavity,
         shade: args.shade,

@@ -13,6 +13,8 @@ pub struct Material {
     pub power: f32,
     /// Light at grazing angles, 0 none to 1.
     pub rim: f32,
+    /// A metal mirrors what surrounds it in its own colour, and scatters nothing.
+    pub metal: bool,
 }
 
 const fn material(
@@ -22,18 +24,52 @@ const fn material(
     power: f32,
     rim: f32,
 ) -> Material {
-    Material { name, base, shine, power, rim }
+    Material { name, base, shine, power, rim, metal: false }
 }
 
-pub const MATERIALS: [Material; 7] = [
+impl Material {
+    const fn metal(self) -> Material {
+        Material { metal: true, ..self }
+    }
+
+    /// What it is called in commands: `bronze`.
+    pub fn short_name(&self) -> &'static str {
+        self.name.strip_prefix("material-").unwrap_or(self.name)
+    }
+}
+
+pub const MATERIALS: [Material; 8] = [
     material("material-clay", [0.52, 0.25, 0.165], 0.22, 40.0, 0.25),
     material("material-porcelain", [0.80, 0.80, 0.78], 0.40, 80.0, 0.20),
     material("material-wax", [0.60, 0.06, 0.05], 0.45, 50.0, 0.35),
     material("material-stone", [0.36, 0.37, 0.38], 0.04, 8.0, 0.10),
     material("material-jade", [0.13, 0.45, 0.24], 0.50, 60.0, 0.45),
-    material("material-bronze", [0.45, 0.25, 0.07], 0.70, 22.0, 0.20),
+    material("material-bronze", [0.80, 0.50, 0.22], 1.0, 60.0, 0.20).metal(),
     material("material-graphite", [0.09, 0.095, 0.11], 0.55, 28.0, 0.40),
+    material("material-steel", [0.62, 0.63, 0.65], 1.0, 160.0, 0.20).metal(),
 ];
+
+/// What lights the clay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Light {
+    /// Two soft lights and a sky, which turn with the eye.
+    #[default]
+    Studio,
+    /// The room that comes with the program.
+    Room,
+    /// A picture of surroundings.
+    Environment,
+    /// A picture of a lit ball stands for material and light.
+    Matcap,
+}
+
+impl Light {
+    /// Whether light comes from all around.
+    pub fn is_around(self) -> bool {
+        matches!(self, Light::Room | Light::Environment)
+    }
+}
 
 /// What the clay's own colours give way to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -114,6 +150,11 @@ pub fn linear(c: [u8; 3]) -> [f32; 4] {
 pub struct Look {
     /// Index into [`MATERIALS`]; beyond them, the last.
     pub material: usize,
+    pub light: Light,
+    /// How far what is around is turned about the eye's upright axis, degrees.
+    pub turned: f32,
+    /// How bright what is around is; 1 is as bright as the studio.
+    pub bright: f32,
     /// One tone a triangle.
     pub flat: bool,
     /// How strongly hollows are darkened and ridges lightened, 0 none to 2.
@@ -138,6 +179,9 @@ impl Default for Look {
     fn default() -> Self {
         Look {
             material: 0,
+            light: Light::Studio,
+            turned: 0.0,
+            bright: 1.0,
             flat: false,
             cavity: 1.0,
             shade: 1.0,

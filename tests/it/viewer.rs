@@ -8,6 +8,7 @@ mod layers;
 mod layout;
 mod learning;
 mod led;
+mod lights;
 mod panels;
 mod pictures;
 mod preferences;

@@ -5,7 +5,7 @@ use super::modal;
 use super::state::action::{self, Action};
 use super::state::region::{RegionPurpose, RegionShape};
 use super::state::{HintsFollowed, ModalSetting, SCALE, SearchBox, UiRequest, UiState, View};
-use crate::look::{MATERIALS, Map};
+use crate::look::{Light, MATERIALS, Map};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
 
@@ -54,7 +54,10 @@ pub fn act(
         Action::DragRadius => modal::begin(ctx, view, ui_state, ModalSetting::Radius),
         Action::DragStrength => modal::begin(ctx, view, ui_state, ModalSetting::Strength),
         Action::NextMaterial => {
-            ui_state.look.material = (ui_state.look.material + 1) % MATERIALS.len()
+            ui_state.look.material = (ui_state.look.material + 1) % MATERIALS.len();
+            if ui_state.look.light == Light::Matcap {
+                ui_state.look.light = Light::Studio;
+            }
         }
         Action::Facets => ui_state.look.flat = !ui_state.look.flat,
         Action::Ssao => ui_state.look.shade = if ui_state.look.shade > 0.0 { 0.0 } else { 1.0 },

@@ -4,9 +4,9 @@ use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
-    help, hints, history, keys, layers, legend, look, masks, measure, messages, modal, outliner,
-    preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search, start,
-    symmetry, tablet_keys, theme, timing, trim,
+    help, hints, history, keys, layers, legend, light, look, masks, measure, messages, modal,
+    outliner, preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search,
+    start, symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -64,6 +64,7 @@ pub fn all(
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, view, ui_state, free);
+    light::beside(&ctx, ui_state, free);
     start::ui(&ctx, view, ui_state, free, out);
     chooser::ui(&ctx, ui_state, free, out);
     files::replace(&ctx, ui_state, free, out);

@@ -1,42 +1,14 @@
 //! How the clay is shown.
 
-use super::rows;
 use super::state::{Action, UiRequest, UiState, View};
+use super::{light, rows};
 use crate::language::tr;
-use crate::look::{MATERIALS, Map};
+use crate::look::Map;
 
 pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
+    light::materials(ui, ui_state);
+    light::lights(ui, ui_state);
     let look = &mut ui_state.look;
-    ui.strong(tr!("look-material"));
-    ui.horizontal_wrapped(|ui| {
-        for (i, m) in MATERIALS.iter().enumerate() {
-            let [r, g, b] = m.base.map(|c| (c.powf(1.0 / 2.2) * 255.0) as u8);
-            let (rect, response) =
-                ui.allocate_exact_size(egui::vec2(26.0, 26.0), egui::Sense::click());
-            response.widget_info(|| {
-                egui::WidgetInfo::selected(
-                    egui::Role::RadioButton,
-                    true,
-                    look.material == i,
-                    tr!(m.name),
-                )
-            });
-            let colour = egui::Color32::from_rgb(r, g, b);
-            ui.painter().circle_filled(rect.center(), 11.0, colour);
-            ui.painter().circle_filled(
-                rect.center() - egui::vec2(4.0, 4.0),
-                2.5,
-                egui::Color32::from_white_alpha(110),
-            );
-            if look.material == i || response.hovered() || response.has_focus() {
-                let stroke = egui::Stroke::new(2.0, ui.visuals().text_color());
-                ui.painter().circle_stroke(rect.center(), 12.0, stroke);
-            }
-            if response.on_hover_text(tr!(m.name)).clicked() {
-                look.material = i;
-            }
-        }
-    });
     ui.add_space(4.0);
     ui.checkbox(&mut look.flat, tr!("look-facets")).on_hover_text(view.tip(Action::Facets));
     rows::slider(ui, egui::Slider::new(&mut look.cavity, 0.0..=2.0), &tr!("look-cavity"))
@@ -60,6 +32,8 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
             ui.selectable_value(&mut ui_state.look.map, map, tr!(map.title())).on_hover_text(tip);
         }
     });
+    ui.add_space(8.0);
+    light::reference(ui, ui_state);
     ui.add_space(8.0);
     ui.strong(tr!("look-camera"));
     let mut camera = view.camera;

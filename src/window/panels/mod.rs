@@ -24,6 +24,7 @@ pub mod kiosk;
 pub mod layers;
 pub mod layout;
 pub mod legend;
+mod light;
 pub mod look;
 pub mod masks;
 pub mod measure;

@@ -12,6 +12,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::WindowId;
 
 use super::gpu::NoViewer;
+use super::look_files::LookFolders;
 use super::state::{AccessibilityEvent, WindowState};
 use super::wiring::Wiring;
 
@@ -140,7 +141,10 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 open.zoom_to_pointer(1.0 + delta as f32, wiring);
             }
             WindowEvent::DroppedFile(path) if wiring.kiosk.is_none() => {
-                open.tasks.load(path, wiring);
+                match open.look_folders.clone().filter(|_| LookFolders::takes(&path)) {
+                    Some(folders) => open.tasks.keep_picture(path, folders),
+                    None => open.tasks.load(path, wiring),
+                }
             }
             _ => {}
         }

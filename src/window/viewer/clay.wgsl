@@ -31,6 +31,11 @@ struct Frame {
     // The ground's lower and upper colour.
     low: vec4<f32>,
     high: vec4<f32>,
+    // What lights the clay (0 the studio, 1 a picture of a ball, 2 what is around), how far that is
+    // turned about the upright axis, how bright it is, and 1 for metal.
+    light: vec4<f32>,
+    // The reference picture's width and height as shares of the view, and how dense it is.
+    backdrop: vec4<f32>,
     led: array<LedDab, 8>,
     // The falloff's values at even steps from the middle to the rim.
     profile: array<vec4<f32>, 3>,
@@ -39,6 +44,11 @@ struct Frame {
 };
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+@group(1) @binding(0) var ball: texture_2d<f32>;
+@group(1) @binding(1) var diffuse_around: texture_2d<f32>;
+@group(1) @binding(2) var glossy_around: texture_2d<f32>;
+@group(1) @binding(3) var smooth_reads: sampler;
+@group(1) @binding(4) var reference: texture_2d<f32>;
 
 struct Corner {
     @builtin(position) clip: vec4<f32>,
@@ -160,6 +170,40 @@ fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
     return base * (warm + cool + ambient) + vec3<f32>(shine) + edge;
 }
 
+// Where a direction of the view lies in a picture of what is around.
+fn around(d: vec3<f32>) -> vec2<f32> {
+    let turned = atan2(d.x, d.z) + frame.light.y;
+    return vec2<f32>(turned * 0.15915494 + 0.5, acos(clamp(d.y, -1.0, 1.0)) * 0.31830989);
+}
+
+// What is mirrored, by Schlick's fresnel (1994); a rougher surface reads a smaller picture.
+fn mirrored(n: vec3<f32>, at_front: vec3<f32>) -> vec3<f32> {
+    let facing = clamp(n.z, 0.0, 1.0);
+    let back = vec3<f32>(2.0 * n.z * n.xy, 2.0 * n.z * n.z - 1.0);
+    let rough = sqrt(2.0 / (frame.finish.y + 2.0));
+    let seen = textureSampleLevel(glossy_around, smooth_reads, around(back), rough * 9.0).rgb;
+    return seen * (at_front + (vec3<f32>(1.0) - at_front) * pow(1.0 - facing, 5.0));
+}
+
+// By what the person chose.
+fn shaded(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
+    if (frame.light.x > 1.5) {
+        let soft = textureSampleLevel(diffuse_around, smooth_reads, around(n), 0.0).rgb;
+        let scattered = base * soft * (1.0 - frame.light.w);
+        let shine = mix(vec3<f32>(0.04 + 0.1 * frame.finish.x), base, frame.light.w);
+        return (scattered + mirrored(n, shine)) * frame.light.z;
+    }
+    if (frame.light.x > 0.5) {
+        // The normals that the eye sees fill the disc of the ball.
+        let at = vec2<f32>(n.x, -n.y) * 0.485 + vec2<f32>(0.5);
+        return textureSampleLevel(ball, smooth_reads, at, 0.0).rgb * base;
+    }
+    if (frame.light.w > 0.5) {
+        return mirrored(n, base) + lit(n, base) * 0.15;
+    }
+    return lit(n, base);
+}
+
 @fragment
 fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // How the surface bends across the screen: how fast the normal turns along either axis.
@@ -191,7 +235,7 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         }
         base *= 0.8;
     }
-    var colour = lit(view, mix(base, base * 0.35, held));
+    var colour = shaded(view, mix(base, base * 0.35, held));
     colour *= 1.0 + clamp(bend * 4.0, -0.4, 0.4) * frame.finish.w;
     // The falloff inside the brush: strongest in the middle.
     if (frame.brush.w > 0.0) {
@@ -256,7 +300,7 @@ fn edge_fragment(in: LineCorner) -> @location(0) vec4<f32> {
 
 struct Sky {
     @builtin(position) clip: vec4<f32>,
-    @location(0) height: f32,
+    @location(0) place: vec2<f32>,
 };
 
 @vertex
@@ -264,11 +308,17 @@ fn sky_vertex(@builtin(vertex_index) i: u32) -> Sky {
     let corner = vec2<f32>(f32((i << 1u) & 2u), f32(i & 2u));
     var out: Sky;
     out.clip = vec4<f32>(corner * 2.0 - 1.0, 1.0, 1.0);
-    out.height = corner.y;
+    out.place = corner;
     return out;
 }
 
 @fragment
 fn sky_fragment(in: Sky) -> @location(0) vec4<f32> {
-    return vec4<f32>(mix(frame.low.rgb, frame.high.rgb, in.height), 1.0);
+    let ground = mix(frame.low.rgb, frame.high.rgb, in.place.y);
+    let at = (in.place - vec2<f32>(0.5)) / max(frame.backdrop.xy, vec2<f32>(1e-6));
+    if (frame.backdrop.z <= 0.0 || max(abs(at.x), abs(at.y)) > 0.5) {
+        return vec4<f32>(ground, 1.0);
+    }
+    let shown = textureSampleLevel(reference, smooth_reads, vec2<f32>(at.x, -at.y) + 0.5, 0.0);
+    return vec4<f32>(mix(ground, shown.rgb, shown.a * frame.backdrop.z), 1.0);
 }

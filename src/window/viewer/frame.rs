@@ -127,6 +127,7 @@ impl WindowState {
         if samples != self.samples {
             self.renderer = Renderer::new(&self.gpu, self.clay_format, samples);
             self.samples = samples;
+            self.look_again();
             self.clay_key = None;
         }
         self.update_overlay_mesh(&state);
@@ -208,6 +209,7 @@ impl WindowState {
                     stance: Stance::of(state),
                     others: &others,
                     led: Some(&led),
+                    backdrop: if first.is_some() { 0.0 } else { self.backdrop() },
                 },
             };
             let view = target.create_view(&Default::default());

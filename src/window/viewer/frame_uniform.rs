@@ -22,6 +22,8 @@ pub(super) struct Frame {
     pub(super) scale: [[f32; 4]; SCALE],
     pub(super) low: [f32; 4],
     pub(super) high: [f32; 4],
+    pub(super) light: [f32; 4],
+    pub(super) backdrop: [f32; 4],
     pub(super) led: ProvisionalDabs,
 }
 

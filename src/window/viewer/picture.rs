@@ -4,6 +4,7 @@ use std::sync::mpsc;
 
 use image::RgbaImage;
 
+use super::environment::Environment;
 use super::gpu::{Gpu, NoViewer, instance};
 use super::renderer::{Renderer, Scene};
 
@@ -31,6 +32,21 @@ impl Painter {
 
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// Lights the clay by a picture of a lit ball, where the look says so.
+    pub fn set_matcap(&mut self, picture: &RgbaImage) {
+        self.renderer.surroundings.set_matcap(&self.gpu, picture);
+    }
+
+    /// Shows a picture behind the clay, where the scene says so.
+    pub fn set_reference(&mut self, picture: &RgbaImage) {
+        self.renderer.surroundings.set_reference(&self.gpu, picture);
+    }
+
+    /// Lights the clay from all around, where the look says so.
+    pub fn set_environment(&mut self, environment: &Environment) {
+        self.renderer.surroundings.set_environment(&self.gpu, environment);
     }
 
     pub fn renderer(&self) -> &Renderer {

@@ -52,6 +52,7 @@ impl WindowState {
         changed |= self.asked_camera.is_some()
             || self.camera_animation.is_some()
             || self.turning.is_some();
+        changed |= self.follow_look();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
@@ -118,6 +119,11 @@ impl WindowState {
                 TaskReport::Map(values, about) => {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);
+                }
+                TaskReport::Look(found) => self.look_read(*found),
+                TaskReport::KeptPicture(name) => {
+                    self.look_again();
+                    self.ui_state.say(tr!("task-picture-kept", path = name), false);
                 }
                 TaskReport::Read(picture) => self.first_picture = Some(picture),
                 TaskReport::Opened => self.opened = Some(wiring.clock.now_us()),

@@ -11,7 +11,8 @@ use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
 use super::provisional::ProvisionalDabs;
-use crate::look::{Look, Map, linear};
+use super::surroundings::Surroundings;
+use crate::look::{Light, Look, Map, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
@@ -55,6 +56,8 @@ pub struct Beside<'a> {
     pub stance: Stance,
     /// The other objects.
     pub others: &'a [OtherObject<'a>],
+    /// How dense the reference picture is behind the clay, 0 none to 1.
+    pub backdrop: f32,
     /// What the pens will have raised when the frame is seen.
     pub led: Option<&'a ProvisionalDabs>,
 }
@@ -74,6 +77,8 @@ pub struct Renderer {
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     objects: ObjectBuffers,
+    /// What the clay is lit by beside the studio's own lights.
+    pub(super) surroundings: Surroundings,
     samples: u32,
     format: wgpu::TextureFormat,
     targets: Option<Targets>,
@@ -131,9 +136,10 @@ impl Renderer {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
         });
+        let surroundings = Surroundings::new(gpu);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("clay"),
-            bind_group_layouts: &[Some(&layout)],
+            bind_group_layouts: &[Some(&layout), Some(&surroundings.layout)],
             ..Default::default()
         });
         let line_layout = wgpu::VertexBufferLayout {
@@ -202,6 +208,7 @@ impl Renderer {
             line_ends,
             pages: None,
             objects: ObjectBuffers::new(layout),
+            surroundings,
             samples,
             format,
             targets: None,
@@ -300,18 +307,22 @@ impl Renderer {
         } else {
             [[28, 29, 33], [63, 65, 71]]
         };
+        // A picture of a ball has its colour in it.
+        let base = if scene.look.light == Light::Matcap { [1.0; 3] } else { m.base };
         let frame = Frame {
             view_projection: matrix.to_cols_array_2d(),
             right: right.extend(0.0).to_array(),
             up: up.extend(0.0).to_array(),
             back: scene.camera.backward().extend(0.0).to_array(),
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
-            base: [m.base[0], m.base[1], m.base[2], f32::from(scene.look.flat)],
+            base: [base[0], base[1], base[2], f32::from(scene.look.flat)],
             finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
             map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
             scale: scene.look.map.scale(),
             low: linear(ground[0]),
             high: linear(ground[1]),
+            light: light(&scene.look),
+            backdrop: self.surroundings.backdrop(size, scene.beside.backdrop),
             led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
@@ -347,6 +358,7 @@ impl Renderer {
             let resolve = if shaded { None } else { resolve };
             let mut pass = begin(encoder, view, resolve, depth, (true, shaded));
             pass.set_bind_group(0, &self.group, &[]);
+            pass.set_bind_group(1, &self.surroundings.group, &[]);
             pass.set_pipeline(&self.sky);
             pass.draw(0..3, 0..1);
             if let Some(pages) = &self.pages {
@@ -379,6 +391,7 @@ impl Renderer {
         if resolve.is_some() || !lines.is_empty() || scene.beside.overlay.is_some() {
             let mut pass = begin(encoder, view, resolve, depth, (false, false));
             pass.set_bind_group(0, &self.group, &[]);
+            pass.set_bind_group(1, &self.surroundings.group, &[]);
             self.over(scene, &mut pass, lines.len() as u32);
         }
     }
@@ -444,6 +457,21 @@ fn begin<'e>(
         }),
         ..Default::default()
     })
+}
+
+/// What lights the clay, as the shader has it: which, how far turned, how bright, metal. A map's
+/// colours are told by the studio's lights alone.
+fn light(look: &Look) -> [f32; 4] {
+    let kind = match look.light {
+        _ if look.map != Map::None => 0.0,
+        Light::Studio => 0.0,
+        Light::Matcap => 1.0,
+        Light::Room | Light::Environment => 2.0,
+    };
+    let metal = look.material().metal && look.map == Map::None;
+    let bright = if look.bright.is_finite() { look.bright.clamp(0.0, 4.0) } else { 1.0 };
+    let turned = if look.turned.is_finite() { look.turned.to_radians() } else { 0.0 };
+    [kind, turned, bright, f32::from(metal)]
 }
 
 /// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is

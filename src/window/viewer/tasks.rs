@@ -12,6 +12,7 @@ use glam::Vec3;
 
 use super::folder_listing::list_folder;
 use super::latest_wins::LatestWins;
+use super::look_files::{LookFiles, LookFilesWanted, LookFolders};
 use super::pages::MapValues;
 use super::preview::{self, Preview};
 use super::task_texts::{failed, operation_title, saved};
@@ -74,6 +75,10 @@ pub enum TaskReport {
     /// The desktop offers no dialog.
     NoDialog(FilePurpose),
     Listed(PathBuf, FolderListing),
+    /// Pictures for the look were read.
+    Look(Box<LookFiles>),
+    /// A picture that was dropped on the window was kept here.
+    KeptPicture(String),
 }
 
 /// A mesh on its way into the loop.
@@ -531,6 +536,26 @@ impl Tasks {
         thread("sculptd-folder", move || {
             let listing = list_folder(&folder);
             let _ = say.send(TaskReport::Listed(folder, listing));
+        });
+    }
+
+    /// Reads pictures for the look.
+    pub fn look(&self, wanted: LookFilesWanted, folders: LookFolders) {
+        let say = self.say.clone();
+        thread("sculptd-look", move || {
+            let found = LookFiles::read(&wanted, &folders);
+            let _ = say.send(TaskReport::Look(Box::new(found)));
+        });
+    }
+
+    /// Keeps a picture that was dropped on the window.
+    pub fn keep_picture(&self, path: PathBuf, folders: LookFolders) {
+        let say = self.say.clone();
+        thread("sculptd-look", move || {
+            let _ = say.send(match folders.keep(&path) {
+                Ok(kept) => TaskReport::KeptPicture(kept.display().to_string()),
+                Err(e) => TaskReport::Message(e, true),
+            });
         });
     }
 

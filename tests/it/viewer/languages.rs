@@ -185,7 +185,8 @@ fn what_unfolds_and_what_lies_over_the_clay_fits_in_every_language() {
             h.state_mut().published.brush.topology.by = sculptd_clay::brush::Measure::Brush;
             for title in FOLDED {
                 let title = language.find(title, &[]).expect("a message");
-                h.query_all_by_label(&title).for_each(|node| node.click());
+                // Not by the pointer: what unfolds moves what else has the label.
+                h.query_all_by_label(&title).for_each(|node| node.click_accesskit());
                 h.run_steps(2);
             }
             // The animation of what unfolds.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::key_map::KeySettings;
+use super::light::Reference;
 use crate::look::Look;
 use sculptd_engine::camera::Camera;
 
@@ -97,6 +98,10 @@ pub struct Preferences {
     #[serde(alias = "done")]
     pub hints: HintsFollowed,
     pub look: Look,
+    /// The person's own picture of a lit ball and of surroundings, by their files' names.
+    pub matcap: String,
+    pub environment: String,
+    pub reference: Reference,
     pub keys: KeySettings,
     pub recent: Vec<PathBuf>,
     /// Views to come back to.
@@ -115,6 +120,9 @@ impl Default for Preferences {
             two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),
+            matcap: String::new(),
+            environment: String::new(),
+            reference: Reference::default(),
             keys: KeySettings::default(),
             recent: Vec::new(),
             kept_views: Vec::new(),

@@ -7,6 +7,7 @@ use super::history::{HistoryVersions, StepPicture};
 use super::keys::KeysPage;
 use super::kiosk::KioskPad;
 use super::layers::LayerPanel;
+use super::light::LightPage;
 use super::mask::MaskPanel;
 use super::messages::Message;
 use super::operation::{BooleanTrial, Modal};
@@ -59,6 +60,8 @@ pub struct UiState {
     /// The face sets as they were last counted, and what the next ones are made with.
     pub face_sets: FaceSetPanel,
     pub mask: MaskPanel,
+    /// A person's own pictures for the look of the clay.
+    pub light: LightPage,
     /// How fine the next remeshing is.
     pub remesh: Wanted,
     /// Quads and decimation.

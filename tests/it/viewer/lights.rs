@@ -1,0 +1,134 @@
+//! What lights the clay: pictures of lit balls, surroundings, a reference behind it; in pictures by
+//! the renderer and by the command.
+
+use std::path::Path;
+use std::process::Command;
+
+use image::{Rgba, RgbaImage};
+use sculptd_engine::camera::Camera;
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
+use sculptd_window::look::{Light, Look};
+use sculptd_window::viewer::environment::Environment;
+use sculptd_window::viewer::picture::Painter;
+use sculptd_window::viewer::renderer::{Beside, Scene};
+
+use super::pictures::{framed, painter};
+use crate::clay::sphere;
+
+/// A picture of a ball from the front, bare of all that is not light.
+fn ball(painter: &mut Painter, look: Look, backdrop: f32) -> RgbaImage {
+    let mut mesh = sphere(20_000);
+    let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
+    let scene = Scene {
+        mesh: &mesh.snapshot(),
+        camera: &camera,
+        brush: None,
+        lines: &[],
+        look: Look { cavity: 0.0, shade: 0.0, ..look },
+        values: None,
+        beside: Beside { backdrop, ..Beside::default() },
+    };
+    painter.paint(&scene, 200, 200).expect("a picture")
+}
+
+/// Brightness of a pixel, of 765.
+fn bright(picture: &RgbaImage, x: u32, y: u32) -> i32 {
+    picture.get_pixel(x, y).0[..3].iter().map(|c| i32::from(*c)).sum()
+}
+
+#[test]
+fn a_picture_of_a_lit_ball_lights_the_clay_as_its_normals_look() {
+    let Some(mut painter) = painter() else { return };
+    let (green, red) = (Rgba([20, 200, 30, 255]), Rgba([200, 20, 30, 255]));
+    let halves = RgbaImage::from_fn(64, 64, |_, y| if y < 32 { green } else { red });
+    painter.set_matcap(&halves);
+    let seen = ball(&mut painter, Look { light: Light::Matcap, ..Look::default() }, 0.0);
+    // As stored, above and below the middle: nothing of the studio's lights is in it.
+    for (y, asked) in [(70, green), (130, red)] {
+        let found = seen.get_pixel(100, y).0;
+        let off = found.iter().zip(asked.0).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(off.is_some_and(|off| off < 6), "{found:?} for {asked:?}");
+    }
+}
+
+#[test]
+fn surroundings_light_the_side_that_faces_their_light() {
+    let Some(mut painter) = painter() else { return };
+    // A bright patch at the right, level with the eye.
+    let mut sky = vec![0.05f32; 64 * 32 * 3];
+    for y in 12..20 {
+        for x in 44..52 {
+            sky[3 * (64 * y + x)..][..3].fill(40.0);
+        }
+    }
+    let sky = Environment::of_picture(64, 32, &sky).expect("a picture");
+    painter.set_environment(&sky);
+    let look = Look { light: Light::Environment, material: 1, ..Look::default() };
+    let plain = ball(&mut painter, look, 0.0);
+    let (left, right) = (bright(&plain, 55, 100), bright(&plain, 145, 100));
+    assert!(right > left + 100, "{left} at the left, {right} at the right");
+    let turned = ball(&mut painter, Look { turned: 180.0, ..look }, 0.0);
+    let (left, right) = (bright(&turned, 55, 100), bright(&turned, 145, 100));
+    assert!(left > right + 100, "{left} at the left, {right} at the right");
+    // Metal mirrors the patch and is dark beside it; clay scatters the light.
+    let steel = Look { light: Light::Environment, material: 7, ..Look::default() };
+    let steel = ball(&mut painter, steel, 0.0);
+    let brightest = |p: &RgbaImage| (40..160).map(|x| bright(p, x, 100)).max().unwrap_or(0);
+    assert!(brightest(&steel) > 700, "{}", brightest(&steel));
+    assert!(bright(&steel, 80, 100) < bright(&plain, 80, 100));
+}
+
+#[test]
+fn a_reference_lies_behind_the_clay_and_nowhere_else() {
+    let Some(mut painter) = painter() else { return };
+    let without = ball(&mut painter, Look::default(), 0.0);
+    painter.set_reference(&RgbaImage::from_pixel(80, 40, Rgba([0, 0, 255, 255])));
+    let with = ball(&mut painter, Look::default(), 1.0);
+    assert_eq!(with.get_pixel(100, 100), without.get_pixel(100, 100), "the clay is before it");
+    assert_eq!(with.get_pixel(2, 100).0, [0, 0, 255, 255]);
+    // Twice as wide as high: it is whole in the view, and above it is the ground.
+    assert_eq!(with.get_pixel(2, 10), without.get_pixel(2, 10));
+}
+
+fn render(args: &[&str], folder: &Path) -> (Option<i32>, String) {
+    let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .arg("render")
+        .args(args)
+        .current_dir(folder)
+        .output()
+        .expect("it runs");
+    (out.status.code(), String::from_utf8_lossy(&out.stderr).into_owned())
+}
+
+#[test]
+fn the_command_draws_by_name_by_ball_and_by_surroundings() {
+    if painter().is_none() {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| dir.path().join(name);
+    write_mesh(&at("ball.obj"), &shapes::sphere_of_about(2_000).to_poly()).expect("written");
+    RgbaImage::from_pixel(8, 8, Rgba([250, 0, 0, 255])).save(at("red.png")).expect("written");
+    let common = ["ball.obj", "--size", "64x64", "-o"];
+    let middle = |name: &str| image::open(at(name)).expect("a PNG").to_rgba8().get_pixel(32, 32).0;
+    for (name, more) in [
+        ("usual.png", &[][..]),
+        ("steel.png", &["--material", "steel", "--room"]),
+        ("ball.png", &["--matcap", "red.png"]),
+    ] {
+        let args = [&common[..], &[name], more].concat();
+        let (code, said) = render(&args, dir.path());
+        assert_eq!(code, Some(0), "{name}: {said}");
+        assert!(middle(name)[3] == 255);
+    }
+    let [r, g, _, _] = middle("ball.png");
+    assert!(r > 200 && g < 40, "the ball's own colour, {r} {g}");
+    assert_ne!(middle("usual.png"), middle("steel.png"));
+    let args = [&common[..], &["none.png", "--environment", "ball.obj"]].concat();
+    let (code, said) = render(&args, dir.path());
+    assert_eq!(code, Some(6), "{said}");
+    assert!(said.contains("ball.obj") && !at("none.png").exists(), "{said}");
+    let args = [&common[..], &["none.png", "--material", "glass"]].concat();
+    assert_eq!(render(&args, dir.path()).0, Some(2));
+}
