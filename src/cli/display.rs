@@ -86,6 +86,28 @@ pub fn window(
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
 }
 
+/// Whether the window has what the screen of an installation is to be shown with.
+///
+/// # Errors
+/// Names the material that there is none of, and those that there are.
+#[cfg(feature = "viewer")]
+pub fn check_screen(screen: &sculptd_daemon::kiosk::ScreenSettings) -> Result<(), String> {
+    let names = sculptd_window::look::MATERIALS.map(|m| m.short_name());
+    if screen.material.is_empty() || names.contains(&screen.material.as_str()) {
+        return Ok(());
+    }
+    Err(format!("screen.material = \"{}\": expected {}", screen.material, names.join(", ")))
+}
+
+/// Nothing is shown without a window.
+///
+/// # Errors
+/// None.
+#[cfg(not(feature = "viewer"))]
+pub fn check_screen(_: &sculptd_daemon::kiosk::ScreenSettings) -> Result<(), String> {
+    Ok(())
+}
+
 /// The languages of the window: those that the program brings along, and those of the person's own
 /// folder, `languages/CODE/window.ftl` beside the preferences. The first one is guessed from the
 /// environment, as `setlocale` reads it.

@@ -310,6 +310,7 @@ fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
         None => KioskConfig::default(),
     };
     config.words(LANGUAGES).map_err(Fail::Config)?;
+    display::check_screen(&config.screen).map_err(Fail::Config)?;
     Ok(Some(config))
 }
 

@@ -27,7 +27,7 @@ use crate::tablet_controls::TabletControls;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
 use crate::window_link::{WindowLink, WindowStanding};
-use sculptd_clay::brush::Presets;
+use sculptd_clay::brush::{BrushSettings, Presets};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{self, SenderFactory};
 use sculptd_devices::recording::Player;
@@ -157,7 +157,7 @@ impl LiveRun {
         let first = options.kiosk.is_some().then(|| keeper::Start {
             plain: Arc::new(begun.world.mesh().to_tri()),
             camera: config.camera.camera(),
-            brush: *begun.world.brush(),
+            brush: first_brush(&options, *begun.world.brush()),
         });
         let (writer, writing) = begun.journal.unzip();
         let health = writing.as_ref().map(|t| t.health.clone());
@@ -346,12 +346,26 @@ fn screen(
     stop: &Arc<AtomicBool>,
 ) -> Result<keeper::Screen, LiveRunError> {
     let words = kiosk.every_language(languages).map_err(LiveRunError::Kiosk)?;
-    let staff = !kiosk.staff_pin.is_empty();
+    let (staff, show) = (!kiosk.staff_pin.is_empty(), kiosk.screen.clone());
     let (published, commands) = (live.published.clone(), live.commands.clone());
     let (clock, stop) = (clock.clone(), stop.clone());
-    let keeper = keeper::start(kiosk, first, published, commands, factory, clock, stop)
+    let settings = (kiosk, &words[0]);
+    let keeper = keeper::start(settings, first, published, commands, factory, clock, stop)
         .map_err(LiveRunError::Kiosk)?;
-    Ok(keeper::Screen { desk: keeper.desk, words, staff })
+    Ok(keeper::Screen { desk: keeper.desk, words, staff, show })
+}
+
+/// What visitors of an installation begin with: the brush of its settings, or the world's own.
+fn first_brush(options: &LiveOptions, now: BrushSettings) -> BrushSettings {
+    let Some(kiosk) = &options.kiosk else { return now };
+    let mut brush = match kiosk.brush_kind() {
+        Ok(Some(kind)) => options.presets.switched(&now, kind),
+        _ => now,
+    };
+    if kiosk.radius > 0.0 {
+        brush.radius = kiosk.radius;
+    }
+    brush.clamped()
 }
 
 /// Plays recordings at their own speed on a thread of their own, from now on.

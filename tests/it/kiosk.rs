@@ -124,11 +124,19 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
         share_minutes: 2.0 / 60.0,
         ..KioskConfig::default()
     };
+    let words = kiosk.words(sculptd::settings::LANGUAGES).expect("English");
     let stop = Arc::new(AtomicBool::new(false));
     let (published, commands) = (live.published.clone(), live.commands.clone());
-    let keeper =
-        keeper::start(kiosk, start, published, commands, &factory, clock.clone(), stop.clone())
-            .expect("keeps");
+    let keeper = keeper::start(
+        (kiosk, &words),
+        start,
+        published,
+        commands,
+        &factory,
+        clock.clone(),
+        stop.clone(),
+    )
+    .expect("keeps");
     let stage = || keeper.desk.view.lock().expect("a view").map(|v| v.stage);
     let shown = || live.published.load_full();
     until("the film sculpts", || shown().figures.dabs > 20 && shown().mesh.hash() != clean);

@@ -12,8 +12,9 @@ use crossbeam_channel as cc;
 use super::film::AttractRecording;
 #[cfg(unix)]
 use super::share;
+use super::speech::Speech;
 use super::spool::Spool;
-use super::{Cycle, KioskAct, KioskConfig, Language, Stage, View, gallery};
+use super::{Cycle, KioskAct, KioskConfig, Language, ScreenSettings, Stage, View, gallery};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
 use crate::command_queue::{CommandSender, QueuedCommand};
@@ -79,6 +80,8 @@ pub struct Screen {
     pub words: Vec<Language>,
     /// Staff can leave by a number.
     pub staff: bool,
+    /// How all of it is shown.
+    pub show: ScreenSettings,
 }
 
 /// A running keeper; it ends when `stop` is raised.
@@ -104,13 +107,14 @@ struct KioskThread {
     began_us: u64,
     dabs_before: u64,
     spool: Option<Spool>,
+    speech: Speech,
     #[cfg(unix)]
     share: Option<share::Share>,
 }
 
 /// Starts keeping. A recording that cannot be played is an error here and not in front of visitors.
 pub fn start(
-    config: KioskConfig,
+    (config, words): (KioskConfig, &Language),
     start: Start,
     published: Arc<ArcSwap<Published>>,
     commands: CommandSender,
@@ -145,6 +149,8 @@ pub fn start(
             Some(share.map_err(|e| format!("share {at}: {e}"))?)
         }
     };
+    let countdown = format!("{} {}", words.countdown, words.go_on);
+    let speech = Speech::new(&config.speak, &words.welcome, &countdown);
     let desk = Arc::new(KioskDesk::default());
     let mut keeping = KioskThread {
         config,
@@ -161,6 +167,7 @@ pub fn start(
         began_us: 0,
         dabs_before: 0,
         spool,
+        speech,
         #[cfg(unix)]
         share,
     };
@@ -200,6 +207,7 @@ impl KioskThread {
                 #[cfg(unix)]
                 self.drop_expired();
             }
+            self.speech.say(&cycle.view());
             if let Ok(mut view) = self.desk.view.lock() {
                 *view = Some(cycle.view());
             }

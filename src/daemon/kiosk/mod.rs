@@ -18,7 +18,8 @@ pub mod names;
 pub mod settings;
 #[cfg(unix)]
 pub mod share;
+mod speech;
 pub mod spool;
 
 pub use cycle::{Cycle, KioskAct, Stage, View};
-pub use settings::{KioskConfig, Language};
+pub use settings::{KioskConfig, Language, ScreenSettings};

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use sculptd_clay::brush::BrushKind;
 use serde::{Deserialize, Serialize};
 
 /// Texts of languages, each behind its code (`en`), in the form of `config/languages/en.toml`.
@@ -25,6 +26,37 @@ pub struct KioskConfig {
     pub share_minutes: f64,
     pub audit: PathBuf,
     pub attract: Vec<PathBuf>,
+    /// The brush that every visitor begins with; empty: that of the configuration.
+    pub brush: String,
+    /// Its radius, a share of the object's bounding radius; 0: its own.
+    pub radius: f32,
+    pub screen: ScreenSettings,
+    /// A program and its arguments that says what the screen says, given as its last argument.
+    pub speak: Vec<String>,
+}
+
+/// How the screen is shown to those who see, reach or press otherwise than most.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScreenSettings {
+    /// Words and buttons, times their usual size.
+    pub text: f32,
+    /// White on black, with strong outlines.
+    pub contrast: bool,
+    /// Everything to be pressed lies in the lower half of the screen.
+    pub seated: bool,
+    /// For one switch, which is any key: each button is lit for so many seconds, and the switch
+    /// presses the one that is. 0: none is.
+    pub scan_s: f64,
+    /// The clay's material by its name; empty: clay.
+    pub material: String,
+}
+
+impl Default for ScreenSettings {
+    fn default() -> Self {
+        let material = String::new();
+        ScreenSettings { text: 1.0, contrast: false, seated: false, scan_s: 0.0, material }
+    }
 }
 
 impl Default for KioskConfig {
@@ -44,6 +76,10 @@ impl Default for KioskConfig {
             share_minutes: 30.0,
             audit: PathBuf::new(),
             attract: vec![],
+            brush: String::new(),
+            radius: 0.0,
+            screen: ScreenSettings::default(),
+            speak: vec![],
         }
     }
 }
@@ -84,11 +120,33 @@ impl KioskConfig {
         {
             return Err("gallery_store and share need a gallery: works are kept there first".into());
         }
+        let ScreenSettings { text, scan_s, .. } = self.screen;
+        if !(1.0..=2.5).contains(&text) {
+            return Err(format!("screen.text = {text}: expected a number from 1 to 2.5"));
+        }
+        if scan_s != 0.0 && !(0.3..=30.0).contains(&scan_s) {
+            return Err(format!(
+                "screen.scan_s = {scan_s}: expected 0, or a number from 0.3 to 30"
+            ));
+        }
+        if !(0.0..=2.0).contains(&self.radius) {
+            return Err(format!("radius = {}: expected a number from 0 to 2", self.radius));
+        }
+        self.brush_kind()?;
         let digits = self.staff_pin.chars().all(|c| c.is_ascii_digit());
         if !(self.staff_pin.is_empty() || digits && self.staff_pin.len() >= 4) {
             return Err("staff_pin: expected four digits or more, in quotes, or nothing".into());
         }
         Ok(())
+    }
+
+    /// The brush that every visitor begins with; `None`: that of the configuration.
+    ///
+    /// # Errors
+    /// Names the brush that there is none of, and those that there are.
+    pub fn brush_kind(&self) -> Result<Option<BrushKind>, String> {
+        let name = Some(&self.brush).filter(|name| !name.is_empty());
+        name.map(|name| name.parse().map_err(|e| format!("brush: {e}"))).transpose()
     }
 
     /// The words to show: of `languages`, or of those that the program brings along.

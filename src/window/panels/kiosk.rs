@@ -30,6 +30,10 @@ pub fn ui(
     let ctx = ui.ctx().clone();
     if ui_state.applied.is_none() {
         theme::apply(&ctx, ui_state.prefs.light);
+        if screen.show.contrast {
+            theme::strong(&ctx);
+        }
+        ctx.set_zoom_factor(screen.show.text);
         ui_state.applied = Some((ui_state.prefs.light, 100));
     }
     // The menu of the hands speaks the language of the screen, where the window has it.
@@ -44,24 +48,77 @@ pub fn ui(
         *pad = KioskPad { visits: now.visits, ..KioskPad::default() };
     }
     let Some(words) = screen.words.get(pad.language).or(screen.words.first()) else { return };
-    let free = ctx.content_rect();
-    languages(&ctx, free, screen, pad);
+    let mut scan = Scan::begin(&ctx, screen, pad);
+    if scan.pressed && now.stage == Stage::Attract {
+        screen.desk.touched.store(true, Relaxed);
+    }
+    let whole = ctx.content_rect();
+    let mut free = whole;
+    if screen.show.seated {
+        // The lower half can be reached from a chair.
+        free.min.y = free.center().y;
+    }
+    languages(&ctx, free, screen, pad, &mut scan);
     if screen.staff {
-        door(&ctx, free, words, now.locked, screen, pad);
+        door(&ctx, free, words, now.locked, screen, pad, &mut scan);
     }
     match now.stage {
         Stage::Attract => {
             said(&ctx, free, &words.welcome, 44.0);
             #[cfg(unix)]
             if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
-                kept(&ctx, free, words, &link);
+                kept(&ctx, whole, words, &link);
             }
         }
-        Stage::Working => tools(&ctx, free, view, words, screen, out),
+        Stage::Working => tools(&ctx, free, view, words, screen, out, &mut scan),
         Stage::Countdown => {
             let text = words.countdown.replace("{seconds}", &now.seconds_left.to_string());
-            countdown(&ctx, free, &text, words, screen);
+            countdown(&ctx, free, &text, words, screen, &mut scan);
         }
+    }
+    ui_state.pad.targets = scan.count;
+}
+
+/// The buttons of one frame, each lit in turn for people who press one switch.
+struct Scan {
+    /// The button that is lit, of those that came with the last frame; `None`: none is.
+    lit: Option<usize>,
+    /// The switch was pressed in this frame.
+    pressed: bool,
+    count: usize,
+}
+
+impl Scan {
+    fn begin(ctx: &egui::Context, screen: &Screen, pad: &KioskPad) -> Scan {
+        let each = screen.show.scan_s;
+        if each <= 0.0 || pad.targets == 0 {
+            return Scan { lit: None, pressed: false, count: 0 };
+        }
+        let (turns, pressed) = ctx.input(|i| {
+            let down = |e: &egui::Event| {
+                matches!(e, egui::Event::Key { pressed: true, repeat: false, .. })
+            };
+            (i.time / each, i.events.iter().any(down))
+        });
+        let next = (1.0 - turns.fract()) * each;
+        ctx.request_repaint_after(std::time::Duration::from_secs_f64(next.max(0.01)));
+        Scan { lit: Some(turns as usize % pad.targets), pressed, count: 0 }
+    }
+
+    /// Adds a button; whether it was pressed, by the switch too while it is lit.
+    fn button(&mut self, ui: &mut egui::Ui, enabled: bool, button: Button<'_>) -> bool {
+        let response = ui.add_enabled(enabled, button);
+        if !enabled {
+            return false;
+        }
+        let lit = self.lit == Some(self.count);
+        self.count += 1;
+        if lit {
+            let stroke = egui::Stroke::new(5.0, theme::accent(ui));
+            let around = response.rect.expand(3.0);
+            ui.painter().rect_stroke(around, 12, stroke, egui::StrokeKind::Outside);
+        }
+        response.clicked() || lit && self.pressed
     }
 }
 
@@ -128,14 +185,21 @@ fn kept(
 }
 
 /// The languages, each by its own name.
-fn languages(ctx: &egui::Context, free: egui::Rect, screen: &Screen, pad: &mut KioskPad) {
+fn languages(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    screen: &Screen,
+    pad: &mut KioskPad,
+    scan: &mut Scan,
+) {
     if screen.words.len() < 2 {
         return;
     }
     place(ctx, "languages", free, Align2::LEFT_TOP, |ui| {
         ui.horizontal(|ui| {
             for (i, l) in screen.words.iter().enumerate() {
-                if ui.add(large(&l.name, 20.0, 130.0).selected(pad.language == i)).clicked() {
+                let button = large(&l.name, 20.0, 130.0).selected(pad.language == i);
+                if scan.button(ui, true, button) {
                     pad.language = i;
                     screen.desk.touched.store(true, Relaxed);
                 }
@@ -152,10 +216,13 @@ fn tools(
     words: &Language,
     screen: &Screen,
     out: &mut Vec<UiRequest>,
+    scan: &mut Scan,
 ) {
     let now = view.state.brush;
     place(ctx, "tools", free, Align2::CENTER_BOTTOM, |ui| {
-        ui.horizontal(|ui| {
+        ui.set_max_width(free.width() - 80.0);
+        ui.horizontal_wrapped(|ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             for (name, kind, negative) in [
                 (&words.draw, BrushKind::Clay, false),
                 (&words.carve, BrushKind::Clay, true),
@@ -165,7 +232,7 @@ fn tools(
                 let smooths = kind == BrushKind::Smooth;
                 let alike = smooths == (now.kind == BrushKind::Smooth);
                 let chosen = alike && (smooths || now.negative == negative);
-                if ui.add(large(name, 24.0, 160.0).selected(chosen)).clicked() {
+                if scan.button(ui, true, large(name, 24.0, 160.0).selected(chosen)) {
                     let mut brush = if alike { now } else { view.presets.switched(&now, kind) };
                     brush.negative = negative;
                     out.push(UiRequest::World(Command::Brush(brush)));
@@ -173,24 +240,31 @@ fn tools(
                 }
             }
             ui.separator();
-            let undo = ui.add_enabled(view.state.undo_steps > 0, large(&words.undo, 24.0, 150.0));
-            if undo.clicked() {
+            let undo = large(&words.undo, 24.0, 150.0);
+            if scan.button(ui, view.state.undo_steps > 0, undo) {
                 out.push(UiRequest::World(Command::Undo));
                 screen.desk.touched.store(true, Relaxed);
             }
-            if ui.add(large(&words.finish, 24.0, 150.0)).clicked() {
+            if scan.button(ui, true, large(&words.finish, 24.0, 150.0)) {
                 screen.desk.finished.store(true, Relaxed);
             }
         });
     });
 }
 
-fn countdown(ctx: &egui::Context, free: egui::Rect, text: &str, words: &Language, screen: &Screen) {
+fn countdown(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    text: &str,
+    words: &Language,
+    screen: &Screen,
+    scan: &mut Scan,
+) {
     place(ctx, "countdown", free, Align2::CENTER_CENTER, |ui| {
         ui.vertical_centered(|ui| {
             ui.add(egui::Label::new(RichText::new(text).size(32.0)).extend());
             ui.add_space(16.0);
-            if ui.add(large(&words.go_on, 28.0, 300.0)).clicked() {
+            if scan.button(ui, true, large(&words.go_on, 28.0, 300.0)) {
                 screen.desk.touched.store(true, Relaxed);
             }
         });
@@ -205,11 +279,14 @@ fn door(
     locked: bool,
     screen: &Screen,
     pad: &mut KioskPad,
+    scan: &mut Scan,
 ) {
-    place(ctx, "door", free, Align2::RIGHT_TOP, |ui| {
+    // Two areas: one that grows would be placed by its former size.
+    let name = if pad.typed.is_some() { "keypad" } else { "door" };
+    place(ctx, name, free, Align2::RIGHT_TOP, |ui| {
         let Some(typed) = &mut pad.typed else {
             // In a row, for in a column its word stands at the left.
-            if ui.horizontal(|ui| ui.add(large(&words.staff, 16.0, 90.0))).inner.clicked() {
+            if ui.horizontal(|ui| scan.button(ui, true, large(&words.staff, 16.0, 90.0))).inner {
                 pad.typed = Some(String::new());
             }
             return;
@@ -217,13 +294,13 @@ fn door(
         let mut close = false;
         ui.vertical(|ui| {
             // Never the number itself.
-            ui.label(RichText::new("•".repeat(typed.len().max(1))).size(28.0));
+            let shown = if typed.is_empty() { "–".to_owned() } else { "•".repeat(typed.len()) };
+            ui.label(RichText::new(shown).size(28.0));
             for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["×", "0", "OK"]] {
                 ui.horizontal(|ui| {
                     for key in row {
-                        let pressed = ui
-                            .add_enabled(key == "×" || !locked, large(key, 24.0, TARGET + 8.0))
-                            .clicked();
+                        let button = large(key, 24.0, TARGET + 8.0);
+                        let pressed = scan.button(ui, key == "×" || !locked, button);
                         match key {
                             _ if !pressed => {}
                             "×" => close = true,

@@ -42,6 +42,26 @@ pub fn apply(ctx: &egui::Context, light: bool) {
     });
 }
 
+/// For people who see little: white on black, outlines of two points, what is chosen in yellow.
+pub fn strong(ctx: &egui::Context) {
+    let mut v = Visuals::dark();
+    (v.panel_fill, v.window_fill, v.extreme_bg_color) =
+        (Color32::BLACK, Color32::BLACK, Color32::BLACK);
+    v.override_text_color = None;
+    v.selection.bg_fill = Color32::from_rgb(255, 221, 0);
+    v.selection.stroke = Stroke::new(2.0, Color32::BLACK);
+    v.window_stroke = Stroke::new(2.0, Color32::WHITE);
+    let w = &mut v.widgets;
+    for state in
+        [&mut w.noninteractive, &mut w.inactive, &mut w.hovered, &mut w.active, &mut w.open]
+    {
+        (state.bg_fill, state.weak_bg_fill) = (Color32::BLACK, Color32::BLACK);
+        state.bg_stroke = Stroke::new(2.0, Color32::WHITE);
+        state.fg_stroke = Stroke::new(2.0, Color32::WHITE);
+    }
+    ctx.set_visuals(v);
+}
+
 fn quiet_of(light: bool) -> Color32 {
     if light { Color32::from_rgb(84, 88, 98) } else { Color32::from_rgb(164, 168, 178) }
 }

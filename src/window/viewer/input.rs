@@ -127,6 +127,10 @@ impl WindowState {
             self.held_on_panels &= !bit;
             return;
         }
+        if let Some(kiosk) = wiring.kiosk.as_ref().filter(|_| down) {
+            // However short the press is: the loop may not have felt it when it is looked at.
+            kiosk.desk.touched.store(true, Relaxed);
+        }
         self.button(button, down, wiring);
     }
 

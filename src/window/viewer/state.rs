@@ -29,6 +29,7 @@ use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
 use super::wiring::Wiring;
 use crate::language::{set_current, tr};
+use crate::look::{MATERIALS, Material};
 use crate::panels::hand_menu::MenuBall;
 use crate::panels::state::{FrameFigures, KeyMap, UiState};
 use sculptd_clay::Snapshot;
@@ -187,6 +188,10 @@ impl WindowState {
             // Nothing of yesterday's visitors.
             Some(_) => PreferencesFile::nothing(),
         };
+        if let Some(kiosk) = &wiring.kiosk {
+            let named = |m: &Material| m.short_name() == kiosk.show.material;
+            ui_state.look.material = MATERIALS.iter().position(named).unwrap_or(0);
+        }
         set_current(wiring.translations.choose(&ui_state.prefs.language));
         for (path, error) in &wiring.translations.wrong {
             let path = path.display().to_string();

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::{KioskDesk, Screen};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
@@ -18,7 +19,7 @@ fn screen() -> Screen {
     let words = KioskConfig::default()
         .every_language(sculptd::settings::LANGUAGES)
         .expect("three languages");
-    Screen { desk: Arc::new(KioskDesk::default()), words, staff: true }
+    Screen { desk: Arc::new(KioskDesk::default()), words, staff: true, show: Default::default() }
 }
 
 fn at(screen: &Screen, stage: Stage, visits: u64) {
@@ -155,4 +156,43 @@ fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
         h.run_steps(3);
         assert!(h.query_by_label(&url).is_none());
     }
+}
+
+#[test]
+fn one_switch_presses_what_is_lit_and_all_lies_within_reach() {
+    let mut screen = screen();
+    screen.show.scan_s = 1.0;
+    screen.show.seated = true;
+    screen.show.contrast = true;
+    at(&screen, Stage::Working, 0);
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    // Everything to be pressed lies in the lower half.
+    for name in ["Add", "Carve", "Smooth", "Finished", "English", "Staff"] {
+        let rect = h.get_by_label(name).rect();
+        assert!(rect.top() >= 360.0 && rect.bottom() <= 720.0, "{name}: {rect:?}");
+    }
+    // The context's time goes on by a step a frame: within a round of the buttons the switch has
+    // met Carve and Smooth and Finished, whichever was lit first.
+    let finished = || screen.desk.finished.swap(false, Relaxed);
+    let (mut carved, mut smoothed, mut ended) = (false, false, false);
+    for _ in 0..400 {
+        h.key_press(egui::Key::Space);
+        h.step();
+        for asked in h.state_mut().asked.drain(..) {
+            if let UiRequest::World(Command::Brush(brush)) = asked {
+                carved |= brush.negative;
+                smoothed |= brush.kind == BrushKind::Smooth;
+            }
+        }
+        ended |= finished();
+    }
+    assert!(carved && smoothed && ended, "{carved} {smoothed} {ended}");
+    // Without scanning a key presses nothing.
+    screen.show.scan_s = 0.0;
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    for _ in 0..100 {
+        h.key_press(egui::Key::Space);
+        h.step();
+    }
+    assert!(h.state().asked.is_empty() && !finished());
 }

@@ -8,4 +8,6 @@ pub struct KioskPad {
     /// What staff has typed so far, while the keypad is open.
     pub typed: Option<String>,
     pub(in crate::panels) visits: u64,
+    /// Buttons of the last frame that can be pressed.
+    pub(in crate::panels) targets: usize,
 }

@@ -1,0 +1,139 @@
+//! An installer: settings with a mistake, the attract loop, visits by pointer, languages, idleness,
+//! the staff's number, the files that are left.
+
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::{Course, hash, press, steps};
+use crate::stage::{Stage, differs, pause};
+
+/// The settings of an installation in a folder.
+fn settings(dir: &std::path::Path, more: &str) -> String {
+    let path = dir.join("kiosk.toml");
+    let (gallery, audit) = (dir.join("gallery"), dir.join("audit.jsonl"));
+    let text = format!(
+        "idle_s = 12.0\ncountdown_s = 8.0\nstaff_pin = \"4711\"\ngallery = \"{}\"\naudit = \
+         \"{}\"\n{more}",
+        gallery.display(),
+        audit.display()
+    );
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    std::fs::write(&path, text).expect("written");
+    path.display().to_string()
+}
+
+/// The word that opens the keypad, and the keys, as they lie on the stage's screen.
+const STAFF: (i32, i32) = (1196, 74);
+const KEYS: [[char; 3]; 4] = [['1', '2', '3'], ['4', '5', '6'], ['7', '8', '9'], ['x', '0', 'k']];
+
+/// Where a key of the keypad lies; `k` is its OK.
+fn place_of(key: char) -> (i32, i32) {
+    let row = KEYS.iter().position(|row| row.contains(&key)).expect("a key") as i32;
+    let column = KEYS[row as usize].iter().position(|k| *k == key).expect("a key") as i32;
+    (1048 + 79 * column, 112 + 78 * row)
+}
+
+#[test]
+fn an_installer_s_hour() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let gallery = dir.path().join("gallery");
+    std::fs::create_dir(&gallery).expect("a folder");
+    let works = || std::fs::read_dir(&gallery).map_or(0, |all| all.flatten().count());
+    // A mistake in the settings is told before anything opens, with the key and its range.
+    let wrong = settings(dir.path(), "share_minutes = 0.0\n");
+    let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .args(["run", "--kiosk", "--headless", "--for", "1", "--kiosk-config", &wrong])
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(3), "{said}");
+    assert!(said.contains("share_minutes") && said.contains("1 to 1440"), "{said}");
+
+    let right = settings(dir.path(), "");
+    let args = ["--kiosk", "--kiosk-config", &right];
+    let Some(mut c) = Course::begin("installer", &args) else { return };
+    c.step("the attract loop sculpts by itself", |_| {}, |s| s.figure("dabs") > 30);
+    let audit = dir.path().join("audit.jsonl");
+    let visits = || std::fs::read_to_string(&audit).map_or(0, |text| text.lines().count());
+    let dabs = c.s.figure("dabs");
+    c.step(
+        "a pointer that passes is no visitor: the loop goes on",
+        |s| {
+            s.drive(&["mousemove", "500", "300"]);
+            s.drive(&["mousemove", "700", "420"]);
+        },
+        |s| s.figure("dabs") > dabs + 20,
+    );
+    c.step(
+        "a touch begins a visit on clean clay",
+        |s| s.drag((-80, 0), (80, 10)),
+        |s| steps(s) == 1,
+    );
+    c.is_as_kept();
+    c.step("a second stroke", |s| s.drag((-60, 60), (60, 50)), |s| steps(s) == 2);
+    // The tools lie at the lower edge: Add, Carve, Smooth, Undo, Finished.
+    let tools = [(283, 651), (453, 651), (623, 651), (805, 651), (965, 651)];
+    let negative = |s: &Stage| super::brush(s)["negative"].clone();
+    c.step("Carve", |s| press(s, tools[1]), |s| negative(s) == true);
+    c.step("a carved stroke", |s| s.drag((-80, -60), (80, -50)), |s| steps(s) == 3);
+    c.step("Smooth", |s| press(s, tools[2]), |s| super::brush(s)["kind"] == "smooth");
+    c.step("Add", |s| press(s, tools[0]), |s| negative(s) == false);
+    c.step("Undo", |s| press(s, tools[3]), |s| steps(s) == 2);
+    c.step("Italian", |s| press(s, (250, 62)), |_| true);
+    c.is_as_kept();
+    let visitor = hash(&c.s);
+    c.step("Finished keeps the work and goes back", |s| press(s, tools[4]), |_| works() == 1);
+    c.step(
+        "the next visitor begins on clean clay",
+        |s| {
+            pause(1000);
+            s.drag((-80, 0), (80, 10));
+        },
+        |s| steps(s) == 1 && hash(s) != visitor,
+    );
+    let working = c.s.look("course-installer-working");
+    c.step(
+        "nobody moves: a countdown",
+        |_| pause(13_000),
+        |s| differs(&working, &s.look("course-installer-countdown")) > 1.0,
+    );
+    c.is_as_kept();
+    c.step("a touch stops it", |s| s.drag((-20, 20), (20, 20)), |s| steps(s) == 2);
+    c.step("and the visit outlives it", |_| pause(9_000), |s| steps(s) == 2 && visits() == 1);
+    c.step("nobody moves until its end: the work is kept", |_| {}, |_| works() == 2);
+    let dabs = c.s.figure("dabs");
+    c.step("and the attract loop goes on", |_| {}, |s| s.figure("dabs") > dabs + 20);
+    c.step(
+        "nothing of a visitor answers to undo",
+        |s| {
+            s.ask("undo", &Value::Null);
+        },
+        |s| steps(s) == 0,
+    );
+    assert_eq!(visits(), 2, "{}", std::fs::read_to_string(&audit).unwrap_or_default());
+    // Staff: a wrong number, then the right one, key by key.
+    let keypad = |s: &mut Stage, number: &str| {
+        let before = s.look("course-installer-door");
+        press(s, STAFF);
+        s.soon(|s| differs(&before, &s.look("course-installer-keypad")) > 0.3);
+        for key in number.chars().chain(['k']) {
+            pause(300);
+            press(s, place_of(key));
+        }
+    };
+    c.step(
+        "a wrong number ends nothing",
+        |s| keypad(s, "4712"),
+        |s| {
+            pause(1500);
+            s.daemon.0.try_wait().is_ok_and(|ended| ended.is_none())
+        },
+    );
+    c.steps += 1;
+    keypad(&mut c.s, "4711");
+    c.s.until("the right one ends the installation", |s| {
+        s.daemon.0.try_wait().is_ok_and(|ended| ended.is_some())
+    });
+    println!("{} steps", c.steps);
+}

@@ -1,0 +1,160 @@
+//! A newcomer with a mouse: the lesson, the first mistakes, the pages, a file in and out.
+
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
+use serde_json::json;
+
+use super::{Course, brush, drag_with, hash, key, press, steps};
+use crate::stage::{Stage, differs, pause};
+
+#[test]
+fn a_newcomer_s_hour_with_a_mouse() {
+    let Some(mut c) = Course::begin("newcomer", &[]) else { return };
+    c.step("the window opens on a ball, and a hint", |_| {}, |s| s.figure("vertices") > 1_000);
+    c.is_as_kept();
+
+    // The lesson, hint by hint.
+    c.step("1 of 6: a stroke", |s| s.drag((-60, -30), (60, -30)), |s| steps(s) == 1);
+    let camera = |s: &Stage| s.ask("camera", &json!({}));
+    let front = camera(&c.s);
+    let beside = |s: &mut Stage| drag_with(s, "1", (300, 640), (420, 600));
+    c.step("2 of 6: a drag beside the clay turns the view", beside, |s| camera(s) != front);
+    let held = |name: &'static str, y: i32| {
+        move |s: &mut Stage| {
+            s.drive(&["keydown", name]);
+            s.drag((-60, y), (60, y));
+            s.drive(&["keyup", name]);
+        }
+    };
+    c.step("3 of 6: Shift smooths", held("shift", -30), |s| steps(s) == 2);
+    c.step("4 of 6: Ctrl carves", held("ctrl", 50), |s| steps(s) == 3);
+    c.step("5 of 6: Ctrl+Z takes back", |s| key(s, "ctrl+z"), |s| steps(s) == 2);
+    c.step(
+        "6 of 6: the mirror",
+        |s| press(s, (65, 405)),
+        |s| brush(s)["symmetry"] == json!([true, false, false]),
+    );
+    c.step("the lesson is over", |_| {}, |_| true);
+    c.is_as_kept();
+
+    // Help, search, keys.
+    let before = c.s.look("course-newcomer-before-help");
+    c.step(
+        "F1 opens the help",
+        |s| key(s, "F1"),
+        |s| differs(&before, &s.look("course-newcomer-help")) > 2.0,
+    );
+    c.step(
+        "F1 closes it",
+        |s| key(s, "F1"),
+        |s| differs(&before, &s.look("course-newcomer-help")) < 2.0,
+    );
+    c.step(
+        "what is called paint is found",
+        |s| s.answer("ctrl+k", "paint brush"),
+        |s| brush(s)["kind"] == "paint",
+    );
+    c.step("and draw again", |s| s.answer("ctrl+k", "draw brush"), |s| brush(s)["kind"] == "draw");
+    let radius = |s: &Stage| brush(s)["radius"].as_f64().unwrap_or(0.0);
+    let was = radius(&c.s);
+    c.step(
+        "a drag on the slider of the radius",
+        |s| drag_with(s, "1", (65, 272), (85, 272)),
+        |s| radius(s) > was * 1.1,
+    );
+
+    // Every page is opened by its tab and says something.
+    let tabs = [(1128, 19), (1181, 19), (1232, 19), (1076, 45), (1127, 45), (1178, 45), (1229, 45)];
+    let mut last = c.s.look("course-newcomer-look");
+    for (i, tab) in tabs.into_iter().enumerate() {
+        let mut now = last.clone();
+        c.step(
+            &format!("page {} of 8", i + 2),
+            |s| press(s, tab),
+            |s| {
+                now = s.look("course-newcomer-page");
+                differs(&last, &now) > 0.3
+            },
+        );
+        last = now;
+    }
+    c.step("and the first again", |s| press(s, (1076, 19)), |_| true);
+
+    // Looks: another material, facets, light panels, larger letters, no panels at all.
+    let mut before = c.s.look("course-newcomer-before");
+    for (what, keys) in [
+        ("another material", "next material"),
+        ("facets", "smooth or flat shading"),
+        ("light panels", "light or dark"),
+        ("larger letters", "larger text"),
+    ] {
+        let was = before.clone();
+        c.step(
+            what,
+            |s| s.answer("ctrl+k", keys),
+            |s| {
+                before = s.look("course-newcomer-look");
+                differs(&was, &before) > 0.1
+            },
+        );
+    }
+    c.is_as_kept();
+    c.step("smaller letters again", |s| s.answer("ctrl+k", "smaller text"), |_| true);
+    c.step("dark panels again", |s| s.answer("ctrl+k", "light or dark"), |_| true);
+
+    // A mistake, a file in, walls, a file out, another over it.
+    let ball = c.s.dir.path().join("small.obj");
+    write_mesh(&ball, &shapes::sphere_of_about(5_000).to_poly()).expect("written");
+    let (kept, work) = (c.s.figure("vertices"), hash(&c.s));
+    c.step(
+        "a file that is not there is told, and the work stays",
+        |s| {
+            s.answer("ctrl+o", "none.obj");
+        },
+        |s| s.figure("vertices") == kept && hash(s) == work,
+    );
+    c.step(
+        "a mesh is opened",
+        |s| s.answer("ctrl+o", "small.obj"),
+        |s| s.figure("vertices") != kept,
+    );
+    c.step("and can be taken back", |s| key(s, "ctrl+z"), |s| s.figure("vertices") == kept);
+    c.step("or done again", |s| key(s, "ctrl+shift+z"), |s| s.figure("vertices") != kept);
+    let before = c.s.look("course-newcomer-no-walls");
+    c.step(
+        "T shows how thick the walls are",
+        |s| key(s, "t"),
+        |s| differs(&before, &s.look("course-newcomer-walls")) > 1.0,
+    );
+    c.step("T again the clay", |s| key(s, "t"), |_| true);
+    let out = c.s.dir.path().join("mine.ply");
+    let wanted = out.clone();
+    c.step("an export", |s| s.answer("ctrl+e", "mine.ply"), move |_| wanted.exists());
+    let first = std::fs::read(&out).expect("a file");
+    c.step("a stroke", |s| s.drag((-40, 0), (40, 0)), |s| steps(s) > 0);
+    c.step(
+        "an export over it asks first",
+        |s| s.answer("ctrl+e", "mine.ply"),
+        |_| std::fs::read(&out).is_ok_and(|now| now == first),
+    );
+    c.step(
+        "Escape leaves the file as it is",
+        |s| key(s, "Escape"),
+        |_| std::fs::read(&out).is_ok_and(|now| now == first),
+    );
+
+    // A slip: everything is closed by mistake, and nothing is lost.
+    let last = hash(&c.s);
+    c.step(
+        "the window is closed without a word, and opened",
+        |s| s.restart(&[]),
+        |s| s.figure("vertices") > 1_000,
+    );
+    pause(500);
+    c.step(
+        "the last work comes back by a press",
+        |s| press(s, (330, 633)),
+        |s| s.soon(|s| hash(s) == last),
+    );
+    println!("{} steps", c.steps);
+}
