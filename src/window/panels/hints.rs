@@ -57,6 +57,8 @@ fn follow(view: &View<'_>, hints: &mut HintsFollowed) {
         return;
     }
     let brush = &view.state.brush;
+    // A tablet's pen has touched the clay as well as a pointer has.
+    hints.touched |= view.state.undo_steps > 0;
     hints.smoothed |= brush.kind == BrushKind::Smooth;
     hints.carved |= brush.negative;
     hints.mirrored |= brush.symmetry.contains(&true);

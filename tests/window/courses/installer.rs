@@ -39,7 +39,6 @@ fn an_installer_s_hour() {
     let dir = tempfile::tempdir().expect("a folder");
     let gallery = dir.path().join("gallery");
     std::fs::create_dir(&gallery).expect("a folder");
-    let works = || std::fs::read_dir(&gallery).map_or(0, |all| all.flatten().count());
     // A mistake in the settings is told before anything opens, with the key and its range.
     let wrong = settings(dir.path(), "share_minutes = 0.0\n");
     let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
@@ -55,7 +54,12 @@ fn an_installer_s_hour() {
     let Some(mut c) = Course::begin("installer", &args) else { return };
     c.step("the attract loop sculpts by itself", |_| {}, |s| s.figure("dabs") > 30);
     let audit = dir.path().join("audit.jsonl");
-    let visits = || std::fs::read_to_string(&audit).map_or(0, |text| text.lines().count());
+    let lines = |what: &str| {
+        let text = std::fs::read_to_string(&audit).unwrap_or_default();
+        text.lines().filter(|line| line.contains(what)).count()
+    };
+    // Ended visits, and those of which a work was kept.
+    let (visits, works) = (|| lines("visit"), || lines("\"kept\":true"));
     let dabs = c.s.figure("dabs");
     c.step(
         "a pointer that passes is no visitor: the loop goes on",
@@ -111,7 +115,10 @@ fn an_installer_s_hour() {
         },
         |s| steps(s) == 0,
     );
-    assert_eq!(visits(), 2, "{}", std::fs::read_to_string(&audit).unwrap_or_default());
+    assert_eq!(visits(), 2);
+    let files = std::fs::read_dir(&gallery).expect("a folder").flatten();
+    let stl = |f: &std::fs::DirEntry| f.path().extension().is_some_and(|e| e != "html");
+    println!("{} works in the gallery", files.filter(stl).count());
     // Staff: a wrong number, then the right one, key by key.
     let keypad = |s: &mut Stage, number: &str| {
         let before = s.look("course-installer-door");

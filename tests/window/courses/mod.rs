@@ -51,11 +51,6 @@ impl Course {
         let name = format!("course-{}-{:02}", self.name, self.steps);
         as_kept(&name, &self.s.look(&name));
     }
-
-    /// A press of the left button at a place of the window.
-    fn press(&self, (x, y): (i32, i32)) {
-        press(&self.s, (x, y));
-    }
 }
 
 fn press(s: &Stage, (x, y): (i32, i32)) {

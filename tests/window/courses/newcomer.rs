@@ -84,7 +84,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
     let mut before = c.s.look("course-newcomer-before");
     for (what, keys) in [
         ("another material", "next material"),
-        ("facets", "smooth or flat shading"),
+        ("every edge", "wireframe"),
         ("light panels", "light or dark"),
         ("larger letters", "larger text"),
     ] {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::Vec2;
 use sculptd_devices::serial::Protocol;
 use sculptd_devices::sim::{PenScript, SerialPen, SerialPenConfig, Shape, Stroke};
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::{Course, brush, drag_with, hash, key, press, steps};
 use crate::stage::{Stage, pause};
