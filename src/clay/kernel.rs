@@ -296,9 +296,14 @@ impl PageOut<'_> {
     pub fn push_block(&mut self, first: usize, by: &[Vec4]) {
         let rows = &mut self.points[first..first + by.len()];
         let marks = &mut self.marks[first..first + by.len()];
+        let mut finite = BVec4A::TRUE;
+        for (row, by) in rows.iter().zip(by) {
+            finite &= (*row + *by).abs().cmplt(Vec4::INFINITY);
+        }
+        let all = finite.all();
         for ((row, mark), by) in rows.iter_mut().zip(marks).zip(by) {
             let new = *row + *by;
-            if new.is_finite() {
+            if all || new.is_finite() {
                 let differs = new.cmpne(*row);
                 *mark |= if differs.any() { MOVED } else { 0 };
                 *row = Vec4::select(differs, new, *row);

@@ -50,7 +50,9 @@ impl Workers {
             .as_ref()
     }
 
-    /// Calls `work` with each pair, on several threads if `parallel`.
+    /// Calls `work` with each pair, on several threads if `parallel`. Pairs are handed out one by
+    /// one: what they cost differs by far more than handing out does, and threads that finish at
+    /// different times wait for each other.
     pub(super) fn each<A: Send, B: Send>(
         &self,
         parallel: bool,
@@ -60,7 +62,8 @@ impl Workers {
     ) {
         match if parallel { self.pool() } else { None } {
             Some(pool) => pool.install(|| {
-                a.par_iter_mut().zip(b.par_iter_mut()).for_each(|(a, b)| work(a, b));
+                let pairs = a.par_iter_mut().zip(b.par_iter_mut());
+                pairs.with_max_len(1).for_each(|(a, b)| work(a, b));
             }),
             None => a.iter_mut().zip(b.iter_mut()).for_each(|(a, b)| work(a, b)),
         }

@@ -6,7 +6,8 @@ use glam::{Vec3, Vec4};
 use super::dab::{Dab, Grip};
 use super::footprint::Footprint;
 use super::preset::OwnNumber;
-use super::weigh::Triples;
+use super::triples::{Triples, fourth_lanes};
+use super::weights::BLOCK;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Kernel, PageIn, Reach};
 
@@ -81,34 +82,62 @@ impl VertexContext<'_> {
     }
 }
 
-/// Neighbouring vertices of a page that a brush looks at together, 64 at most, as rows of
-/// one length. Where the weight is 0 nothing is changed, whatever the brush says.
+/// Neighbouring vertices of a page that a brush looks at together, [`BLOCK`] at most; beyond the
+/// last all is zero. Where the weight is 0 nothing is changed, whatever the brush says.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockContext<'a> {
-    /// Places as they are; the fourth lane is the mask.
-    pub rows: &'a [Vec4],
-    /// Normals as they are.
-    pub normals: &'a [Vec4],
-    /// Places as the stroke found them.
-    pub rows_before: &'a [Vec4],
-    /// Normals as the stroke found them.
-    pub normals_before: &'a [Vec4],
+    page: &'a PageIn<'a>,
+    first: usize,
+    count: usize,
     /// See [`VertexContext::weight`].
-    pub weights: &'a [f32],
+    pub weights: &'a [f32; BLOCK],
 }
 
 impl<'a> BlockContext<'a> {
-    /// The own vertices of `page` from `first` on, as many as there are weights.
+    /// `count` own vertices of `page` from `first` on.
     #[inline(always)]
-    pub fn new(page: &PageIn<'a>, first: usize, weights: &'a [f32]) -> BlockContext<'a> {
-        let range = first..first + weights.len();
-        BlockContext {
-            rows: &page.rows()[range.clone()],
-            normals: &page.normal_rows()[range.clone()],
-            rows_before: &page.rows_before()[range.clone()],
-            normals_before: &page.normal_rows_before()[range],
-            weights,
-        }
+    pub fn new(
+        page: &'a PageIn<'a>,
+        first: usize,
+        count: usize,
+        weights: &'a [f32; BLOCK],
+    ) -> BlockContext<'a> {
+        BlockContext { page, first, count, weights }
+    }
+
+    #[inline(always)]
+    fn of(&self, rows: &[Vec4]) -> Triples {
+        Triples::of(&rows[self.first..self.first + self.count])
+    }
+
+    /// Places as they are.
+    #[inline(always)]
+    pub fn now(&self) -> Triples {
+        self.of(self.page.rows())
+    }
+
+    /// Normals as they are.
+    #[inline(always)]
+    pub fn normals(&self) -> Triples {
+        self.of(self.page.normal_rows())
+    }
+
+    /// Places as the stroke found them.
+    #[inline(always)]
+    pub fn before(&self) -> Triples {
+        self.of(self.page.rows_before())
+    }
+
+    /// Normals as the stroke found them.
+    #[inline(always)]
+    pub fn normals_before(&self) -> Triples {
+        self.of(self.page.normal_rows_before())
+    }
+
+    /// Masks as they are, 0 free to 1 protected.
+    #[inline(always)]
+    pub fn masks(&self) -> [f32; BLOCK] {
+        fourth_lanes(&self.page.rows()[self.first..self.first + self.count])
     }
 }
 

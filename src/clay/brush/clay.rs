@@ -7,7 +7,8 @@
 use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
 use super::preset::OwnNumber;
-use super::weigh::Triples;
+use super::triples::Triples;
+use super::weights::BLOCK;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
 /// One dab of clay.
@@ -74,9 +75,13 @@ pub(super) fn coat_block(
     block: &BlockContext<'_>,
     by: &mut Triples,
 ) {
-    for (i, (row, weight)) in block.rows.iter().zip(block.weights).enumerate() {
-        let h = plane.height(row.truncate());
-        let way = -h * part(pace, *weight);
-        by.set(i, plane.normal * if h * sign >= 0.0 { 0.0 } else { way });
+    let height = block.now().each(|p| plane.height(p));
+    let mut way = [0.0; BLOCK];
+    for ((way, h), weight) in way.iter_mut().zip(height).zip(block.weights) {
+        let part = -h * part(pace, *weight);
+        *way = if h * sign >= 0.0 { 0.0 } else { part };
+    }
+    for (i, way) in way.into_iter().enumerate() {
+        by.set(i, plane.normal * way);
     }
 }

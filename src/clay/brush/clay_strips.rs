@@ -11,7 +11,7 @@ use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
-use super::weigh::Triples;
+use super::triples::Triples;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::Reach;
 

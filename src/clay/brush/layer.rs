@@ -6,7 +6,7 @@
 use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::Dab;
 use super::footprint::{Footprint, FootprintShape};
-use super::weigh::Triples;
+use super::triples::Triples;
 use crate::Reach;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -47,10 +47,10 @@ impl Brush for LayerBrush {
     #[inline(always)]
     fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
         let height = dab.whole_height().abs();
-        let now = block.rows.iter().zip(block.rows_before).zip(block.normals_before);
-        for (i, (((p, before), normal), weight)) in now.zip(block.weights).enumerate() {
-            let normal = normal.truncate();
-            let so_far = (p.truncate() - before.truncate()).dot(normal) * dab.sign;
+        let (now, before, normals) = (block.now(), block.before(), block.normals_before());
+        for (i, weight) in block.weights.iter().enumerate() {
+            let normal = normals.get(i);
+            let so_far = (now.get(i) - before.get(i)).dot(normal) * dab.sign;
             let more = height * weight - so_far;
             by.set(i, normal * (more.max(0.0) * dab.sign));
         }

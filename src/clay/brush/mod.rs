@@ -30,6 +30,7 @@ pub mod stamp;
 pub mod stroke_param;
 pub mod surface_query;
 pub mod tool;
+pub mod triples;
 pub mod weigh;
 pub mod weights;
 

@@ -7,7 +7,8 @@ use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};
 use super::footprint::Footprint;
 use super::stamp::StampBy;
-use super::weigh::{Triples, faded};
+use super::triples::Triples;
+use super::weigh::faded;
 use super::weights::BLOCK;
 use crate::brush::surface_query::SurfaceQuery;
 
@@ -46,27 +47,28 @@ impl Brush for PinchBrush {
 
     #[inline(always)]
     fn change_block(&self, dab: &Dab<'_>, block: &BlockContext<'_>, by: &mut Triples) {
-        by.fill(block.rows, |p| {
-            let d = dab.centre - p;
-            d - self.normal * d.dot(self.normal)
-        });
-        let mut weight = [0.0; BLOCK];
-        weight[..block.weights.len()].copy_from_slice(block.weights);
+        let now = block.now();
+        for i in 0..BLOCK {
+            let d = dab.centre - now.get(i);
+            by.set(i, d - self.normal * d.dot(self.normal));
+        }
+        let mut weight = *block.weights;
         if self.plain {
             let mut away = [0.0; BLOCK];
-            for (i, (row, away)) in block.rows.iter().zip(&mut away).enumerate() {
+            for (i, away) in away.iter_mut().enumerate() {
                 let x = 0.5 * dab.pace * weight[i];
-                let d = dab.centre - row.truncate();
+                let d = dab.centre - now.get(i);
                 let half = d - by.get(i) * (dab.sign * (x - 0.5 * x * x));
                 *away = half.length_squared().sqrt() / dab.radius;
             }
-            let fade = faded(&Footprint::ball(dab), away);
-            for (i, (row, n)) in block.rows.iter().zip(block.normals).enumerate() {
-                weight[i] = fade[i] * (1.0 - row.w) * dab.facing(n.truncate());
+            let (fade, masks) = (faded(&Footprint::ball(dab), away), block.masks());
+            let facing = block.normals().each(|n| dab.facing(n));
+            for (i, weight) in weight.iter_mut().enumerate() {
+                *weight = fade[i] * (1.0 - masks[i]) * facing[i];
             }
         }
-        for i in 0..BLOCK {
-            by.set(i, by.get(i) * (dab.sign * part(dab.pace, weight[i])));
+        for (i, weight) in weight.into_iter().enumerate() {
+            by.set(i, by.get(i) * (dab.sign * part(dab.pace, weight)));
         }
     }
 }

@@ -6,9 +6,11 @@ use glam::{DVec3, Vec3, Vec4};
 
 use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
+use super::triples::Triples;
+use super::weights::BLOCK;
 use crate::brush::geodesic::{Geodesic, WalkedSurface};
 use crate::brush::stroke_param::{StrokeParameters, StrokePlace};
-use crate::{Clay, Page, Reach};
+use crate::{Clay, Page, Reach, Workers};
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
 /// Memory kept from dab to dab.
@@ -20,6 +22,8 @@ pub struct Scratch {
     pub picture: Option<Arc<Picture>>,
     /// The stroke whose last dab of this image met nothing that turned away.
     pub(super) flat: [Option<u32>; IMAGES],
+    /// The pages that a plane is found from, and what each adds to its sums.
+    plane: (Vec<u32>, Vec<PageSums>),
 }
 
 impl Scratch {
@@ -53,16 +57,22 @@ impl Scratch {
     }
 }
 
-/// Vertices looked at together.
-const BLOCK: usize = 64;
+/// Pages below which one thread finds a plane alone.
+const PARALLEL: usize = 4;
 /// Sums kept apart while a page is added up.
 const LANES: usize = 4;
+
+/// What one page adds to a mean plane, lane by lane: of the weighted places from the centre their
+/// coordinates, of the weighted normals theirs, and the weights.
+type PageSums = [[f64; LANES]; 7];
 
 /// The clay before a dab.
 #[derive(Debug)]
 pub struct SurfaceQuery<'a> {
     /// The clay as it is.
     pub mesh: &'a Clay,
+    /// The threads that help.
+    pub workers: &'a Workers,
     /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
     /// Which of the images that act together this is.
@@ -89,64 +99,61 @@ impl Plane {
     }
 }
 
-/// Sums for the mean plane of the vertices about a centre.
+/// Which vertices count for a mean plane.
 struct MeanPlane {
     centre: Vec3,
     /// What faces away from it does not count.
     normal: Vec3,
     radius: f32,
-    /// Of the weighted places from the centre with the weights, and of the weighted normals.
-    sums: [[f64; 4]; 2],
 }
 
-/// Adds the own vertices of a page to the sums, compiled for this processor.
+/// Adds up the own vertices of a page, compiled for this processor.
 struct AddPage<'a> {
-    mean: &'a mut MeanPlane,
+    mean: &'a MeanPlane,
     page: &'a Page,
 }
 
 impl WideWork for AddPage<'_> {
-    type Output = ();
+    type Output = PageSums;
     #[inline(always)]
-    fn run<W: Wide>(self, _: W) {
+    fn run<W: Wide>(self, _: W) -> PageSums {
         let AddPage { mean, page } = self;
         let radius2 = mean.radius * mean.radius;
         let own = page.own();
         let blocks = page.point_rows()[..own].chunks(BLOCK);
-        // Sums that do not wait for each other.
-        let mut lanes = [([0.0f64; 4], [0.0f64; 4]); LANES];
+        // Of each quantity sums that do not wait for each other.
+        let mut sums = [[0.0; LANES]; 7];
         for (rows, normals) in blocks.zip(page.normal_rows()[..own].chunks(BLOCK)) {
-            let mut d2 = [f32::INFINITY; BLOCK];
-            for (row, d2) in rows.iter().zip(&mut d2) {
-                *d2 = (row.truncate() - mean.centre).length_squared();
-            }
+            let mut d = Triples::ZERO;
+            d.fill(rows, mean.centre);
+            let mut d2 = d.each(|d| d.length_squared());
+            d2[rows.len()..].fill(f32::INFINITY);
             if d2.iter().map(|d2| u32::from(*d2 <= radius2)).sum::<u32>() == 0 {
                 continue;
             }
-            // The weights in wide steps, then the sums in their order.
+            let n = Triples::of(normals);
+            let facing = n.each(|n| n.dot(mean.normal));
             let mut weights = [0.0f32; BLOCK];
-            for ((n, &d2), weight) in normals.iter().zip(&d2).zip(&mut weights) {
+            for ((facing, d2), weight) in facing.into_iter().zip(d2).zip(&mut weights) {
                 let near = (1.0 - d2 / radius2).max(0.0);
-                let counts = (d2 <= radius2) & (n.truncate().dot(mean.normal) > 0.0);
-                *weight = if counts { near } else { 0.0 };
+                *weight = if (d2 <= radius2) & (facing > 0.0) { near } else { 0.0 };
             }
-            for (i, ((row, n), &w)) in rows.iter().zip(normals).zip(&weights).enumerate() {
-                let w = f64::from(w);
-                let d = (row.truncate() - mean.centre).extend(1.0).to_array();
-                let n = n.truncate().extend(0.0).to_array();
-                let (point, normal) = &mut lanes[i % LANES];
-                for k in 0..4 {
-                    point[k] += f64::from(d[k]) * w;
-                    normal[k] += f64::from(n[k]) * w;
+            let [[x, y, z], [nx, ny, nz]] = [d.coordinates(), n.coordinates()];
+            let (weights, _) = weights.as_chunks::<LANES>();
+            for (k, values) in [x, y, z, nx, ny, nz].into_iter().enumerate() {
+                for (values, weights) in values.as_chunks::<LANES>().0.iter().zip(weights) {
+                    for lane in 0..LANES {
+                        sums[k][lane] += f64::from(values[lane]) * f64::from(weights[lane]);
+                    }
+                }
+            }
+            for weights in weights {
+                for lane in 0..LANES {
+                    sums[6][lane] += f64::from(weights[lane]);
                 }
             }
         }
-        for (point, normal) in &lanes {
-            for k in 0..4 {
-                mean.sums[0][k] += point[k];
-                mean.sums[1][k] += normal[k];
-            }
-        }
+        sums
     }
 }
 
@@ -155,27 +162,41 @@ impl SurfaceQuery<'_> {
     /// `normal_radius`, those near the rim counted less, those that face away not at all; moved by
     /// `offset` radii along its normal. In double precision, so that images of one dab agree to the
     /// last bits.
-    pub fn plane(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+    pub fn plane(&mut self, dab: &Dab<'_>, offset: f32) -> Plane {
         self.plane_of(dab, offset, dab.found)
     }
 
     /// The same through the surface as it was when the stroke began, wherever the dab is measured.
-    pub fn plane_before(&self, dab: &Dab<'_>, offset: f32) -> Plane {
+    pub fn plane_before(&mut self, dab: &Dab<'_>, offset: f32) -> Plane {
         self.plane_of(dab, offset, true)
     }
 
-    fn plane_of(&self, dab: &Dab<'_>, offset: f32, before: bool) -> Plane {
+    fn plane_of(&mut self, dab: &Dab<'_>, offset: f32, before: bool) -> Plane {
         let radius = dab.radius * dab.settings.normal_radius;
-        let mut mean =
-            MeanPlane { centre: dab.centre, normal: dab.normal, radius, sums: [[0.0; 4]; 2] };
+        let mean = MeanPlane { centre: dab.centre, normal: dab.normal, radius };
         let reach = Reach::Sphere { centre: dab.centre, radius };
-        let mut add = |page: &Page| dispatch(false, AddPage { mean: &mut mean, page });
+        let (mesh, (pages, sums)) = (self.mesh, &mut self.scratch.plane);
+        pages.clear();
         if before {
-            self.mesh.each_page_before(&reach, |_, page| add(page));
+            mesh.each_page_before(&reach, |number, _| pages.push(number));
         } else {
-            self.mesh.each_page(&reach, |_, page| add(page));
+            mesh.each_page(&reach, |number, _| pages.push(number));
         }
-        let [[x, y, z, sum], [nx, ny, nz, _]] = mean.sums;
+        sums.clear();
+        sums.resize(pages.len(), [[0.0; LANES]; 7]);
+        // The threads are awake for the dab that follows, too.
+        self.workers.each(pages.len() >= PARALLEL, pages, sums, |number, sums| {
+            let page = if before { mesh.before(*number) } else { mesh.page(*number) };
+            *sums = dispatch(false, AddPage { mean: &mean, page });
+        });
+        // In the order of the pages, whoever added them up.
+        let mut all = [0.0; 7];
+        for page in sums.iter() {
+            for (sum, lanes) in all.iter_mut().zip(page) {
+                lanes.iter().for_each(|lane| *sum += lane);
+            }
+        }
+        let [x, y, z, nx, ny, nz, sum] = all;
         let normal = DVec3::new(nx, ny, nz).as_vec3().try_normalize().unwrap_or(dab.normal);
         let point = DVec3::new(x, y, z);
         let point = if sum > 0.0 { dab.centre + (point / sum).as_vec3() } else { dab.centre };

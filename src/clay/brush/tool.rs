@@ -1,13 +1,14 @@
 //! Applies a dab and its images to the clay.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use super::brush_trait::{BlockContext, Brush, RunKernel, VertexChange, VertexContext};
 use super::dab::{Dab, Grip, IMAGES};
 use super::footprint::Footprint;
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
-use super::weigh::{Triples, WeightRules, weigh};
+use super::triples::Triples;
+use super::weigh::{WeightRules, weigh};
 use super::weights::{BLOCK, Weights};
 use crate::brush::automask::AutoMasking;
 use crate::brush::surface_query::{Scratch, SurfaceQuery, folded};
@@ -92,8 +93,8 @@ impl Tool<'_> {
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut n = 0;
             for i in (0..dabs.len()).filter(|i| group[*i] == g as u8) {
-                let mut on =
-                    SurfaceQuery { mesh: self.mesh, scratch: self.scratch, image: dabs[i].image };
+                let Tool { mesh, workers, scratch, .. } = self;
+                let mut on = SurfaceQuery { mesh, workers, scratch, image: dabs[i].image };
                 let brush = B::ready(&dabs[i], &mut on);
                 let footprint = brush.footprint(&dabs[i]);
                 let auto = AutoMasking::ready(&dabs[i], &mut on);
@@ -204,7 +205,6 @@ impl<B: Brush> Kernel for BrushKernel<'_, B> {
             [Some(Member { dab, brush, .. })]
                 if B::BLOCKS && known && self.limit == f32::INFINITY =>
             {
-                let weights = weights.of(page);
                 dispatch(false, ChangeBlocks { brush, dab, page, weights, out });
             }
             _ => self.change(page, known.then(|| weights.of(page)), out),
@@ -217,7 +217,7 @@ struct ChangeBlocks<'a, 'b, B> {
     brush: &'a B,
     dab: &'a Dab<'a>,
     page: &'a PageIn<'a>,
-    weights: &'a [f32],
+    weights: &'a Weights,
     out: &'a mut PageOut<'b>,
 }
 
@@ -225,19 +225,23 @@ impl<B: Brush> WideWork for ChangeBlocks<'_, '_, B> {
     type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, _: W) {
-        for (b, weights) in self.weights.chunks(BLOCK).enumerate() {
+        let own = self.page.own();
+        for (b, weights) in self.weights.blocks().enumerate() {
+            let first = b * BLOCK;
+            if first >= own {
+                break;
+            }
             if weights.iter().fold(0, |bits, w| bits | w.to_bits()) == 0 {
                 continue;
             }
+            let count = BLOCK.min(own - first);
             let mut by = Triples::ZERO;
-            let block = BlockContext::new(self.page, b * BLOCK, weights);
+            let block = BlockContext::new(self.page, first, count, weights);
             self.brush.change_block(self.dab, &block, &mut by);
-            let mut rows = [Vec4::ZERO; BLOCK];
-            for (i, (row, weight)) in rows.iter_mut().zip(weights).enumerate() {
-                let by = by.get(i).extend(0.0);
-                *row = if *weight > 0.0 { by } else { Vec4::ZERO };
+            for (i, weight) in weights.iter().enumerate() {
+                by.set(i, if *weight > 0.0 { by.get(i) } else { Vec3::ZERO });
             }
-            self.out.push_block(b * BLOCK, &rows[..weights.len()]);
+            self.out.push_block(first, &by.rows()[..count]);
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The weights of a page's vertices under a [`Footprint`], for every brush: loops over plain
 //! arrays, the same bits as [`Footprint::at`] gives one at a time.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use super::dab::soft;
 use super::falloff::Falloff;
 use super::footprint::{CapsuleAxis, Footprint, FootprintShape};
+use super::triples::{Triples, fourth_lanes};
 use super::weights::{BLOCK, MOST, Weights, facing};
 use crate::PageIn;
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
@@ -52,82 +53,37 @@ impl WideWork for Weigh<'_> {
             let first = b * BLOCK;
             let rows = &page.rows()[first..first + weights.len()];
             let mut d = Triples::NOWHERE;
-            if rules.before {
-                let rows = &page.rows_before()[first..first + rows.len()];
-                d.fill(rows, |p| p - foot.centre);
-            } else {
-                d.fill(rows, |p| p - foot.centre);
-            }
-            let Triples([x, y, z]) = &d;
-            let d2 = |i: usize| x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-            if (0..BLOCK).map(|i| u32::from(d2(i) < bound)).sum::<u32>() == 0 {
+            let measured = match rules.before {
+                true => &page.rows_before()[first..first + rows.len()],
+                false => rows,
+            };
+            d.fill(measured, foot.centre);
+            let d2 = d.each(|d| d.x * d.x + d.y * d.y + d.z * d.z);
+            if d2.iter().map(|d2| u32::from(*d2 < bound)).sum::<u32>() == 0 {
                 weights.fill(0.0);
                 continue;
             }
-            let share = shares(foot, &d);
-            let counted = &share[..rows.len()];
-            within += counted.iter().map(|s| u32::from(*s > 0.0)).sum::<u32>();
-            for ((weight, share), row) in weights.iter_mut().zip(counted).zip(rows) {
-                *weight = if rules.masked { share * (1.0 - row.w) } else { *share };
+            let mut share = shares(foot, &d);
+            within += share[..rows.len()].iter().map(|s| u32::from(*s > 0.0)).sum::<u32>();
+            if rules.masked {
+                for (share, mask) in share.iter_mut().zip(fourth_lanes(rows)) {
+                    *share *= 1.0 - mask;
+                }
             }
-            let Some(normal) = rules.facing else { continue };
-            let mut n = Triples::NOWHERE;
-            if rules.before {
-                n.fill(&page.normal_rows_before()[first..first + rows.len()], |n| n);
-            } else {
-                n.fill(&page.normal_rows()[first..first + rows.len()], |n| n);
+            if let Some(normal) = rules.facing {
+                let normals = match rules.before {
+                    true => page.normal_rows_before(),
+                    false => page.normal_rows(),
+                };
+                let n = Triples::of(&normals[first..first + rows.len()]);
+                let c = n.each(|n| n.x * normal.x + n.y * normal.y + n.z * normal.z);
+                for (share, c) in share.iter_mut().zip(c) {
+                    *share *= facing(c);
+                }
             }
-            let Triples([x, y, z]) = &n;
-            for (i, weight) in weights.iter_mut().enumerate() {
-                *weight *= facing(x[i] * normal.x + y[i] * normal.y + z[i] * normal.z);
-            }
+            weights.copy_from_slice(&share[..rows.len()]);
         }
         within as usize
-    }
-}
-
-/// The x, the y and the z of a block of vertices, each in a row.
-#[derive(Debug)]
-pub struct Triples([[f32; BLOCK]; 3]);
-
-impl Triples {
-    /// Outside of every footprint.
-    const NOWHERE: Triples = Triples([[f32::INFINITY; BLOCK]; 3]);
-    /// Zeros.
-    pub const ZERO: Triples = Triples([[0.0; BLOCK]; 3]);
-
-    /// Takes what `of` makes of the first three lanes of each row; 64 rows at most.
-    #[inline(always)]
-    pub fn fill(&mut self, rows: &[Vec4], of: impl Fn(Vec3) -> Vec3) {
-        let [x, y, z] = &mut self.0;
-        for (((row, x), y), z) in rows.iter().zip(x).zip(y).zip(z) {
-            let v = of(row.truncate());
-            (*x, *y, *z) = (v.x, v.y, v.z);
-        }
-    }
-
-    /// One of them.
-    #[inline(always)]
-    pub fn get(&self, i: usize) -> Vec3 {
-        let [x, y, z] = &self.0;
-        Vec3::new(x[i], y[i], z[i])
-    }
-
-    /// Sets one of them.
-    #[inline(always)]
-    pub fn set(&mut self, i: usize, v: Vec3) {
-        (self.0[0][i], self.0[1][i], self.0[2][i]) = (v.x, v.y, v.z);
-    }
-
-    /// Calls `of` with each, for a row of what it answers.
-    #[inline(always)]
-    fn each(&self, of: impl Fn(Vec3) -> f32) -> [f32; BLOCK] {
-        let [x, y, z] = &self.0;
-        let mut out = [0.0; BLOCK];
-        for i in 0..BLOCK {
-            out[i] = of(Vec3::new(x[i], y[i], z[i]));
-        }
-        out
     }
 }
 

@@ -77,6 +77,12 @@ impl Weights {
         &mut self.weight
     }
 
+    /// What was computed, block by block; zeros beyond the last own vertex.
+    #[inline(always)]
+    pub(super) fn blocks(&self) -> impl Iterator<Item = &[f32; BLOCK]> {
+        self.weight.as_chunks::<BLOCK>().0.iter()
+    }
+
     /// What was computed, one an own vertex.
     #[inline]
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
