@@ -18,6 +18,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
 use crate::tablet_controls::TabletControls;
+use crate::tablet_models::DeviceTables;
 use crate::tablet_vocabulary::{Meaning, meaning};
 
 /// Ids of tablets, serial pens and recordings of such; a pointer has its own buttons.
@@ -32,6 +33,8 @@ const DRAG: f32 = 3.0;
 #[derive(Debug)]
 struct Tablet {
     id: DeviceId,
+    /// Its model, once that is known.
+    model: Option<String>,
     state: ActionState,
     /// What its pen's motion does while a button is held.
     held: Vec<Meaning>,
@@ -44,8 +47,10 @@ struct Tablet {
 /// The controls of all tablets.
 #[derive(Debug)]
 pub struct TabletActions {
-    /// Of the settings, over the defaults.
+    /// Of the settings for all tablets.
     table: ActionTable,
+    /// Of single models.
+    models: DeviceTables,
     controls: TabletControls,
     /// What the person has bound, as the tablets have it now.
     own: Arc<ActionTable>,
@@ -74,16 +79,9 @@ impl TabletActions {
     /// The table's own bindings over the defaults. A tablet with an eraser carves with it where the
     /// table says nothing.
     pub fn new(table: ActionTable, presets: Presets) -> Self {
-        let mut table = table.over(ActionTable::defaults());
-        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
-        for n in 1..=2 {
-            if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
-                table.controls.entry(Control::Ring(n)).or_insert(binding);
-            }
-        }
-        let controls = TabletControls::default();
+        let (controls, models) = (TabletControls::default(), DeviceTables::default());
         let own = controls.own();
-        TabletActions { table, controls, own, presets, tablets: Vec::new(), before: None }
+        TabletActions { table, models, controls, own, presets, tablets: Vec::new(), before: None }
     }
 
     /// With what a person binds while it runs.
@@ -91,9 +89,22 @@ impl TabletActions {
         TabletActions { controls, ..self }
     }
 
-    /// The table that is in force: the person's own bindings over the settings.
-    fn table(&self) -> ActionTable {
-        ActionTable::clone(&self.own).over(self.table.clone())
+    /// With what single models do.
+    pub fn with_models(self, models: DeviceTables) -> Self {
+        TabletActions { models, ..self }
+    }
+
+    /// The table that is in force for a model: the person's own bindings over the settings, those
+    /// over the tablet's file, and that over the defaults.
+    fn table(&self, model: Option<&str>) -> ActionTable {
+        let mut table = self.models.table(model, &self.table).over(ActionTable::defaults());
+        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
+        for n in 1..=2 {
+            if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
+                table.controls.entry(Control::Ring(n)).or_insert(binding);
+            }
+        }
+        ActionTable::clone(&self.own).over(table)
     }
 
     /// Takes over what the person has bound since the last tick. What is held is released.
@@ -103,11 +114,26 @@ impl TabletActions {
             return;
         }
         self.own = own;
-        let table = self.table();
         for i in 0..self.tablets.len() {
-            let mut events = Vec::new();
-            self.tablets[i].state.set_table(table.clone(), &mut |e| events.push(e));
-            events.into_iter().for_each(|e| self.apply(i, &e, asked));
+            self.take_table(i, asked);
+        }
+    }
+
+    /// Gives a tablet the table that is in force for it.
+    fn take_table(&mut self, i: usize, asked: &mut Asked<'_>) {
+        let table = self.table(self.tablets[i].model.as_deref());
+        let mut events = Vec::new();
+        self.tablets[i].state.set_table(table, &mut |e| events.push(e));
+        events.into_iter().for_each(|e| self.apply(i, &e, asked));
+    }
+
+    /// Asks for the model of a tablet that is not known yet.
+    fn follow_model(&mut self, i: usize, asked: &mut Asked<'_>) {
+        if self.tablets[i].model.is_none()
+            && let Some(model) = self.models.model(self.tablets[i].id)
+        {
+            self.tablets[i].model = Some(model);
+            self.take_table(i, asked);
         }
     }
 
@@ -132,6 +158,7 @@ impl TabletActions {
         for sample in samples.iter_mut().filter(|s| TABLETS.iter().any(|t| t.contains(&s.device.0)))
         {
             let Some(i) = self.tablet(sample.device) else { continue };
+            self.follow_model(i, &mut asked);
             let mut events = Vec::new();
             let state = &mut self.tablets[i].state;
             match &sample.body {
@@ -154,9 +181,9 @@ impl TabletActions {
         let at = self.tablets.iter().position(|t| t.id == id);
         if at.is_none() && self.tablets.len() < MOST {
             // A ring's shorter way round is also right for a strip, where no finger jumps by half.
-            let state = ActionState::new(self.table(), [TouchShape::Ring; 2]);
+            let state = ActionState::new(self.table(None), [TouchShape::Ring; 2]);
             let (held, last) = (Vec::new(), None);
-            self.tablets.push(Tablet { id, state, held, last, sculpts: false });
+            self.tablets.push(Tablet { id, model: None, state, held, last, sculpts: false });
             return Some(self.tablets.len() - 1);
         }
         at
@@ -324,6 +351,36 @@ mod tests {
         step(&mut actions, &mut world, vec![pad(0, 1), pad(0, 2)]);
         let grown = world.brush().radius / before;
         assert!((grown - 1.05 * 1.05).abs() < 1e-5, "two steps of five percent: {grown}");
+    }
+
+    #[test]
+    fn a_model_has_its_own_table_as_soon_as_it_is_known() {
+        use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+        let table = |text: &str| toml::from_str::<ActionTable>(text).expect("a table");
+        let mut config = crate::config::DevicesConfig::default();
+        let own = "controls.key-2 = { press = \"brush.clay\" }";
+        config.model_actions.insert("Acme Slate".into(), table(own));
+        let catalogue = sculptd_devices::catalogue::Catalogue::default();
+        let tables = crate::tablet_models::ModelTables::new(&catalogue, &config);
+        let known = Arc::new(AtomicBool::new(false));
+        let says = known.clone();
+        let model_of = move |id: DeviceId| {
+            (says.load(Relaxed) && id == DeviceId(3)).then(|| "Acme Slate".to_owned())
+        };
+        let models = DeviceTables::new(tables, Arc::new(model_of));
+        let all = table("controls.key-2 = { press = \"view.fit\" }");
+        let mut actions = TabletActions::new(all, Presets::default()).with_models(models);
+        let mut world = world();
+        let press = |actions: &mut TabletActions, world: &mut World| {
+            let asked = step(actions, world, vec![pad(0b10, 0), pad(0, 0)]).0;
+            (asked.len(), matches!(asked[0], Command::Camera(_)), world.brush().kind)
+        };
+        let before = world.brush().kind;
+        assert_eq!(press(&mut actions, &mut world), (1, true, before), "the table of all tablets");
+        known.store(true, Relaxed);
+        assert_eq!(press(&mut actions, &mut world), (1, false, BrushKind::Clay));
+        // What the model's table leaves out is as with every tablet.
+        assert!(matches!(step(&mut actions, &mut world, vec![pad(1, 0)]).0[..], [Command::Undo]));
     }
 
     #[test]

@@ -26,10 +26,7 @@ fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenSta
 }
 
 /// The tablets as the window has told the loop of them, in pixels of the desktop.
-fn tablets(
-    desktop: &DesktopLayout,
-    view: Option<[glam::DVec2; 2]>,
-) -> Vec<status::TabletStatus> {
+fn tablets(desktop: &DesktopLayout, view: Option<[glam::DVec2; 2]>) -> Vec<status::TabletStatus> {
     let of = |(id, place): &(DeviceId, PenPlace)| {
         let (known, area) = match *place {
             PenPlace::Area => (status::TabletPlace::Area, None),
