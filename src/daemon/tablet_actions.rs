@@ -5,6 +5,7 @@
 //! * The commands go into the journal as any others, and samples are changed before the world and
 //!   the journal see them: a replay needs neither the table nor this module.
 //! * A pen whose held button moves the view or a setting does not sculpt with the same motion.
+//! * A click that the desktop makes of a pad's key does not sculpt.
 
 use std::sync::Arc;
 
@@ -17,6 +18,7 @@ use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
+use crate::adaptors::POINTER_ID;
 use crate::tablet_controls::TabletControls;
 use crate::tablet_models::DeviceTables;
 use crate::tablet_vocabulary::{Meaning, meaning};
@@ -28,6 +30,32 @@ const MOST: usize = 16;
 /// The radius grows by this power of e, and the strength by this much, over the tablet's width and
 /// height.
 const DRAG: f32 = 3.0;
+
+/// An X server makes a click of a pad's key: so long after it at most, microseconds. A window that
+/// draws slowly hears of it late.
+const CLICK_US: u64 = 250_000;
+
+/// The pointer, as far as it tells a mouse's press from the click that a pad's key makes.
+#[derive(Debug, Default)]
+struct PointerPress {
+    /// When a pad's key was pressed that no press of the pointer has followed yet, microseconds.
+    key_us: Option<u64>,
+    down: bool,
+    /// This press is a key's.
+    of_key: bool,
+}
+
+impl PointerPress {
+    /// Takes the press away where it is a key's.
+    fn take(&mut self, t_us: u64, pen: &mut Pen) {
+        let begins = pen.tip && !std::mem::replace(&mut self.down, pen.tip);
+        if begins && let Some(key_us) = self.key_us.take() {
+            self.of_key = t_us.saturating_sub(key_us) <= CLICK_US;
+        }
+        self.of_key &= pen.tip;
+        pen.tip &= !self.of_key;
+    }
+}
 
 /// One tablet's controls.
 #[derive(Debug)]
@@ -42,6 +70,8 @@ struct Tablet {
     last: Option<Vec2>,
     /// It is in the middle of a stroke, which a button does not break.
     sculpts: bool,
+    /// Its pad's keys.
+    keys: u32,
 }
 
 /// The controls of all tablets.
@@ -56,6 +86,7 @@ pub struct TabletActions {
     own: Arc<ActionTable>,
     presets: Presets,
     tablets: Vec<Tablet>,
+    pointer: PointerPress,
     /// The brush as it was before a held button changed it.
     before: Option<BrushSettings>,
 }
@@ -81,7 +112,16 @@ impl TabletActions {
     pub fn new(table: ActionTable, presets: Presets) -> Self {
         let (controls, models) = (TabletControls::default(), DeviceTables::default());
         let own = controls.own();
-        TabletActions { table, models, controls, own, presets, tablets: Vec::new(), before: None }
+        TabletActions {
+            table,
+            models,
+            controls,
+            own,
+            presets,
+            tablets: Vec::new(),
+            pointer: PointerPress::default(),
+            before: None,
+        }
     }
 
     /// With what a person binds while it runs.
@@ -155,14 +195,27 @@ impl TabletActions {
         };
         self.follow_controls(&mut asked);
         let listens = self.controls.is_listening();
-        for sample in samples.iter_mut().filter(|s| TABLETS.iter().any(|t| t.contains(&s.device.0)))
-        {
+        let followed =
+            |s: &Sample| s.device == POINTER_ID || TABLETS.iter().any(|t| t.contains(&s.device.0));
+        for sample in samples.iter_mut().filter(|s| followed(s)) {
+            if sample.device == POINTER_ID {
+                if let Body::Pen(pen) = &mut sample.body {
+                    self.pointer.take(sample.t_us, pen);
+                }
+                continue;
+            }
             let Some(i) = self.tablet(sample.device) else { continue };
             self.follow_model(i, &mut asked);
             let mut events = Vec::new();
-            let state = &mut self.tablets[i].state;
+            let Tablet { state, keys, .. } = &mut self.tablets[i];
             match &sample.body {
-                Body::Pad(pad) => state.pad(pad, &mut |e| events.push(e)),
+                Body::Pad(pad) => {
+                    let before = std::mem::replace(keys, pad.keys);
+                    if pad.keys & !before != 0 {
+                        self.pointer.key_us = Some(sample.t_us);
+                    }
+                    state.pad(pad, &mut |e| events.push(e));
+                }
                 Body::Pen(pen) => state.pen(pen, &mut |e| events.push(e)),
                 Body::Hands(_) => {}
             }
@@ -183,7 +236,8 @@ impl TabletActions {
             // A ring's shorter way round is also right for a strip, where no finger jumps by half.
             let state = ActionState::new(self.table(None), [TouchShape::Ring; 2]);
             let (held, last) = (Vec::new(), None);
-            self.tablets.push(Tablet { id, model: None, state, held, last, sculpts: false });
+            let (model, sculpts, keys) = (None, false, 0);
+            self.tablets.push(Tablet { id, model, state, held, last, sculpts, keys });
             return Some(self.tablets.len() - 1);
         }
         at
@@ -351,6 +405,29 @@ mod tests {
         step(&mut actions, &mut world, vec![pad(0, 1), pad(0, 2)]);
         let grown = world.brush().radius / before;
         assert!((grown - 1.05 * 1.05).abs() < 1e-5, "two steps of five percent: {grown}");
+    }
+
+    #[test]
+    fn a_click_that_the_desktop_makes_of_a_key_does_not_sculpt() {
+        let (mut actions, mut world) = (actions(), world());
+        let at = |t_us, body| Sample { t_us, ..sample(body) };
+        let key = |t_us, keys| at(t_us, Body::Pad(Pad { keys, ..Default::default() }));
+        let press = |t_us, tip| {
+            let pen = pen(50.0, 0, tip).body;
+            Sample { device: POINTER_ID, ..at(t_us, pen) }
+        };
+        let tips = |actions: &mut TabletActions, world: &mut World, samples| {
+            let (_, seen) = step(actions, world, samples);
+            seen.iter().filter(|s| matches!(s.body, Body::Pen(p) if p.tip)).count()
+        };
+        let click = vec![key(1_000, 1), press(41_000, true), press(60_000, true)];
+        assert_eq!(tips(&mut actions, &mut world, click), 0);
+        // Its release, and a mouse's press afterwards, while the key is still held.
+        let mouse = vec![press(70_000, false), press(90_000, true), press(98_000, false)];
+        assert_eq!(tips(&mut actions, &mut world, mouse), 1);
+        // Long after a key it is a mouse's, too.
+        let late = vec![key(100_000, 0), key(110_000, 2), press(900_000, true)];
+        assert_eq!(tips(&mut actions, &mut world, late), 1);
     }
 
     #[test]
