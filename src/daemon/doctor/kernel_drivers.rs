@@ -19,7 +19,7 @@ const REWRITE: [&str; 5] = ["uclogic", "kye", "waltop", "holtek", "viewsonic"];
 const NEEDS_STRINGS: [u16; 2] = [0x256c, 0x5543];
 
 /// One `hidraw` node as sysfs has it.
-struct Node {
+struct HidrawNode {
     vid: u16,
     pid: u16,
     name: String,
@@ -27,9 +27,9 @@ struct Node {
     module: Option<String>,
 }
 
-impl Node {
+impl HidrawNode {
     /// `folder`: an entry of `/sys/class/hidraw`.
-    fn read(folder: &Path) -> Option<Node> {
+    fn read(folder: &Path) -> Option<HidrawNode> {
         let device = folder.join("device");
         let uevent = std::fs::read_to_string(device.join("uevent")).ok()?;
         let value = |key: &str| {
@@ -41,7 +41,7 @@ impl Node {
         let mut ids = id.split(':').skip(1).map(|part| u32::from_str_radix(part, 16).ok());
         let mut next = || ids.next()?.and_then(|n| u16::try_from(n).ok());
         let module = std::fs::read_link(device.join("driver/module")).ok();
-        Some(Node {
+        Some(HidrawNode {
             vid: next()?,
             pid: next()?,
             name: value("HID_NAME").unwrap_or_default(),
@@ -65,16 +65,17 @@ pub(super) fn check(class: &Path, catalogue: &Catalogue) -> Check {
     let entries = std::fs::read_dir(class).into_iter().flatten().flatten();
     let mut folders: Vec<_> = entries.map(|e| e.path()).collect();
     folders.sort();
-    let known = |n: &Node| {
+    let known = |n: &HidrawNode| {
         let mut ids = catalogue.tablets().iter().flat_map(|t| &t.id);
         REWRITE.iter().any(|d| n.driver.starts_with(d))
             || ids.any(|id| (id.vid, id.pid) == (n.vid, n.pid))
     };
-    let nodes: Vec<Node> = folders.iter().filter_map(|f| Node::read(f)).filter(known).collect();
+    let nodes: Vec<HidrawNode> =
+        folders.iter().filter_map(|f| HidrawNode::read(f)).filter(known).collect();
     if nodes.is_empty() {
         return Check::skip(NAME, "no tablet is plugged in that a kernel driver has");
     }
-    let (mut told, mut lacks): (Vec<String>, Option<&Node>) = (Vec::new(), None);
+    let (mut told, mut lacks): (Vec<String>, Option<&HidrawNode>) = (Vec::new(), None);
     for node in &nodes {
         let effect = if REWRITE.iter().any(|d| node.driver.starts_with(d)) {
             "shows another report descriptor than the tablet's, by which it is read"

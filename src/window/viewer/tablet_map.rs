@@ -45,7 +45,7 @@ const LEAST_SPREAD: f64 = 6e-3;
 const NEAR: f64 = 32.0;
 /// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
 /// events at once.
-const LATE_US: u64 = 250_000;
+pub(super) const LATE_US: u64 = 250_000;
 /// A pen that has not moved for so long is where its pointer is, whatever the delay, microseconds.
 const HALTED_US: u64 = 120_000;
 /// What a pair of another pen is worth beside one of a pen that has halted.
@@ -142,6 +142,8 @@ pub(super) struct Tablets {
     pub(super) unfocused: bool,
     /// When every event that waited was last taken, microseconds.
     pub(super) taken_us: u64,
+    /// When a key of a pad was pressed that no press of the pointer has followed yet, microseconds.
+    pub(super) key_us: Option<u64>,
 }
 
 impl TabletMap {

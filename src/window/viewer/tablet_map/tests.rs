@@ -32,11 +32,7 @@ fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
 
 /// The tablet's area covers a desktop of 1280 by 720 pixels.
 fn whole() -> ScreenMap {
-    ScreenMap {
-        origin: DVec2::ZERO,
-        across: DVec2::new(1280.0, 0.0),
-        down: DVec2::new(0.0, 720.0),
-    }
+    ScreenMap { origin: DVec2::ZERO, across: DVec2::new(1280.0, 0.0), down: DVec2::new(0.0, 720.0) }
 }
 
 #[test]
@@ -238,7 +234,7 @@ impl SlowDesktop {
     fn off(&self, truth: &ScreenMap) -> Option<f64> {
         let map = self.map.map()?;
         let shares = [[0.42, 0.36], [0.57, 0.42], [0.56, 0.61], [0.5, 0.5]];
-        let off = shares.map(|s| DVec2::from(s)).map(|s| map.at(s).distance(truth.at(s)));
+        let off = shares.map(DVec2::from).map(|s| map.at(s).distance(truth.at(s)));
         Some(off.into_iter().fold(0.0, f64::max))
     }
 }
