@@ -46,6 +46,11 @@ const NEAR: f64 = 32.0;
 /// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
 /// events at once.
 pub(super) const LATE_US: u64 = 250_000;
+/// A touch of the pen and the press that the desktop makes of it may lie so far apart on a machine
+/// that is busy, microseconds.
+const PRESS_US: u64 = 2_000_000;
+/// Touches that no press has followed yet are remembered up to so many.
+const TOUCHES: usize = 16;
 /// A pen that has not moved for so long is where its pointer is, whatever the delay, microseconds.
 const HALTED_US: u64 = 120_000;
 /// What a pair of another pen is worth beside one of a pen that has halted.
@@ -106,6 +111,9 @@ struct Place {
 #[derive(Debug, Default)]
 pub struct TabletMap {
     trail: VecDeque<Place>,
+    /// When and at which pixel the pen has touched by the map, before a press of the pointer has
+    /// followed. The pen's own samples sculpt there, whatever becomes of the map.
+    touches: VecDeque<(u64, DVec2)>,
     pairs: VecDeque<Pair>,
     /// Pairs taken since the last fit.
     fresh: usize,
@@ -154,6 +162,15 @@ impl TabletMap {
         }
         if share.is_none() {
             (self.together, self.apart) = (false, false);
+        }
+        let touched = self.trail.back().is_some_and(|last| last.tip);
+        let begins = tip && !touched && t_us >= self.since_us;
+        if let Some((share, map)) = share.zip(self.map()).filter(|_| begins) {
+            let pixel = map.at(share);
+            self.touches.push_back((t_us, pixel));
+            if self.touches.len() > TOUCHES {
+                self.touches.pop_front();
+            }
         }
         self.trail.push_back(Place { t_us, share, tip });
         self.predictor.report(t_us, share);
@@ -223,9 +240,21 @@ impl TabletMap {
         places.into_iter().any(|share| map.at(share).distance(pointer) <= NEAR)
     }
 
+    /// Whether a press of the pointer at this pixel is this pen's: where it touched a while ago, and
+    /// no press has followed yet, or where it is.
+    pub fn takes_press(&mut self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
+        let oldest = now_us.min(since_us).saturating_sub(PRESS_US);
+        self.touches.retain(|t| t.0 >= oldest);
+        let touch = self.touches.iter().position(|t| t.1.distance(pointer) <= NEAR);
+        if let Some(touch) = touch {
+            self.touches.drain(..=touch);
+        }
+        touch.is_some() || self.owns(now_us, since_us, pointer) && !self.touched_unknown()
+    }
+
     /// Whether the newest touch of the pen began before the map was known: the pen did nothing
     /// then, and the pointer sculpts in its place, however late its press is heard of.
-    pub fn touched_unknown(&self) -> bool {
+    fn touched_unknown(&self) -> bool {
         let newest = self.trail.iter().rposition(|p| p.tip);
         let Some(end) = newest else { return false };
         let begin = self.trail.iter().take(end).rposition(|p| !p.tip).map_or(0, |i| i + 1);

@@ -78,11 +78,11 @@ impl WindowState {
     }
 
     /// The same of a press: whether the pen's own samples sculpt what this press would.
-    pub(super) fn press_is_a_pens(&self, wiring: &Wiring) -> bool {
+    pub(super) fn press_is_a_pens(&mut self, wiring: &Wiring) -> bool {
         let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
         let since = self.tablets.taken_us;
-        let mut all = self.tablets.known.iter().map(|t| &t.1);
-        all.any(|map| map.owns(now, since, at) && !map.touched_unknown())
+        let mut all = self.tablets.known.iter_mut().map(|t| &mut t.1);
+        all.any(|map| map.takes_press(now, since, at))
     }
 
     /// Whether a press is the click that an X server makes of a pad's key: of one that was pressed

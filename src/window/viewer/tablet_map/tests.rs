@@ -304,3 +304,26 @@ fn a_map_is_not_guessed_beside_a_line() {
     }
     assert_eq!(map.map(), None);
 }
+
+#[test]
+fn a_press_that_comes_long_after_the_touch_is_the_pens_once() {
+    let mut map = hover(&whole(), 8_000, false);
+    let now = map.trail.back().expect("a place").t_us;
+    let touch = DVec2::new(0.3, 0.3);
+    for (i, tip) in [(1, false), (2, true), (3, true), (4, false)] {
+        map.pen(now + i * 8_000, Some(touch), tip);
+    }
+    // The pen has gone on before the busy server makes a press of it.
+    for i in 5..125 {
+        map.pen(now + i * 8_000, Some(DVec2::new(0.7, 0.6)), false);
+    }
+    let late = now + 125 * 8_000;
+    let press = whole().at(touch);
+    assert!(!map.owns(late, late, press));
+    assert!(!map.takes_press(late, late, press + DVec2::new(200.0, 0.0)), "a mouse's elsewhere");
+    assert!(map.takes_press(late, late, press));
+    assert!(!map.takes_press(late, late, press), "a mouse's");
+    map.pen(late + 8_000, Some(touch), true);
+    map.pen(late + 16_000, None, false);
+    assert!(!map.takes_press(late + 3_000_000, late + 3_000_000, press), "a mouse's, later");
+}
