@@ -83,7 +83,7 @@ impl Desktop {
                 if !until(20, || std::path::Path::new("/run/seatd.sock").exists()) {
                     return Err(io::Error::other("no seat"));
                 }
-                let sway = person("sway", &["-c", "/tmp/sway.conf", "-d"])?;
+                let sway = person("sway", &["-c", "/tmp/sway.conf"])?;
                 match until(60, || !self.message("-t", "get_outputs").is_empty()) {
                     true => Ok(vec![sway, seat]),
                     false => Err(io::Error::other("no compositor")),

@@ -24,6 +24,8 @@ const WITHIN: f64 = 2.0;
 /// Frames in which a map must be learned: two seconds of sixty, for the pen rests at each stop as
 /// long as it moves, and an emulated X server is late by something else each time.
 const LEARNED_IN: u64 = 120;
+/// Places to which the pen hovers for it at most.
+const STUCK: usize = 24;
 /// So many places in turn at which cursor and ring meet show that the map is learned.
 const MEET: usize = 4;
 /// Pixels from the middle of the view: where a pen hovers, in no order.
@@ -110,7 +112,7 @@ impl Show {
         while meet < MEET {
             let shown = frames() - begun;
             // A window that shows nothing learns nothing.
-            let stuck = self.stops - first > LEARNED_IN as usize;
+            let stuck = self.stops - first > STUCK;
             if meet == 0 && shown > LEARNED_IN || stuck {
                 let (cursor, ring) = self.rest()?;
                 let tablets = status()["tablets"].clone();
