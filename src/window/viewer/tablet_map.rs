@@ -240,8 +240,8 @@ impl TabletMap {
         places.into_iter().any(|share| map.at(share).distance(pointer) <= NEAR)
     }
 
-    /// Whether a press of the pointer at this pixel is this pen's: where it touched a while ago, and
-    /// no press has followed yet, or where it is.
+    /// Whether a press of the pointer at this pixel is this pen's: where it touched a while ago,
+    /// and no press has followed yet, or where it is.
     pub fn takes_press(&mut self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
         let oldest = now_us.min(since_us).saturating_sub(PRESS_US);
         self.touches.retain(|t| t.0 >= oldest);
