@@ -64,7 +64,7 @@ pub(crate) const TABLETS: &[(&str, &str)] = tablets! {
     "ugee-m808" "ugee-m908" "ugee-s1060" "ugee-s640" "ugee-u1200" "ugee-u1600" "ugee-ue16"
     "veikk-a15-pro" "veikk-a15-v2" "veikk-a15" "veikk-a30-v2" "veikk-a30" "veikk-a50-variant-2"
     "veikk-a50" "veikk-s640-v2" "veikk-s640" "veikk-vk1060" "veikk-vk1060pro" "veikk-vk430-v2"
-    "veikk-vk430" "veikk-vk640" "veikk-voila-vo1060" "viewsonic-woodpad-pf0730"
+    "veikk-vk430" "veikk-vk640" "veikk-voila-vo1060" "viewsonic-pd1011" "viewsonic-woodpad-pf0730"
     "viewsonic-woodpad-pf1030" "wacom-bamboo-16fg-4x5" "wacom-bamboo-16fg-6x8"
     "wacom-bamboo-2fg-4x5-se" "wacom-bamboo-2fg-6x8-se" "wacom-bamboo-2fg-6x8" "wacom-bamboo-2fg"
     "wacom-bamboo-comic-2fg" "wacom-bamboo-craft" "wacom-bamboo-pen-6x8" "wacom-bamboo1-medium"

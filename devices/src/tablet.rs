@@ -223,6 +223,8 @@ pub enum Family {
     RobotPen,
     /// ViewSonic WoodPad.
     WoodPad,
+    /// Signature pads of Signotec and ViewSonic: report 02.
+    Signature,
     /// From the report descriptor alone.
     Digitiser,
 }

@@ -126,6 +126,13 @@ pub struct StatusReply {
     /// Pens that are in range where a stroke may begin: those whose ring is shown.
     #[serde(default)]
     pub pens: Vec<PenStatus>,
+    /// Tablets that the desktop's pointer follows, and where the window has found that it puts
+    /// them.
+    #[serde(default)]
+    pub tablets: Vec<TabletStatus>,
+    /// Frames of the window that have shown a sample which none before them has.
+    #[serde(default)]
+    pub frames: u64,
     /// How the window stands.
     #[serde(default)]
     pub window: WindowStatus,
@@ -146,6 +153,35 @@ pub struct PenStatus {
     /// without a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixel: Option<[f64; 2]>,
+}
+
+/// Where the desktop puts a tablet.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TabletStatus {
+    /// The number of its device.
+    pub device: u16,
+    /// How far its place is known.
+    pub place: TabletPlace,
+    /// Where its area lies: its top left corner, its upper edge from left to right, its left edge
+    /// from top to bottom, in pixels of the desktop (of the window under Wayland). Present once it
+    /// is learned.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<[[f64; 2]; 3]>,
+}
+
+/// How far it is known where the desktop puts a tablet.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum TabletPlace {
+    /// Its whole area lies over the view.
+    Area,
+    /// It is not known yet, or no longer: the pointer sculpts in the place of the pen.
+    #[default]
+    Unknown,
+    /// It was learned from the desktop's pointer.
+    Learned,
 }
 
 /// How the window of the daemon stands.

@@ -79,6 +79,11 @@ pub fn tablets(config: &DevicesConfig) -> Result<Catalogue, TabletError> {
 }
 
 impl Adaptors {
+    /// The model of a tablet; `None` where it is not known, or not without waiting.
+    pub fn model_of(&self, device: DeviceId) -> Option<String> {
+        self.hid.as_ref()?.model_of(device)
+    }
+
     /// One line a device: what it is, how it stands, what is wrong.
     pub fn describe(&self) -> Vec<String> {
         let mut lines = self.failed.clone();

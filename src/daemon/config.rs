@@ -127,6 +127,7 @@ pub struct DevicesConfig {
     pub ignore: Vec<String>,
     pub calibration: Calibrations,
     pub actions: ActionTable,
+    pub model_actions: BTreeMap<String, ActionTable>,
 }
 
 impl Default for DevicesConfig {
@@ -140,6 +141,7 @@ impl Default for DevicesConfig {
             ignore: vec![],
             calibration: Calibrations::new(),
             actions: ActionTable::default(),
+            model_actions: BTreeMap::new(),
         }
     }
 }
@@ -318,6 +320,10 @@ impl Config {
         }
         crate::tablet_vocabulary::check(&self.devices.actions)
             .map_err(|e| format!("devices.{e}"))?;
+        for (model, table) in &self.devices.model_actions {
+            crate::tablet_vocabulary::check(table)
+                .map_err(|e| format!("devices.model_actions.\"{model}\": {e}"))?;
+        }
         let h = &self.hand;
         within("hand.steady.min_cutoff", h.steady.min_cutoff, 0.05, 50.0)?;
         within("hand.steady.beta", h.steady.beta, 0.0, 10.0)?;

@@ -3,6 +3,9 @@
 //! Every check says what it looked at, what it found, and, unless all is well, the exact repair. A
 //! check never changes anything that outlives it.
 
+#[cfg(target_os = "linux")]
+mod kernel_drivers;
+
 use std::net::{TcpStream, ToSocketAddrs};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -81,6 +84,13 @@ pub struct Places {
 /// All checks that need a valid configuration, in the order in which a person would repair.
 pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     let mut checks = vec![tablets(config, &places.dev)];
+    #[cfg(target_os = "linux")]
+    if config.devices.hid
+        && let Ok(catalogue) = crate::adaptors::tablets(&config.devices)
+    {
+        let class = Path::new("/sys/class/hidraw");
+        checks.push(kernel_drivers::check(class, &catalogue));
+    }
     checks.extend(config.devices.serial.iter().map(|p| serial(p)));
     checks.push(tracker(&config.devices.leap));
     #[cfg(unix)]

@@ -48,6 +48,7 @@ pub mod startup;
 pub mod systemd;
 pub mod tablet_actions;
 pub mod tablet_controls;
+pub mod tablet_models;
 pub mod tablet_vocabulary;
 pub mod tick;
 pub mod tick_statistics;

@@ -24,6 +24,7 @@ use crate::simulated_loop::{Feed, summary};
 use crate::startup::{Area, Begun, RecordingFeed};
 use crate::tablet_actions::TabletActions;
 use crate::tablet_controls::TabletControls;
+use crate::tablet_models::ModelTables;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
 use crate::window_link::{WindowLink, WindowStanding};
@@ -152,6 +153,7 @@ impl LiveRun {
         let (factory, receiver) = queue::channel(config.channel.capacity);
         let none = DevicesConfig { hid: false, ..Default::default() };
         let devices = if options.devices { &config.devices } else { &none };
+        let models = ModelTables::new(&catalogue, &config.devices);
         let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
         // As the world is now, so every visitor finds it.
         let first = options.kiosk.is_some().then(|| keeper::Start {
@@ -164,7 +166,8 @@ impl LiveRun {
         let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
         let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
         let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
-            .with_controls(options.controls.clone());
+            .with_controls(options.controls.clone())
+            .with_models(models.of(adaptors.clone()));
         let drain = (config.channel.drain_per_tick, Some(actions));
         let (rate, shared) = (config.r#loop, options.shared.take());
         let live =

@@ -1,4 +1,5 @@
-//! Every place of every tablet's pen, from the tick thread to the window.
+//! Every place of every tablet's pen, and every press of a pad's key, from the tick thread to the
+//! window.
 //!
 //! A window learns from it where the desktop puts a pen. The published state alone does not do: a
 //! window looks at it once a frame, and a pen that is drawn by a processor in a slow frame has been
@@ -17,7 +18,10 @@ use crate::adaptors::TABLET_IDS;
 /// Places that wait for the window: some ten seconds of two pens at 200 Hz.
 const CAPACITY: usize = 4096;
 
-/// Where a pen was at one time.
+/// Pads whose keys are followed.
+const PADS: usize = 16;
+
+/// Where a pen was at one time, or that a key of a pad was pressed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrailPoint {
     /// The tablet.
@@ -28,11 +32,17 @@ pub struct TrailPoint {
     pub share: Option<Vec2>,
     /// The tip touches.
     pub tip: bool,
+    /// A key of the pad was pressed; of the pen nothing is said.
+    pub key: bool,
 }
 
 /// The tick thread's end.
 #[derive(Debug)]
-pub struct PenTrailSender(cc::Sender<TrailPoint>);
+pub struct PenTrailSender {
+    to: cc::Sender<TrailPoint>,
+    /// The keys of each pad that are down.
+    keys: Vec<(DeviceId, u32)>,
+}
 
 /// The window's end. Each place comes out of one of the clones.
 #[derive(Debug, Clone)]
@@ -41,23 +51,40 @@ pub struct PenTrail(cc::Receiver<TrailPoint>);
 /// Both ends.
 pub fn pen_trail() -> (PenTrailSender, PenTrail) {
     let (to, from) = cc::bounded(CAPACITY);
-    (PenTrailSender(to), PenTrail(from))
+    (PenTrailSender { to, keys: Vec::with_capacity(PADS) }, PenTrail(from))
 }
 
 impl PenTrailSender {
     /// Tells of the samples of a tick.
-    pub fn send(&self, samples: &[Sample]) {
+    pub fn send(&mut self, samples: &[Sample]) {
         for sample in samples.iter().filter(|s| TABLET_IDS.contains(&s.device.0)) {
-            if let Body::Pen(pen) = &sample.body {
-                let share = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
-                let _ = self.0.try_send(TrailPoint {
-                    device: sample.device,
-                    t_us: sample.t_us,
-                    share: pen.in_range.then_some(share),
-                    tip: pen.tip && pen.in_range,
-                });
-            }
+            let (device, t_us) = (sample.device, sample.t_us);
+            let point = match &sample.body {
+                Body::Pen(pen) => {
+                    let share = pen.pos_mm / pen.area_mm.max(Vec2::splat(1e-3));
+                    let share = pen.in_range.then_some(share);
+                    TrailPoint { device, t_us, share, tip: pen.tip && pen.in_range, key: false }
+                }
+                Body::Pad(pad) if self.presses(device, pad.keys) => {
+                    TrailPoint { device, t_us, share: None, tip: false, key: true }
+                }
+                Body::Pad(_) | Body::Hands(_) => continue,
+            };
+            let _ = self.to.try_send(point);
         }
+    }
+
+    /// Whether another key of a pad is down than before.
+    fn presses(&mut self, device: DeviceId, keys: u32) -> bool {
+        let at = self.keys.iter().position(|k| k.0 == device);
+        if at.is_none() && self.keys.len() >= PADS {
+            return false;
+        }
+        let at = at.unwrap_or_else(|| {
+            self.keys.push((device, 0));
+            self.keys.len() - 1
+        });
+        keys & !std::mem::replace(&mut self.keys[at].1, keys) != 0
     }
 }
 
@@ -71,11 +98,25 @@ impl PenTrail {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sculptd_devices::Pen;
+    use sculptd_devices::{Pad, Pen};
+
+    #[test]
+    fn each_press_of_a_key_is_told_once() {
+        let (mut to, from) = pen_trail();
+        let pad = |device, t_us, keys| Sample {
+            device: DeviceId(device),
+            t_us,
+            device_t_us: None,
+            body: Body::Pad(Pad { keys, ..Pad::default() }),
+        };
+        to.send(&[pad(0, 1, 1), pad(0, 2, 3), pad(0, 3, 2), pad(1, 4, 2), pad(0, 5, 0)]);
+        let told: Vec<(u64, bool)> = from.take().map(|p| (p.t_us, p.key)).collect();
+        assert_eq!(told, [(1, true), (2, true), (4, true)]);
+    }
 
     #[test]
     fn a_tablets_places_come_in_order_and_nobody_waits() {
-        let (to, from) = pen_trail();
+        let (mut to, from) = pen_trail();
         let sample = |device, i: u64, in_range| Sample {
             device: DeviceId(device),
             t_us: i,

@@ -5,6 +5,7 @@
 //! * The commands go into the journal as any others, and samples are changed before the world and
 //!   the journal see them: a replay needs neither the table nor this module.
 //! * A pen whose held button moves the view or a setting does not sculpt with the same motion.
+//! * A click that the desktop makes of a pad's key does not sculpt.
 
 use std::sync::Arc;
 
@@ -17,7 +18,9 @@ use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
+use crate::adaptors::POINTER_ID;
 use crate::tablet_controls::TabletControls;
+use crate::tablet_models::DeviceTables;
 use crate::tablet_vocabulary::{Meaning, meaning};
 
 /// Ids of tablets, serial pens and recordings of such; a pointer has its own buttons.
@@ -28,10 +31,38 @@ const MOST: usize = 16;
 /// height.
 const DRAG: f32 = 3.0;
 
+/// An X server makes a click of a pad's key: so long after it at most, microseconds. A window that
+/// draws slowly hears of it late.
+const CLICK_US: u64 = 250_000;
+
+/// The pointer, as far as it tells a mouse's press from the click that a pad's key makes.
+#[derive(Debug, Default)]
+struct PointerPress {
+    /// When a pad's key was pressed that no press of the pointer has followed yet, microseconds.
+    key_us: Option<u64>,
+    down: bool,
+    /// This press is a key's.
+    of_key: bool,
+}
+
+impl PointerPress {
+    /// Takes the press away where it is a key's.
+    fn take(&mut self, t_us: u64, pen: &mut Pen) {
+        let begins = pen.tip && !std::mem::replace(&mut self.down, pen.tip);
+        if begins && let Some(key_us) = self.key_us.take() {
+            self.of_key = t_us.saturating_sub(key_us) <= CLICK_US;
+        }
+        self.of_key &= pen.tip;
+        pen.tip &= !self.of_key;
+    }
+}
+
 /// One tablet's controls.
 #[derive(Debug)]
 struct Tablet {
     id: DeviceId,
+    /// Its model, once that is known.
+    model: Option<String>,
     state: ActionState,
     /// What its pen's motion does while a button is held.
     held: Vec<Meaning>,
@@ -39,18 +70,23 @@ struct Tablet {
     last: Option<Vec2>,
     /// It is in the middle of a stroke, which a button does not break.
     sculpts: bool,
+    /// Its pad's keys.
+    keys: u32,
 }
 
 /// The controls of all tablets.
 #[derive(Debug)]
 pub struct TabletActions {
-    /// Of the settings, over the defaults.
+    /// Of the settings for all tablets.
     table: ActionTable,
+    /// Of single models.
+    models: DeviceTables,
     controls: TabletControls,
     /// What the person has bound, as the tablets have it now.
     own: Arc<ActionTable>,
     presets: Presets,
     tablets: Vec<Tablet>,
+    pointer: PointerPress,
     /// The brush as it was before a held button changed it.
     before: Option<BrushSettings>,
 }
@@ -74,16 +110,18 @@ impl TabletActions {
     /// The table's own bindings over the defaults. A tablet with an eraser carves with it where the
     /// table says nothing.
     pub fn new(table: ActionTable, presets: Presets) -> Self {
-        let mut table = table.over(ActionTable::defaults());
-        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
-        for n in 1..=2 {
-            if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
-                table.controls.entry(Control::Ring(n)).or_insert(binding);
-            }
-        }
-        let controls = TabletControls::default();
+        let (controls, models) = (TabletControls::default(), DeviceTables::default());
         let own = controls.own();
-        TabletActions { table, controls, own, presets, tablets: Vec::new(), before: None }
+        TabletActions {
+            table,
+            models,
+            controls,
+            own,
+            presets,
+            tablets: Vec::new(),
+            pointer: PointerPress::default(),
+            before: None,
+        }
     }
 
     /// With what a person binds while it runs.
@@ -91,9 +129,22 @@ impl TabletActions {
         TabletActions { controls, ..self }
     }
 
-    /// The table that is in force: the person's own bindings over the settings.
-    fn table(&self) -> ActionTable {
-        ActionTable::clone(&self.own).over(self.table.clone())
+    /// With what single models do.
+    pub fn with_models(self, models: DeviceTables) -> Self {
+        TabletActions { models, ..self }
+    }
+
+    /// The table that is in force for a model: the person's own bindings over the settings, those
+    /// over the tablet's file, and that over the defaults.
+    fn table(&self, model: Option<&str>) -> ActionTable {
+        let mut table = self.models.table(model, &self.table).over(ActionTable::defaults());
+        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
+        for n in 1..=2 {
+            if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
+                table.controls.entry(Control::Ring(n)).or_insert(binding);
+            }
+        }
+        ActionTable::clone(&self.own).over(table)
     }
 
     /// Takes over what the person has bound since the last tick. What is held is released.
@@ -103,11 +154,26 @@ impl TabletActions {
             return;
         }
         self.own = own;
-        let table = self.table();
         for i in 0..self.tablets.len() {
-            let mut events = Vec::new();
-            self.tablets[i].state.set_table(table.clone(), &mut |e| events.push(e));
-            events.into_iter().for_each(|e| self.apply(i, &e, asked));
+            self.take_table(i, asked);
+        }
+    }
+
+    /// Gives a tablet the table that is in force for it.
+    fn take_table(&mut self, i: usize, asked: &mut Asked<'_>) {
+        let table = self.table(self.tablets[i].model.as_deref());
+        let mut events = Vec::new();
+        self.tablets[i].state.set_table(table, &mut |e| events.push(e));
+        events.into_iter().for_each(|e| self.apply(i, &e, asked));
+    }
+
+    /// Asks for the model of a tablet that is not known yet.
+    fn follow_model(&mut self, i: usize, asked: &mut Asked<'_>) {
+        if self.tablets[i].model.is_none()
+            && let Some(model) = self.models.model(self.tablets[i].id)
+        {
+            self.tablets[i].model = Some(model);
+            self.take_table(i, asked);
         }
     }
 
@@ -129,13 +195,27 @@ impl TabletActions {
         };
         self.follow_controls(&mut asked);
         let listens = self.controls.is_listening();
-        for sample in samples.iter_mut().filter(|s| TABLETS.iter().any(|t| t.contains(&s.device.0)))
-        {
+        let followed =
+            |s: &Sample| s.device == POINTER_ID || TABLETS.iter().any(|t| t.contains(&s.device.0));
+        for sample in samples.iter_mut().filter(|s| followed(s)) {
+            if sample.device == POINTER_ID {
+                if let Body::Pen(pen) = &mut sample.body {
+                    self.pointer.take(sample.t_us, pen);
+                }
+                continue;
+            }
             let Some(i) = self.tablet(sample.device) else { continue };
+            self.follow_model(i, &mut asked);
             let mut events = Vec::new();
-            let state = &mut self.tablets[i].state;
+            let Tablet { state, keys, .. } = &mut self.tablets[i];
             match &sample.body {
-                Body::Pad(pad) => state.pad(pad, &mut |e| events.push(e)),
+                Body::Pad(pad) => {
+                    let before = std::mem::replace(keys, pad.keys);
+                    if pad.keys & !before != 0 {
+                        self.pointer.key_us = Some(sample.t_us);
+                    }
+                    state.pad(pad, &mut |e| events.push(e));
+                }
                 Body::Pen(pen) => state.pen(pen, &mut |e| events.push(e)),
                 Body::Hands(_) => {}
             }
@@ -154,9 +234,10 @@ impl TabletActions {
         let at = self.tablets.iter().position(|t| t.id == id);
         if at.is_none() && self.tablets.len() < MOST {
             // A ring's shorter way round is also right for a strip, where no finger jumps by half.
-            let state = ActionState::new(self.table(), [TouchShape::Ring; 2]);
+            let state = ActionState::new(self.table(None), [TouchShape::Ring; 2]);
             let (held, last) = (Vec::new(), None);
-            self.tablets.push(Tablet { id, state, held, last, sculpts: false });
+            let (model, sculpts, keys) = (None, false, 0);
+            self.tablets.push(Tablet { id, model, state, held, last, sculpts, keys });
             return Some(self.tablets.len() - 1);
         }
         at
@@ -324,6 +405,59 @@ mod tests {
         step(&mut actions, &mut world, vec![pad(0, 1), pad(0, 2)]);
         let grown = world.brush().radius / before;
         assert!((grown - 1.05 * 1.05).abs() < 1e-5, "two steps of five percent: {grown}");
+    }
+
+    #[test]
+    fn a_click_that_the_desktop_makes_of_a_key_does_not_sculpt() {
+        let (mut actions, mut world) = (actions(), world());
+        let at = |t_us, body| Sample { t_us, ..sample(body) };
+        let key = |t_us, keys| at(t_us, Body::Pad(Pad { keys, ..Default::default() }));
+        let press = |t_us, tip| {
+            let pen = pen(50.0, 0, tip).body;
+            Sample { device: POINTER_ID, ..at(t_us, pen) }
+        };
+        let tips = |actions: &mut TabletActions, world: &mut World, samples| {
+            let (_, seen) = step(actions, world, samples);
+            seen.iter().filter(|s| matches!(s.body, Body::Pen(p) if p.tip)).count()
+        };
+        let click = vec![key(1_000, 1), press(41_000, true), press(60_000, true)];
+        assert_eq!(tips(&mut actions, &mut world, click), 0);
+        // Its release, and a mouse's press afterwards, while the key is still held.
+        let mouse = vec![press(70_000, false), press(90_000, true), press(98_000, false)];
+        assert_eq!(tips(&mut actions, &mut world, mouse), 1);
+        // Long after a key it is a mouse's, too.
+        let late = vec![key(100_000, 0), key(110_000, 2), press(900_000, true)];
+        assert_eq!(tips(&mut actions, &mut world, late), 1);
+    }
+
+    #[test]
+    fn a_model_has_its_own_table_as_soon_as_it_is_known() {
+        use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+        let table = |text: &str| toml::from_str::<ActionTable>(text).expect("a table");
+        let mut config = crate::config::DevicesConfig::default();
+        let own = "controls.key-2 = { press = \"brush.clay\" }";
+        config.model_actions.insert("Acme Slate".into(), table(own));
+        let catalogue = sculptd_devices::catalogue::Catalogue::default();
+        let tables = crate::tablet_models::ModelTables::new(&catalogue, &config);
+        let known = Arc::new(AtomicBool::new(false));
+        let says = known.clone();
+        let model_of = move |id: DeviceId| {
+            (says.load(Relaxed) && id == DeviceId(3)).then(|| "Acme Slate".to_owned())
+        };
+        let models = DeviceTables::new(tables, Arc::new(model_of));
+        let all = table("controls.key-2 = { press = \"view.fit\" }");
+        let mut actions = TabletActions::new(all, Presets::default()).with_models(models);
+        let mut world = world();
+        let press = |actions: &mut TabletActions, world: &mut World| {
+            let asked = step(actions, world, vec![pad(0b10, 0), pad(0, 0)]).0;
+            (asked.len(), matches!(asked[0], Command::Camera(_)), world.brush().kind)
+        };
+        let before = world.brush().kind;
+        assert_eq!(press(&mut actions, &mut world), (1, true, before), "the table of all tablets");
+        known.store(true, Relaxed);
+        assert_eq!(press(&mut actions, &mut world), (1, false, BrushKind::Clay));
+        // What the model's table leaves out is as with every tablet.
+        assert!(matches!(step(&mut actions, &mut world, vec![pad(1, 0)]).0[..], [Command::Undo]));
     }
 
     #[test]

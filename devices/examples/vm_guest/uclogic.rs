@@ -80,7 +80,7 @@ pub fn run() -> io::Result<bool> {
     sent.extend(KEYS.map(Vec::from));
 
     let mut daemon = Command::new("/bin/sculptd")
-        .args(["devices", "record", "/tmp/uclogic.rec", "--for", "20", "--json"])
+        .args(["devices", "record", "/tmp/uclogic.rec", "--for", "32", "--json"])
         .stdout(Stdio::piped())
         .spawn()?;
     let usb = UsbDevice::plug(Description {
@@ -94,7 +94,9 @@ pub fn run() -> io::Result<bool> {
     let mut good = tell(bound.len() == 1, "hid_uclogic has taken a Huion on an emulated USB port");
     for report in &sent {
         usb.report(report);
-        std::thread::sleep(Duration::from_millis(4));
+        // The kernel keeps 64 reports of a reader that stands still: on a busy machine for most of
+        // a second.
+        std::thread::sleep(Duration::from_millis(12));
     }
     let mut out = String::new();
     if let Some(mut pipe) = daemon.stdout.take() {

@@ -15,7 +15,7 @@ use crate::descriptor::{Descriptor, PenLayout};
 /// Report ids that `hid-uclogic` gives the keys, rings and dials that it splits off pen reports.
 const FRAME_IDS: [u8; 4] = [0xf7, 0xf8, 0xf9, 0xba];
 /// Drivers that put a descriptor of their own in the place of the device's.
-const DRIVERS: [&str; 5] = ["uclogic", "kye", "waltop", "holtek", "hid-generic-bpf"];
+const DRIVERS: [&str; 6] = ["uclogic", "kye", "waltop", "holtek", "viewsonic", "hid-generic-bpf"];
 /// Report id of the vendor's own protocol: Huion and Gaomon.
 const HUION_VENDOR: u8 = 0x08;
 /// Report id of the vendor's own protocol: XP-Pen and UGEE.

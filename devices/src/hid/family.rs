@@ -132,6 +132,7 @@ impl Engine {
             Family::Xenx => vendor(vendors::xenx, true),
             Family::RobotPen => vendor(vendors::robot_pen, true),
             Family::WoodPad => vendor(vendors::wood_pad, true),
+            Family::Signature => vendor(vendors::signature, true),
             Family::Digitiser => Engine::Digitiser(Box::new(described)),
         }
     }

@@ -172,6 +172,28 @@ pub fn wood_pad(b: &[u8]) -> Parsed {
     })
 }
 
+/// Signature pads of Signotec and ViewSonic, report 02: in range is bit 1 and the tip bit 2 of byte
+/// 5. A pen that hovers has five counts of pressure (Linux `hid-viewsonic.c`, recordings).
+pub fn signature(b: &[u8]) -> Parsed {
+    if byte(b, 0) != 0x02 {
+        return Parsed::Nothing;
+    }
+    if b.len() < 8 {
+        return Parsed::Broken;
+    }
+    if b[5] & 2 == 0 {
+        return Parsed::Away;
+    }
+    let tip = b[5] & 4 != 0;
+    Parsed::Pen(PenReport {
+        tool: tool(false),
+        tip: Some(tip),
+        pos: at(u16_at(b, 1), u16_at(b, 3)),
+        pressure: Some(if tip { u16_at(b, 6) } else { 0 }),
+        ..PenReport::default()
+    })
+}
+
 /// KYE's newer form, report 10: the plain layout with the tip in bit 0 and proximity in bit 7 of
 /// byte 1 (the descriptors of Linux `hid-kye.c`).
 pub fn kye_plain(b: &[u8]) -> Parsed {
@@ -204,6 +226,21 @@ mod tests {
     }
 
     #[test]
+    fn a_signature_pad_hovers_presses_and_leaves() {
+        let read = |f: u8, p: u16| {
+            let [lo, hi] = p.to_le_bytes();
+            match signature(&[2, 0xac, 0x57, 0x2b, 0x0a, f, lo, hi, 0, 0]) {
+                Parsed::Pen(p) => Some((p.pos, p.tip, p.pressure)),
+                _ => None,
+            }
+        };
+        let pos = Some([0x57ac, 0x0a2b]);
+        assert_eq!(read(3, 5), Some((pos, Some(false), Some(0))));
+        assert_eq!(read(7, 1239), Some((pos, Some(true), Some(1239))));
+        assert_eq!(read(1, 0), None);
+    }
+
+    #[test]
     fn no_length_panics() {
         let bytes = [0xffu8, 0x42, 0x41, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
         for n in 0..bytes.len() {
@@ -212,7 +249,8 @@ mod tests {
                 if let Some(b0) = b.first_mut() {
                     *b0 = first;
                 }
-                for f in [plain, kye, acepen, xenx, robot_pen, wood_pad, ten_moons, kye_plain] {
+                let all = [plain, kye, acepen, xenx, robot_pen, wood_pad, ten_moons, kye_plain];
+                for f in all.into_iter().chain([signature as fn(&[u8]) -> Parsed]) {
                     f(&b);
                 }
                 veikk(&b, true);

@@ -98,6 +98,14 @@ impl HidHandle {
     pub fn status(&self) -> Vec<NodeStatus> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner).now()
     }
+
+    /// The model that a device is read as. `None` for a device that is not read, and where the
+    /// answer would have to be waited for: it may be asked on a thread that never waits.
+    pub fn model_of(&self, device: DeviceId) -> Option<String> {
+        let shared = self.shared.try_lock().ok()?;
+        let open = shared.open.iter().find(|o| o.status.device == Some(device.0))?;
+        open.status.model.clone()
+    }
 }
 
 #[derive(Debug, Default)]

@@ -296,6 +296,11 @@ fn models_that_were_declined_are_known() {
         let who = Identity { vid: 0x056a, pid, seen_lengths: vec![length], ..Identity::default() };
         assert_eq!(identified(&who).id().parser.name(), parser, "056a:{pid:04x}");
     }
+    // Their descriptor says nothing of the nine bytes after the report's id.
+    for (vid, pid) in [(0x0543, 0xe621), (0x2133, 0x0018)] {
+        let who = Identity { vid, pid, seen_lengths: vec![10], ..Identity::default() };
+        assert_eq!(identified(&who).id().parser.name(), "signature", "{vid:04x}:{pid:04x}");
+    }
     for pid in [0x5005, 0x500f, 0x5013, 0x5015] {
         let who = Identity { vid: 0x0458, pid, seen_lengths: vec![8], ..Identity::default() };
         assert_eq!(identified(&who).id().parser.name(), "kye-plain", "0458:{pid:04x}");

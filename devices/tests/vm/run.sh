@@ -43,8 +43,9 @@ INIT
 chmod +x "$initrd/init"
 (cd "$initrd" && find . | cpio -o -H newc --quiet | gzip -1) >"$work/initrd.gz"
 
+# On a busy machine an emulated timer is late, and the kernel gives up at its check of it.
 echo "booting $version"
 timeout 240 qemu-system-x86_64 -accel tcg,thread=multi -m 512 -smp 2 -nographic -no-reboot -nodefaults \
     -serial stdio -kernel "$work/kernel/boot/vmlinuz-$version" -initrd "$work/initrd.gz" \
-    -append "console=ttyS0 quiet panic=-1" | tee "$work/console.log"
+    -append "console=ttyS0 quiet panic=-1 no_timer_check" | tee "$work/console.log"
 grep -q '^VM PASSED' "$work/console.log"

@@ -11,6 +11,8 @@ use crate::window_link::WindowStanding;
 use sculptd_control::RpcError;
 use sculptd_control::status::{self, Versions};
 use sculptd_control::wire::Code;
+use sculptd_devices::DeviceId;
+use sculptd_engine::desktop_layout::{DesktopLayout, PenPlace};
 
 /// The pens whose rings are shown, and where: `view` is the view's corner and size on the desktop.
 fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenStatus> {
@@ -21,6 +23,25 @@ fn pens(shown: &Published, view: Option<[glam::DVec2; 2]>) -> Vec<status::PenSta
         pixel: view.map(|[corner, size]| (corner + size * pen.view.as_dvec2()).to_array()),
     })
     .collect()
+}
+
+/// The tablets as the window has told the loop of them, in pixels of the desktop.
+fn tablets(desktop: &DesktopLayout, view: Option<[glam::DVec2; 2]>) -> Vec<status::TabletStatus> {
+    let of = |(id, place): &(DeviceId, PenPlace)| {
+        let (known, area) = match *place {
+            PenPlace::Area => (status::TabletPlace::Area, None),
+            PenPlace::Unknown => (status::TabletPlace::Unknown, None),
+            PenPlace::Mapped { origin, across, down } => {
+                let area = view.map(|[corner, size]| {
+                    let edges = [across, down].map(|edge| size * edge.as_dvec2());
+                    [corner + size * origin.as_dvec2(), edges[0], edges[1]].map(|v| v.to_array())
+                });
+                (status::TabletPlace::Learned, area)
+            }
+        };
+        status::TabletStatus { device: id.0, place: known, area }
+    };
+    desktop.tablets.iter().flatten().map(of).collect()
 }
 
 pub(super) fn status(
@@ -57,6 +78,8 @@ pub(super) fn status(
             fault: h.trouble(),
         }),
         pens: pens(&shown, host.window.view_on_desktop()),
+        tablets: tablets(&host.window.claims().desktop, host.window.view_on_desktop()),
+        frames: host.window.present_latency().frames(),
         window: match host.window.standing() {
             WindowStanding::Headless => status::WindowStatus::Headless,
             WindowStanding::Opening => status::WindowStatus::Opening,
@@ -84,4 +107,30 @@ pub(super) fn other_version(theirs: Versions) -> RpcError {
         ours.min, ours.max, theirs.min, theirs.max
     );
     RpcError::new(Code::Version, text)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, Vec2};
+
+    use super::*;
+
+    #[test]
+    fn a_learned_tablet_is_told_in_pixels_of_the_desktop() {
+        let mapped = PenPlace::Mapped {
+            origin: Vec2::new(-0.5, 0.25),
+            across: Vec2::new(2.0, 0.0),
+            down: Vec2::new(0.0, 1.5),
+        };
+        let mut desktop = DesktopLayout::default();
+        desktop.tablets[0] = Some((DeviceId(3), mapped));
+        desktop.tablets[1] = Some((DeviceId(4), PenPlace::Unknown));
+        let view = Some([DVec2::new(100.0, 50.0), DVec2::new(600.0, 400.0)]);
+        let told = tablets(&desktop, view);
+        assert_eq!(told.len(), 2);
+        assert_eq!((told[0].device, told[0].place), (3, status::TabletPlace::Learned));
+        assert_eq!(told[0].area, Some([[-200.0, 150.0], [1200.0, 0.0], [0.0, 600.0]]));
+        assert_eq!((told[1].place, told[1].area), (status::TabletPlace::Unknown, None));
+        assert_eq!(tablets(&desktop, None)[0].area, None);
+    }
 }

@@ -160,6 +160,9 @@ impl WindowState {
         self.camera_animation = None;
         self.pointer.inside = true;
         self.take_trail(wiring);
+        if self.press_is_a_keys() {
+            return;
+        }
         let state = wiring.published.load();
         let view = self.view_point(self.pointer.at);
         let ray = self.camera.ray(view);

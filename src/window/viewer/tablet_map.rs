@@ -35,20 +35,44 @@ const BELIEVED: f64 = 3.0;
 const WILD: f64 = 24.0;
 /// Pairs beyond so many medians are not the pen's.
 const OUTLIER: f64 = 4.0;
-/// The part of the tablet, in shares, that the pairs must span in both directions: over less, the
-/// map's far corners would be guessed.
-const LEAST_SPAN: f64 = 0.02;
+/// Pairs that are left for the second fit at least.
+const FEWEST: usize = 8;
+/// How far the pairs must lie apart, in shares of the tablet: their standard deviation in the
+/// direction in which it is least. Over less, or along a line, the map beside them would be
+/// guessed.
+const LEAST_SPREAD: f64 = 6e-3;
 /// A pen's pointer may be this far from where the map puts it, pixels: beyond, it is a mouse's.
 const NEAR: f64 = 32.0;
 /// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
 /// events at once.
-const LATE_US: u64 = 250_000;
+pub(super) const LATE_US: u64 = 250_000;
+/// A touch of the pen and the press that the desktop makes of it may lie so far apart on a machine
+/// that is busy, microseconds.
+const PRESS_US: u64 = 2_000_000;
+/// Touches that no press has followed yet are remembered up to so many.
+const TOUCHES: usize = 16;
 /// A pen that has not moved for so long is where its pointer is, whatever the delay, microseconds.
 const HALTED_US: u64 = 120_000;
 /// What a pair of another pen is worth beside one of a pen that has halted.
 const MOVING: f64 = 0.1;
-/// Pairs that are looked at for whether the desktop has another map than before.
-const NEWEST: usize = 2 * LEAST;
+/// At most so many of the newest pairs are looked at for whether the desktop has another map than
+/// before.
+const NEWEST: usize = 8 * LEAST;
+/// So many pairs in turn that agree with the map end a contradiction.
+const AGREE: usize = 3;
+/// Another map must fit this part of its pairs, by what they are worth: a map through three places
+/// fits more than half of them, even where the pointer was elsewhere at one of them.
+const FITTED: f64 = 0.8;
+/// A map is contradicted where its newest pairs lie so far from it, pixels in the median, whatever
+/// the delay is taken to be.
+const CONTRADICTED: f64 = 2.0 * BELIEVED;
+/// Another map fits the newest pairs so many times better than the one that they contradict.
+const BETTER: f64 = 3.0;
+/// A map is doubted after so many pairs, which lie so far apart in time, microseconds: a desktop
+/// that stands still for a moment contradicts nothing.
+const DOUBTED: (usize, u64) = (LEAST / 2, 300_000);
+/// A pen that moves by less than this share of its tablet rests in the hand.
+const RESTS: f64 = 4e-3;
 
 /// From shares of a tablet's area to pixels of the whole desktop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +111,9 @@ struct Place {
 #[derive(Debug, Default)]
 pub struct TabletMap {
     trail: VecDeque<Place>,
+    /// When and at which pixel the pen has touched by the map, before a press of the pointer has
+    /// followed. The pen's own samples sculpt there, whatever becomes of the map.
+    touches: VecDeque<(u64, DVec2)>,
     pairs: VecDeque<Pair>,
     /// Pairs taken since the last fit.
     fresh: usize,
@@ -98,6 +125,12 @@ pub struct TabletMap {
     together: bool,
     /// The pointer goes where the pen does not: it is a mouse's.
     apart: bool,
+    /// When the first of the pairs was taken that contradict the map, microseconds.
+    contradicted_us: Option<u64>,
+    /// Pairs in turn that agree with the map.
+    agree: usize,
+    /// Pairs since the map was doubted, while no other is known.
+    doubts: usize,
     /// When the map became known, microseconds.
     since_us: u64,
     /// Where the pen goes.
@@ -117,6 +150,8 @@ pub(super) struct Tablets {
     pub(super) unfocused: bool,
     /// When every event that waited was last taken, microseconds.
     pub(super) taken_us: u64,
+    /// When a key of a pad was pressed that no press of the pointer has followed yet, microseconds.
+    pub(super) key_us: Option<u64>,
 }
 
 impl TabletMap {
@@ -128,6 +163,15 @@ impl TabletMap {
         if share.is_none() {
             (self.together, self.apart) = (false, false);
         }
+        let touched = self.trail.back().is_some_and(|last| last.tip);
+        let begins = tip && !touched && t_us >= self.since_us;
+        if let Some((share, map)) = share.zip(self.map()).filter(|_| begins) {
+            let pixel = map.at(share);
+            self.touches.push_back((t_us, pixel));
+            if self.touches.len() > TOUCHES {
+                self.touches.pop_front();
+            }
+        }
         self.trail.push_back(Place { t_us, share, tip });
         self.predictor.report(t_us, share);
         if self.trail.len() > TRAIL {
@@ -137,7 +181,7 @@ impl TabletMap {
 
     /// The pointer has moved here, in pixels of the whole desktop, while the pen was in range.
     pub fn pointer(&mut self, t_us: u64, at: DVec2) {
-        if self.trail.back().is_none_or(|p| p.share.is_none()) {
+        if self.trail.back().is_none_or(|p| p.share.is_none()) || self.rests_since_a_pair(t_us) {
             return;
         }
         self.together = true;
@@ -149,6 +193,7 @@ impl TabletMap {
             self.pairs.pop_front();
         }
         self.fresh += 1;
+        self.look_for_another(t_us);
         let enough = (self.pairs.len() / FRESH).max(LEAST / 2);
         if self.fresh >= enough && self.pairs.len() >= LEAST {
             self.fresh = 0;
@@ -161,9 +206,16 @@ impl TabletMap {
         &self.predictor
     }
 
-    /// The map, once it is known.
+    /// The map, once it is known; `None` while the newest pairs contradict it and none is known yet
+    /// that they agree on.
     pub fn map(&self) -> Option<&ScreenMap> {
-        self.map.as_ref()
+        self.map.as_ref().filter(|_| !self.is_doubted())
+    }
+
+    /// After as many pairs as show any map, none was found: a mouse moves the pointer, and the map
+    /// is as good as before.
+    fn is_doubted(&self) -> bool {
+        (1..=NEWEST / 2).contains(&self.doubts)
     }
 
     /// The pointer's delay behind the pen, microseconds, and how far the pairs lie from the map,
@@ -174,13 +226,13 @@ impl TabletMap {
 
     /// Whether the pointer moves in this visit and nothing is known yet of why.
     pub fn is_undecided(&self) -> bool {
-        self.map.is_none() && self.together && !self.apart
+        self.map().is_none() && self.together && !self.apart
     }
 
     /// Whether a pointer at this pixel is this pen's. `since_us`: the window has taken no event
     /// since then, so that the pointer may have been here at any time after it.
     pub fn owns(&self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
-        let Some(map) = &self.map else { return false };
+        let Some(map) = self.map() else { return false };
         let oldest = now_us.saturating_sub(LATE_US).min(since_us.saturating_sub(LATE_US));
         // A pen that rests sends nothing: the place before the oldest holds until the next.
         let from = self.trail.partition_point(|p| p.t_us < oldest).saturating_sub(1);
@@ -188,9 +240,21 @@ impl TabletMap {
         places.into_iter().any(|share| map.at(share).distance(pointer) <= NEAR)
     }
 
+    /// Whether a press of the pointer at this pixel is this pen's: where it touched a while ago,
+    /// and no press has followed yet, or where it is.
+    pub fn takes_press(&mut self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
+        let oldest = now_us.min(since_us).saturating_sub(PRESS_US);
+        self.touches.retain(|t| t.0 >= oldest);
+        let touch = self.touches.iter().position(|t| t.1.distance(pointer) <= NEAR);
+        if let Some(touch) = touch {
+            self.touches.drain(..=touch);
+        }
+        touch.is_some() || self.owns(now_us, since_us, pointer) && !self.touched_unknown()
+    }
+
     /// Whether the newest touch of the pen began before the map was known: the pen did nothing
     /// then, and the pointer sculpts in its place, however late its press is heard of.
-    pub fn touched_unknown(&self) -> bool {
+    fn touched_unknown(&self) -> bool {
         let newest = self.trail.iter().rposition(|p| p.tip);
         let Some(end) = newest else { return false };
         let begin = self.trail.iter().take(end).rposition(|p| !p.tip).map_or(0, |i| i + 1);
@@ -211,50 +275,129 @@ impl TabletMap {
         })
     }
 
+    /// Whether the pen has rested since some time before the last pair: the pointer was told where
+    /// it is, and what moves it now is a mouse.
+    fn rests_since_a_pair(&self, t_us: u64) -> bool {
+        let from = self.pairs.back().map(|p| p.t_us.saturating_sub(LATE_US));
+        let Some((from, at)) = from.and_then(|from| Some((from, self.share_at(from)?))) else {
+            return false;
+        };
+        let after = self.trail.partition_point(|p| p.t_us <= from);
+        let mut since = self.trail.iter().skip(after).take_while(|p| p.t_us <= t_us);
+        since.all(|p| p.share.is_some_and(|share| share.distance(at) < RESTS))
+    }
+
     fn learn(&mut self, now_us: u64) {
         let oldest = self.trail.front().map_or(0, |p| p.t_us);
         self.pairs.retain(|p| p.t_us >= oldest);
-        self.forget_another_map();
-        let Some((delay, map, error)) = self.best_map() else { return };
+        let all = self.pairs.len();
+        let Some((delay, map, error)) = self.best_map(all) else { return };
+        // Where the newest pairs contradict the map that was known, they may do so because it was
+        // guessed from few; or else the pairs are of two maps, the older ones the more.
+        let newest = self.contradicting();
+        let of_two_maps = newest > 0
+            && self.least_quantile(&map, newest, FITTED).is_none_or(|off| off > BELIEVED);
+        if of_two_maps {
+            return;
+        }
         if error <= BELIEVED {
-            if self.map.is_none() {
-                self.since_us = now_us;
-            }
-            (self.map, self.fit, self.apart) = (Some(map), (delay, error), false);
-        } else if self.pairs.len() >= 2 * LEAST && error > WILD {
+            self.believe(now_us, delay, map, error);
+        } else if all >= 2 * LEAST && error > WILD {
             // A mouse moves the pointer: the map that was known goes only when it is contradicted
             // for long.
             self.apart = true;
-            let off = self.map.and_then(|known| self.median(&known, self.fit.0));
-            if self.pairs.len() >= PAIRS / 2 && off.is_some_and(|e| e > WILD) {
-                self.map = None;
+            let off = self.map.and_then(|known| self.least_quantile(&known, all, 0.5));
+            if all >= PAIRS / 2 && off.is_some_and(|e| e > WILD) {
+                (self.map, self.doubts) = (None, 0);
             }
         }
     }
 
-    /// The map with the delay that fits best, that delay, and the median distance of the pairs.
-    fn best_map(&self) -> Option<(u64, ScreenMap, f64)> {
-        let all = (0..DELAYS.0).filter_map(|i| self.try_delay(i * DELAYS.1));
+    fn believe(&mut self, now_us: u64, delay: u64, map: ScreenMap, error: f64) {
+        if self.map().is_none() {
+            self.since_us = now_us;
+        }
+        (self.map, self.fit, self.apart, self.doubts) = (Some(map), (delay, error), false, 0);
+        self.contradicted_us = None;
+    }
+
+    /// The map of the newest pairs with the delay that fits best, that delay, and the median
+    /// distance of the pairs.
+    fn best_map(&self, newest: usize) -> Option<(u64, ScreenMap, f64)> {
+        let all = (0..DELAYS.0).filter_map(|i| self.try_delay(newest, i * DELAYS.1));
         let best = all.min_by(|a, b| a.3.total_cmp(&b.3))?;
         Some((best.0, best.1, best.2))
     }
 
     /// Where the newest pairs contradict the map and agree on another one, the desktop has another
-    /// map than before (its area was turned, or a screen was added): the older pairs are dropped.
-    fn forget_another_map(&mut self) {
-        let Some(known) = self.map.filter(|_| self.pairs.len() > NEWEST) else { return };
-        let older = self.pairs.len() - NEWEST;
-        let kept: Vec<Pair> = self.pairs.drain(..older).collect();
-        let contradicted = self.median(&known, self.fit.0).is_some_and(|e| e > WILD);
-        let another = contradicted && self.best_map().is_some_and(|best| best.2 <= BELIEVED);
-        if !another {
-            kept.into_iter().rev().for_each(|p| self.pairs.push_front(p));
+    /// map than before (its area was turned or cropped, or a screen was added): the older pairs are
+    /// dropped. Where they agree on none yet the map is doubted. A stroke goes on by the map with
+    /// which it began.
+    fn look_for_another(&mut self, now_us: u64) {
+        let Some(known) = self.map else { return };
+        let agrees = self.least_quantile(&known, 1, 0.5).is_none_or(|off| off <= CONTRADICTED);
+        if agrees || self.trail.back().is_some_and(|p| p.tip) {
+            self.agree += usize::from(agrees);
+            if self.agree >= AGREE {
+                self.contradicted_us = None;
+            }
+            return self.trust_again(now_us);
+        }
+        self.agree = 0;
+        self.contradicted_us.get_or_insert(now_us);
+        let newest = self.contradicting();
+        let off = self.least_quantile(&known, newest, 0.5).filter(|off| *off > CONTRADICTED);
+        let best = self.best_map(newest).zip(off).filter(|((_, map, _), off)| {
+            let fits = self.least_quantile(map, newest, FITTED);
+            fits.is_some_and(|fits| fits <= BELIEVED && fits * BETTER < *off)
+        });
+        if let Some(((delay, map, error), _)) = best {
+            self.pairs.drain(..self.pairs.len() - newest);
+            self.fresh = 0;
+            return self.believe(now_us, delay, map, error);
+        }
+        let early = now_us.saturating_sub(DOUBTED.1);
+        let lately = self.pairs.iter().rev().position(|p| p.t_us < early).map_or(0, |i| i + 1);
+        let lately = lately.max(DOUBTED.0);
+        if self.doubts > 0 || lately <= self.pairs.len() && self.is_contradicted(&known, lately) {
+            self.doubts = self.doubts.saturating_add(1);
         }
     }
 
-    fn samples(&self, delay_us: u64) -> Vec<(DVec2, DVec2, f64)> {
+    /// How many of the newest pairs there are since the map was contradicted.
+    fn contradicting(&self) -> usize {
+        let Some(since) = self.contradicted_us else { return 0 };
+        self.pairs.iter().rev().take(NEWEST).take_while(|p| p.t_us >= since).count()
+    }
+
+    /// The newest pairs agree with the map again, or a stroke is drawn by it.
+    fn trust_again(&mut self, now_us: u64) {
+        let Some(known) = self.map.filter(|_| self.doubts > 0) else { return };
+        if self.pairs.len() >= DOUBTED.0 && !self.is_contradicted(&known, DOUBTED.0) {
+            if self.is_doubted() {
+                self.since_us = now_us;
+            }
+            self.doubts = 0;
+        }
+    }
+
+    /// Whether the newest pairs lie far from a map, whatever the delay is taken to be.
+    fn is_contradicted(&self, map: &ScreenMap, newest: usize) -> bool {
+        self.least_quantile(map, newest, 0.5).is_some_and(|off| off > WILD)
+    }
+
+    /// Within which distance of a map this part of the newest pairs lies, with the delay that suits
+    /// it best.
+    fn least_quantile(&self, map: &ScreenMap, newest: usize, part: f64) -> Option<f64> {
+        let samples = (0..DELAYS.0).map(|i| self.samples(newest, i * DELAYS.1));
+        let all = samples.filter_map(|samples| quantile(distances(map, &samples), part));
+        all.min_by(f64::total_cmp)
+    }
+
+    fn samples(&self, newest: usize, delay_us: u64) -> Vec<(DVec2, DVec2, f64)> {
         self.pairs
             .iter()
+            .skip(self.pairs.len().saturating_sub(newest))
             .filter_map(|p| {
                 let t = p.t_us.checked_sub(delay_us)?;
                 let share = self.share_at(t)?;
@@ -273,23 +416,23 @@ impl TabletMap {
             .collect()
     }
 
-    fn median(&self, map: &ScreenMap, delay_us: u64) -> Option<f64> {
-        median(distances(map, &self.samples(delay_us)))
-    }
-
     /// The map with this delay, and the median and the mean distance of the pairs from it. The mean
     /// tells delays apart: while the pen rests all of them fit.
-    fn try_delay(&self, delay_us: u64) -> Option<(u64, ScreenMap, f64, f64)> {
-        let all = self.samples(delay_us);
-        let first = least_squares(&all)?;
+    fn try_delay(&self, newest: usize, delay_us: u64) -> Option<(u64, ScreenMap, f64, f64)> {
+        let all = self.samples(newest, delay_us);
+        let first = least_squares(&all).filter(|_| all.len() >= LEAST)?;
         let middle = median(distances(&first, &all))?;
         let limit = (middle * OUTLIER).max(1.0);
         let kept: Vec<_> =
-            all.into_iter().filter(|s| first.at(s.0).distance(s.1) <= limit).collect();
+            all.iter().filter(|s| first.at(s.0).distance(s.1) <= limit).copied().collect();
         let map = least_squares(&kept)?;
-        let errors = distances(&map, &kept);
-        let mean = errors.iter().map(|e| e.0).sum::<f64>() / errors.len() as f64;
-        Some((delay_us, map, median(errors)?, mean))
+        // Of all pairs, so that no delay is the better for what it leaves out.
+        let (mut sum, mut worth) = (0.0, 0.0);
+        for (off, weight) in distances(&map, &all) {
+            (sum, worth) = (sum + off.min(WILD) * weight, worth + weight);
+        }
+        let mean = sum / worth;
+        Some((delay_us, map, median(distances(&map, &kept))?, mean))
     }
 }
 
@@ -303,28 +446,41 @@ fn distances(map: &ScreenMap, pairs: &[(DVec2, DVec2, f64)]) -> Vec<(f64, f64)> 
 
 /// The weighted median: pairs of a quick pen say little of a map where the pointer's delay varies,
 /// and a few of a pen that rests say much.
-fn median(mut all: Vec<(f64, f64)>) -> Option<f64> {
+fn median(all: Vec<(f64, f64)>) -> Option<f64> {
+    quantile(all, 0.5)
+}
+
+fn quantile(mut all: Vec<(f64, f64)>, part: f64) -> Option<f64> {
     all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let half = all.iter().map(|p| p.1).sum::<f64>() / 2.0;
+    let least = all.iter().map(|p| p.1).sum::<f64>() * part;
     let mut seen = 0.0;
     let reached = |p: &&(f64, f64)| {
         seen += p.1;
-        seen >= half
+        seen >= least
     };
     all.iter().find(reached).map(|p| p.0)
 }
 
 /// The affine map with the least sum of weighted squares; `None` where the places span too little.
 fn least_squares(all: &[(DVec2, DVec2, f64)]) -> Option<ScreenMap> {
-    if all.len() < LEAST {
+    if all.len() < FEWEST {
         return None;
     }
-    let lo = all.iter().fold(DVec2::INFINITY, |m, s| m.min(s.0));
-    let hi = all.iter().fold(DVec2::NEG_INFINITY, |m, s| m.max(s.0));
-    if (hi - lo).min_element() < LEAST_SPAN {
+    let middle = all.iter().map(|s| s.0).sum::<DVec2>() / all.len() as f64;
+    // A few that lie far from the others say nothing of how far they lie apart.
+    let mut off: Vec<DVec2> = all.iter().map(|s| s.0 - middle).collect();
+    off.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    off.truncate(all.len() - all.len() / 6);
+    let mean = off.iter().sum::<DVec2>() / off.len() as f64;
+    let (mut xx, mut xy, mut yy) = (0.0f64, 0.0f64, 0.0f64);
+    for off in off.iter().map(|off| *off - mean) {
+        (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
+    }
+    // The smaller one of the covariance's two eigenvalues.
+    let least = 0.5 * (xx + yy - (xx - yy).hypot(2.0 * xy)) / off.len() as f64;
+    if least < LEAST_SPREAD * LEAST_SPREAD {
         return None;
     }
-    let middle = (lo + hi) * 0.5;
     let (mut normal, mut x, mut y) = (DMat3::ZERO, DVec3::ZERO, DVec3::ZERO);
     for (share, pointer, weight) in all {
         let row = (*share - middle).extend(1.0);
@@ -343,202 +499,4 @@ fn least_squares(all: &[(DVec2, DVec2, f64)]) -> Option<ScreenMap> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The greatest distance between the corners of two maps, pixels.
-    fn differs(a: &ScreenMap, b: &ScreenMap) -> f64 {
-        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-        corners.into_iter().map(|c| a.at(c).distance(b.at(c))).fold(0.0, f64::max)
-    }
-
-    /// A pen that goes from place to place over its tablet for a second at 133 Hz and halts at
-    /// each, as hands do, and a desktop that follows it `delay_us` later in whole pixels.
-    fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
-        let stops = [[0.3, 0.4], [0.55, 0.45], [0.5, 0.62], [0.28, 0.6], [0.42, 0.5], [0.5, 0.4]];
-        let place = |t_us: u64| {
-            let t = (t_us as f64 * 1e-6 - 0.9).max(0.0) * 4.0;
-            let (i, part) = ((t as usize).min(stops.len() - 2), t.fract());
-            let s = (part / 0.6).min(1.0);
-            let [a, b] = [stops[i], stops[i + 1]].map(|p| DVec2::new(p[0], p[1]));
-            a.lerp(b, s * s * (3.0 - 2.0 * s))
-        };
-        let mut map = TabletMap::default();
-        for i in 0..133u64 {
-            let t_us = 1_000_000 + i * 7_500;
-            map.pen(t_us, Some(place(t_us)), false);
-            let mut at = truth.at(place(t_us - delay_us)).round();
-            if mouse && i % 9 == 0 {
-                at += DVec2::new(300.0, -120.0);
-            }
-            map.pointer(t_us, at);
-        }
-        map
-    }
-
-    /// The tablet's area covers a desktop of 1280 by 720 pixels.
-    fn whole() -> ScreenMap {
-        ScreenMap {
-            origin: DVec2::ZERO,
-            across: DVec2::new(1280.0, 0.0),
-            down: DVec2::new(0.0, 720.0),
-        }
-    }
-
-    #[test]
-    fn the_map_is_right_to_two_pixels_after_a_second() {
-        let plain = ScreenMap {
-            origin: DVec2::ZERO,
-            across: DVec2::new(1920.0, 0.0),
-            down: DVec2::new(0.0, 1080.0),
-        };
-        // The right one of two screens, and a tablet that lies upside down.
-        let turned = ScreenMap {
-            origin: DVec2::new(3840.0, 1080.0),
-            across: DVec2::new(-1920.0, 0.0),
-            down: DVec2::new(0.0, -1080.0),
-        };
-        let portrait = ScreenMap {
-            origin: DVec2::new(1200.0, 30.0),
-            across: DVec2::new(0.0, 700.0),
-            down: DVec2::new(-900.0, 0.0),
-        };
-        for truth in [plain, turned, portrait] {
-            for delay_us in [0, 5_000, 16_000, 40_000] {
-                for mouse in [false, true] {
-                    let learned = hover(&truth, delay_us, mouse);
-                    let map = learned.map().expect("a map");
-                    // Where the pen has been; and the far corners, which it has not seen.
-                    for share in [DVec2::new(0.3, 0.4), DVec2::new(0.55, 0.6)] {
-                        let off = map.at(share).distance(truth.at(share));
-                        assert!(off < 2.0, "{off} pixels with {delay_us} us, mouse {mouse}");
-                    }
-                    let far = differs(map, &truth);
-                    assert!(far < 12.0, "{far} pixels at the corners");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_mouse_beside_a_pen_teaches_nothing_and_is_not_the_pen() {
-        let mut map = TabletMap::default();
-        for i in 0..200u64 {
-            let t = i as f64 * 0.03;
-            map.pen(i * 8_000, Some(DVec2::new(0.5 + 0.2 * t.sin(), 0.5 + 0.2 * t.cos())), false);
-            let mouse = DVec2::new((i * 37 % 900) as f64, (i * 61 % 700) as f64);
-            map.pointer(i * 8_000, mouse);
-        }
-        assert!(map.map().is_none() && !map.is_undecided(), "{:?}", map.fit());
-        assert!(!map.owns(1_600_000, 1_600_000, DVec2::new(500.0, 400.0)));
-    }
-
-    #[test]
-    fn the_pointer_is_the_pens_only_near_where_the_map_puts_it() {
-        let truth = ScreenMap {
-            origin: DVec2::new(10.0, 20.0),
-            across: DVec2::new(1500.0, 0.0),
-            down: DVec2::new(0.0, 900.0),
-        };
-        let map = hover(&truth, 8_000, false);
-        let Some(&Place { t_us: now, share: Some(last), .. }) = map.trail.back() else { panic!() };
-        assert!(map.owns(now, now, truth.at(last) + DVec2::new(5.0, 5.0)));
-        // It rests for a minute and is still there.
-        assert!(map.owns(now + 60_000_000, now + 60_000_000, truth.at(last)));
-        assert!(!map.owns(now, now, truth.at(last) + DVec2::new(400.0, 0.0)));
-        // The window has taken no event for half a second: the pointer is where the pen was.
-        let early = map.share_at(now - 500_000).expect("a place");
-        assert!(truth.at(early).distance(truth.at(last)) > 2.0 * NEAR);
-        assert!(!map.owns(now, now, truth.at(early)));
-        assert!(map.owns(now, now - 500_000, truth.at(early)));
-    }
-
-    #[test]
-    fn a_slow_window_learns_the_map_from_the_pens_every_place() {
-        let truth = ScreenMap {
-            origin: DVec2::new(-40.0, 12.0),
-            across: DVec2::new(1300.0, 0.0),
-            down: DVec2::new(0.0, 740.0),
-        };
-        let place = |t_us: u64| {
-            let t = t_us as f64 * 1e-6;
-            DVec2::new(0.5 + 0.2 * (2.1 * t).sin(), 0.5 + 0.2 * (3.3 * t).cos())
-        };
-        let mut map = TabletMap::default();
-        for i in 0..600u64 {
-            let t_us = i * 8_000;
-            map.pen(t_us, Some(place(t_us)), false);
-            // A frame takes a quarter of a second, and the pointer is 48 ms late.
-            if i % 31 == 30 {
-                map.pointer(t_us, truth.at(place(t_us - 48_000)).round());
-            }
-        }
-        let off = differs(map.map().expect("a map"), &truth);
-        assert!(off < 3.0, "{off} pixels at the corners");
-    }
-
-    #[test]
-    fn a_pen_that_rests_now_and_then_teaches_the_map_though_the_delay_varies() {
-        let truth = ScreenMap {
-            origin: DVec2::new(-40.0, 12.0),
-            across: DVec2::new(1300.0, 0.0),
-            down: DVec2::new(0.0, 740.0),
-        };
-        let stops = [[0.3, 0.4], [0.6, 0.45], [0.5, 0.65]].map(|p| DVec2::new(p[0], p[1]));
-        let place = |t_us: u64| {
-            let (i, part) = ((t_us / 500_000) as usize, (t_us % 500_000) as f64 / 500_000.0);
-            stops[i % 3].lerp(stops[(i + 1) % 3], (part / 0.5).min(1.0))
-        };
-        let mut map = TabletMap::default();
-        for i in 0..1000u64 {
-            let t_us = 1_000_000 + i * 8_000;
-            map.pen(t_us, Some(place(t_us)), false);
-            if i % 23 == 22 {
-                // From nothing to 120 ms, without any order.
-                let late_us = i * 7919 % 120 * 1000;
-                map.pointer(t_us, truth.at(place(t_us - late_us)).round());
-            }
-        }
-        let off = differs(map.map().expect("a map"), &truth);
-        assert!(off < 4.0, "{off} pixels at the corners");
-    }
-
-    #[test]
-    fn another_map_of_the_desktop_is_learned_within_a_second_of_hovering() {
-        let before = whole();
-        let after = ScreenMap {
-            origin: DVec2::new(1280.0, 720.0),
-            across: DVec2::new(-1280.0, 0.0),
-            down: DVec2::new(0.0, -720.0),
-        };
-        let place = |t_us: u64| {
-            let t = t_us as f64 * 1e-6;
-            DVec2::new(0.5 + 0.2 * (3.1 * t).sin(), 0.5 + 0.2 * (4.3 * t).cos())
-        };
-        let mut map = TabletMap::default();
-        for i in 0..1200u64 {
-            let t_us = i * 8_000;
-            map.pen(t_us, Some(place(t_us)), false);
-            let truth = if i < 1075 { &before } else { &after };
-            map.pointer(t_us, truth.at(place(t_us - 16_000)).round());
-        }
-        let off = differs(map.map().expect("a map"), &after);
-        assert!(off < 3.0, "{off} pixels at the corners after a second");
-    }
-
-    #[test]
-    fn a_touch_before_the_map_was_known_is_the_pointers() {
-        let truth = whole();
-        let mut map = hover(&truth, 8_000, false);
-        let now = map.trail.back().expect("a place").t_us;
-        assert!(!map.touched_unknown(), "it has not touched");
-        let share = Some(DVec2::splat(0.5));
-        map.pen(now + 8_000, share, true);
-        assert!(!map.touched_unknown());
-        map.since_us = now + 20_000;
-        assert!(map.touched_unknown());
-        map.pen(now + 30_000, share, false);
-        map.pen(now + 40_000, share, true);
-        assert!(!map.touched_unknown(), "the next one is the pen's");
-    }
-}
+mod tests;

@@ -5,6 +5,8 @@
 //!   the place where the desktop has the pointer, and with their pressure and tilt.
 //! * Over a panel, behind another window, and until the map is known, the pen is the pointer alone.
 //! * A mouse that is used meanwhile is a pen of its own.
+//! * A click that the desktop makes of a pad's key does nothing over the view: the key has its own
+//!   action.
 
 use std::sync::Arc;
 
@@ -14,7 +16,7 @@ use super::input::takes_presses;
 use super::pointer::{Drag, give_back, lent};
 use super::provisional::ProvisionalDabs;
 use super::state::WindowState;
-use super::tablet_map::{TabletMap, Tablets};
+use super::tablet_map::{LATE_US, TabletMap, Tablets};
 use super::wiring::Wiring;
 use sculptd_daemon::Published;
 use sculptd_daemon::adaptors::TABLET_IDS;
@@ -76,17 +78,28 @@ impl WindowState {
     }
 
     /// The same of a press: whether the pen's own samples sculpt what this press would.
-    pub(super) fn press_is_a_pens(&self, wiring: &Wiring) -> bool {
+    pub(super) fn press_is_a_pens(&mut self, wiring: &Wiring) -> bool {
         let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
         let since = self.tablets.taken_us;
-        let mut all = self.tablets.known.iter().map(|t| &t.1);
-        all.any(|map| map.owns(now, since, at) && !map.touched_unknown())
+        let mut all = self.tablets.known.iter_mut().map(|t| &mut t.1);
+        all.any(|map| map.takes_press(now, since, at))
+    }
+
+    /// Whether a press is the click that an X server makes of a pad's key: of one that was pressed
+    /// since the window last took every event, or shortly before. A key makes one click.
+    pub(super) fn press_is_a_keys(&mut self) -> bool {
+        let key_us = self.tablets.key_us.take();
+        key_us.is_some_and(|key_us| key_us + LATE_US >= self.tablets.taken_us)
     }
 
     /// Takes where the pens were since the last call.
     pub(super) fn take_trail(&mut self, wiring: &Wiring) {
         let tablets = &mut self.tablets;
         for place in wiring.pen_trail.take() {
+            if place.key {
+                tablets.key_us = Some(place.t_us);
+                continue;
+            }
             let at = tablets.known.iter().position(|t| t.0 == place.device);
             if at.is_none() && (place.share.is_none() || tablets.known.len() >= MAX_TABLETS) {
                 continue;

@@ -12,10 +12,11 @@ use sculptd_devices::hid::transport::Transport;
 use sculptd_devices::sim::{PenScript, Shape, SimTablet, Stroke, TabletConfig};
 use serde_json::Value;
 
+use super::desktops::{Area, Desktop};
 use super::uhid::{DESCRIPTOR, Uhid};
 
-/// The dummy screen, pixels.
-pub const SCREEN: DVec2 = DVec2::new(1280.0, 720.0);
+/// The screen, pixels: as `devices/tests/vm/desktop.sh` has it.
+pub const SCREEN: DVec2 = DVec2::new(1024.0, 640.0);
 pub const DISPLAY: &str = ":0";
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Reports a second of the pen.
@@ -42,11 +43,13 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
     let file = std::fs::File::create(log)?;
     let child = Command::new(name)
         .args(args)
-        .env("DISPLAY", DISPLAY)
+        .envs(Desktop::of_machine().variables())
         .env("XDG_RUNTIME_DIR", "/tmp/run")
         .env("XDG_CONFIG_HOME", "/tmp/config")
         .env("XDG_DATA_HOME", "/tmp/data")
         .env("WGPU_BACKEND", "gl")
+        // A seat without a console.
+        .env("SEATD_VTBOUND", "0")
         .env("WINIT_X11_SCALE_FACTOR", "1")
         .env("SCULPTD_LOG", "info,sculptd_window=debug")
         .stdout(Stdio::from(file.try_clone()?))
@@ -57,7 +60,9 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
 
 /// What a tool prints; empty where it fails.
 pub fn tool(name: &str, args: &[&str]) -> String {
-    let out = Command::new(name).args(args).env("DISPLAY", DISPLAY).stderr(Stdio::null()).output();
+    let mut command = Command::new(name);
+    command.args(args).env("DISPLAY", DISPLAY).env("XDG_RUNTIME_DIR", "/tmp/run");
+    let out = command.stderr(Stdio::null()).output();
     out.map_or_else(|_| String::new(), |o| String::from_utf8_lossy(&o.stdout).into_owned())
 }
 
@@ -88,11 +93,22 @@ pub fn steps() -> u64 {
     status()["undo_steps"].as_u64().unwrap_or(0)
 }
 
-/// The desktop's pointer, pixels.
-pub fn cursor() -> Option<DVec2> {
-    let said = tool("xdotool", &["getmouselocation", "--shell"]);
-    let value = |name: &str| said.lines().find_map(|l| l.strip_prefix(name)?.parse::<f64>().ok());
-    Some(DVec2::new(value("X=")?, value("Y=")?))
+/// Frames of the window that have shown where a pen is.
+pub fn frames() -> u64 {
+    status()["frames"].as_u64().unwrap_or(0)
+}
+
+/// Where the pen's ring is drawn, pixels of the desktop; `None` where it may begin no stroke.
+pub fn ring() -> Option<DVec2> {
+    let all = status()["pens"].clone();
+    let pen = all.as_array()?.iter().find(|p| is_tablet(p))?.clone();
+    let pixel = DVec2::new(pen["pixel"][0].as_f64()?, pen["pixel"][1].as_f64()?);
+    Some(Desktop::of_machine().origin() + pixel)
+}
+
+/// Pointers have higher numbers.
+pub fn is_tablet(pen: &Value) -> bool {
+    pen["device"].as_u64().is_some_and(|d| d < 100)
 }
 
 /// A pen tablet: the simulated one's reports, through uhid.
@@ -129,7 +145,7 @@ impl Tablet {
         self.uhid = Some(uhid);
         // The desktop makes a pointer of the pen when it first sees it.
         self.hover(&[SCREEN * 0.5, SCREEN * 0.45])?;
-        let there = until(20, || !pen_ids().is_empty());
+        let there = until(20, || Desktop::of_machine().has_pen());
         self.serve(500)?;
         Ok(there)
     }
@@ -148,15 +164,10 @@ impl Tablet {
         self.serve(60)
     }
 
-    /// Turns or crops the area, as a person does with xinput.
-    pub fn set_area(&mut self, to_screen: DMat3) {
-        self.to_screen = to_screen;
-        let m = to_screen.transpose().to_cols_array().map(|v| v.to_string());
-        for id in pen_ids() {
-            let mut args = vec!["set-prop", &id, "Coordinate Transformation Matrix"];
-            args.extend(m.iter().map(String::as_str));
-            tool("xinput", &args);
-        }
+    /// Lays the tablet over another part of the screen, as a person does.
+    pub fn set_area(&mut self, area: &Area) {
+        self.to_screen = area.to_screen;
+        Desktop::of_machine().set_area(area);
     }
 
     fn size_mm(&self) -> Vec2 {
@@ -225,14 +236,6 @@ impl Tablet {
         let (first, last) = (10_002, 260_000 + (pixels.len() as u64 - 1) * 500_000 - 1);
         self.perform(PenScript::new(strokes), last, first)
     }
-}
-
-/// The X server's numbers of the tablet, and of its pen once that has been near.
-pub fn pen_ids() -> Vec<String> {
-    let list = tool("xinput", &["list"]);
-    let pens = list.lines().filter(|l| l.contains("Pen") && l.contains("slave  pointer"));
-    let number = |l: &str| Some(l.split_once("id=")?.1.split_whitespace().next()?.to_owned());
-    pens.filter_map(number).collect()
 }
 
 pub fn exists(path: &str) -> bool {

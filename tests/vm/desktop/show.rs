@@ -1,29 +1,46 @@
-//! What is shown, one after the other.
+//! What is shown, one after the other. Nothing waits for a time: each step waits for what the
+//! daemon or the desktop says, and what must be learned is counted in frames of the window, which
+//! takes a third of a second for one here.
 
 use std::io;
 use std::process::ExitCode;
 
-use glam::{DMat3, DVec2, Vec3};
+use glam::{DVec2, Vec3};
 use sculptd_engine::camera::Camera;
 use serde_json::{Value, json};
 
+use super::desktops::Desktop;
 use super::drive::{
-    DISPLAY, EVERY_US, Ended, SCREEN, Tablet, ask, cursor, exists, pause, spawn, status, steps,
-    tool, until,
+    EVERY_US, Ended, SCREEN, Tablet, ask, exists, frames, is_tablet, pause, ring, spawn, status,
+    steps, tool, until,
 };
 use super::moved::{ViewRect, beside, vertices};
 
-/// The emulated card, drawn by the machine outside; the tablet comes and goes by itself.
-const XORG: &str = r#"Section "Device"
-Identifier "card"
-Driver "modesetting"
-EndSection
-"#;
 /// A processor that is emulated draws what costs least.
-const LOOK: &str = "[look]\nshade = 0.0\ncavity = 0.0\n";
+const LOOK: &str = "smooth_edges = false\n[look]\nshade = 0.0\ncavity = 0.0\n";
 const SETTINGS: &str = "[loop]\nrate_hz = 60\n";
 /// Pixels: the cursor and the ring may be so far apart.
 const WITHIN: f64 = 2.0;
+/// Frames in which a map must be learned: two seconds of sixty, for the pen rests at each stop as
+/// long as it moves, and an emulated X server is late by something else each time.
+const LEARNED_IN: u64 = 120;
+/// Places to which the pen hovers for it at most.
+const STUCK: usize = 24;
+/// So many places in turn at which cursor and ring meet show that the map is learned.
+const MEET: usize = 4;
+/// Pixels from the middle of the view: where a pen hovers, in no order.
+const STOPS: [(f64, f64); 8] = [
+    (-90.0, -70.0),
+    (70.0, 55.0),
+    (85.0, -60.0),
+    (-60.0, 75.0),
+    (10.0, -85.0),
+    (-100.0, 5.0),
+    (40.0, 90.0),
+    (95.0, 10.0),
+];
+/// Seconds after which something that did not come will not come.
+const BOUND: u64 = 60;
 
 fn tell(good: bool, what: &str) -> bool {
     println!("VM {} {what}", if good { "ok  " } else { "FAIL" });
@@ -31,10 +48,15 @@ fn tell(good: bool, what: &str) -> bool {
 }
 
 struct Show {
+    desktop: Desktop,
     tablet: Tablet,
     view: ViewRect,
     camera: Camera,
     radius: f32,
+    /// Where the pen is, pixels.
+    at: DVec2,
+    /// Stops that were made.
+    stops: usize,
     good: bool,
 }
 
@@ -54,15 +76,69 @@ impl Show {
         self.view.corner + self.view.size * 0.5
     }
 
-    /// Hovers about a place until the map can be known. A window learns from one place of the
-    /// pointer a frame, and a frame takes a quarter of a second here: a second of hovering on a
-    /// real desktop is ten here.
-    fn approach(&mut self, m: DVec2) -> io::Result<()> {
-        for _ in 0..10 {
-            self.tablet.hover(&[m - 100.0, m + DVec2::new(90.0, -60.0), m + 80.0])?;
-        }
-        pause(1000);
+    /// Hovers to a place and rests there.
+    fn go(&mut self, to: DVec2) -> io::Result<()> {
+        self.tablet.hover(&[self.at, to, to + 0.5])?;
+        self.at = to + 0.5;
         Ok(())
+    }
+
+    /// The desktop's cursor and the pen's ring, once both stand still.
+    fn rest(&mut self) -> io::Result<(Option<DVec2>, Option<DVec2>)> {
+        let where_both = |at| (self.desktop.cursor(at), ring());
+        let mut last = where_both(self.at);
+        for _ in 0..20 {
+            self.tablet.serve(100)?;
+            let now = where_both(self.at);
+            if now == last && now.0.is_some() {
+                break;
+            }
+            last = now;
+        }
+        Ok(last)
+    }
+
+    /// How far cursor and ring are apart, pixels; `None` where no ring is shown.
+    fn apart(&mut self) -> io::Result<Option<f64>> {
+        let (cursor, ring) = self.rest()?;
+        Ok(cursor.zip(ring).map(|(c, r)| c.distance(r)))
+    }
+
+    /// Hovers about the middle until the map is right at several places in turn; the frames that
+    /// were shown until the first of them, or `None`.
+    fn learn(&mut self) -> io::Result<Option<u64>> {
+        let (begun, first, mut meet, mut took) = (frames(), self.stops, 0, 0);
+        let middle = self.middle();
+        while meet < MEET {
+            let shown = frames() - begun;
+            // A window that shows nothing learns nothing.
+            let stuck = self.stops - first > STUCK;
+            if meet == 0 && shown > LEARNED_IN || stuck {
+                let (cursor, ring) = self.rest()?;
+                let tablets = status()["tablets"].clone();
+                println!("   the pen {:?}, cursor {cursor:?}, ring {ring:?}, {tablets}", self.at);
+                return Ok(None);
+            }
+            let (x, y) = STOPS[self.stops % STOPS.len()];
+            // Not the same places again and again.
+            let by = DVec2::splat((self.stops / STOPS.len() % 5) as f64 * 4.0);
+            self.stops += 1;
+            took = if meet == 0 { shown } else { took };
+            self.go(middle + DVec2::new(x, y) + by)?;
+            meet = if self.apart()?.is_some_and(|off| off <= WITHIN) { meet + 1 } else { 0 };
+        }
+        Ok(Some(took))
+    }
+
+    /// The same, told.
+    fn learned(&mut self, what: &str) -> io::Result<bool> {
+        let took = self.learn()?;
+        let text = match took {
+            Some(took) => format!("{what}: the map is right after {took} frames of hovering"),
+            None => format!("{what}: the map is not right after {LEARNED_IN} frames of hovering"),
+        };
+        self.tell(took.is_some(), &text);
+        Ok(took.is_some())
     }
 
     /// Draws; how many strokes came of it, once nothing more comes.
@@ -78,19 +154,15 @@ impl Show {
     }
 
     /// Hovers over places and compares the desktop's cursor with the ring at each.
-    fn ring(&mut self, what: &str, places: &[DVec2]) -> io::Result<()> {
+    fn ring(&mut self, what: &str) -> io::Result<()> {
         let middle = self.middle();
-        self.approach(middle)?;
+        let places: Vec<DVec2> = over_clay(middle, 5).iter().map(|l| l.1).collect();
         let (mut worst, mut seen) = (0.0f64, 0);
-        let mut from = middle + 80.0;
-        for place in places {
-            self.tablet.hover(&[from, *place, *place + 0.5])?;
-            from = *place;
-            pause(1500);
-            let ring = ring_pixel();
-            let (Some(cursor), Some(ring)) = (cursor(), ring) else { continue };
+        for place in &places {
+            self.go(*place)?;
+            let Some(off) = self.apart()? else { continue };
             seen += 1;
-            worst = worst.max(cursor.distance(ring));
+            worst = worst.max(off);
         }
         let what = format!(
             "{what}: cursor and ring {worst:.2} pixels apart at most, at {seen} of {} places",
@@ -100,19 +172,31 @@ impl Show {
         Ok(())
     }
 
+    /// Waits, with the pen moving a little, until its ring is shown or is not.
+    fn until_ring(&mut self, shown: bool, about: DVec2) -> io::Result<bool> {
+        for i in 0..BOUND {
+            self.go(about + DVec2::splat((i % 2) as f64 * 8.0))?;
+            if until(1, || ring().is_some() == shown) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// The view's place, by two places of the pen.
     fn find_view(&mut self) -> io::Result<bool> {
         let mut seen = Vec::new();
-        for place in [SCREEN * 0.45, SCREEN * 0.55] {
-            self.tablet.hover(&[SCREEN * 0.5, place, place + 0.5])?;
-            pause(1500);
+        for place in [SCREEN * 0.46, SCREEN * 0.54] {
+            self.go(place)?;
+            self.rest()?;
             let all = status()["pens"].clone();
             let Some(pen) = all.as_array().and_then(|p| p.iter().find(|p| is_tablet(p))).cloned()
             else {
                 continue;
             };
             let pair = |v: &Value| Some(DVec2::new(v[0].as_f64()?, v[1].as_f64()?));
-            seen.extend(pair(&pen["view"]).zip(pair(&pen["pixel"])));
+            let pixel = pair(&pen["pixel"]).map(|at| at + self.desktop.origin());
+            seen.extend(pair(&pen["view"]).zip(pixel));
         }
         let [(v0, p0), (v1, p1)] = seen[..] else { return Ok(false) };
         let size = (p1 - p0) / (v1 - v0);
@@ -121,24 +205,14 @@ impl Show {
     }
 }
 
-fn is_tablet(pen: &Value) -> bool {
-    pen["device"].as_u64().is_some_and(|d| d < 100)
-}
-
-fn ring_pixel() -> Option<DVec2> {
-    let all = status()["pens"].clone();
-    let pen = all.as_array()?.iter().find(|p| is_tablet(p))?;
-    Some(DVec2::new(pen["pixel"][0].as_f64()?, pen["pixel"][1].as_f64()?))
-}
-
 /// Waits until no more strokes come.
 fn settle() {
     let mut last = (u64::MAX, 0);
-    for _ in 0..40 {
-        pause(500);
+    for _ in 0..BOUND {
+        pause(300);
         let now = steps();
         last = if now == last.0 { (now, last.1 + 1) } else { (now, 0) };
-        if last.1 >= 3 {
+        if last.1 >= 4 {
             return;
         }
     }
@@ -155,7 +229,7 @@ fn radius() -> f64 {
 
 /// A ball of few triangles, as Wavefront OBJ.
 fn ball() -> String {
-    let (rings, around) = (80, 160);
+    let (rings, around) = (50, 100);
     let mut out = String::new();
     for i in 1..rings {
         let (height, radius) = {
@@ -181,31 +255,16 @@ fn ball() -> String {
     out
 }
 
-fn start() -> io::Result<(Ended, Ended)> {
+fn start() -> io::Result<(Vec<Ended>, Ended)> {
+    use std::os::unix::fs::PermissionsExt;
     std::fs::create_dir_all("/tmp/run")?;
-    std::fs::write("/tmp/xorg.conf", XORG)?;
     std::fs::write("/tmp/settings.toml", SETTINGS)?;
     std::fs::create_dir_all("/tmp/config/sculptd")?;
     std::fs::write("/tmp/config/sculptd/viewer.toml", LOOK)?;
-    let args = [
-        DISPLAY,
-        "-config",
-        "/tmp/xorg.conf",
-        "-logfile",
-        "/tmp/xorg.log",
-        "-novtswitch",
-        "-sharevts",
-        "-noreset",
-        "-nolisten",
-        "tcp",
-    ];
-    let server = spawn("/usr/lib/xorg/Xorg", &args, "/tmp/xorg.out")?;
-    if !until(60, || !tool("xinput", &["list"]).is_empty()) {
-        return Err(io::Error::other("no X server"));
-    }
-    println!("   the X server is there");
-    use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions("/tmp/run", std::fs::Permissions::from_mode(0o700))?;
+    let desktop = Desktop::of_machine();
+    let server = desktop.start()?;
+    println!("   {desktop:?} is there");
     std::fs::write("/tmp/ball.obj", ball())?;
     let args = [
         "run",
@@ -221,9 +280,7 @@ fn start() -> io::Result<(Ended, Ended)> {
         return Err(io::Error::other("no window"));
     }
     println!("   the window is open");
-    let id = tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]);
-    let id = id.lines().next().unwrap_or_default().to_owned();
-    tool("xdotool", &["windowfocus", &id]);
+    desktop.focus();
     Ok((server, daemon))
 }
 
@@ -232,23 +289,17 @@ fn run() -> io::Result<bool> {
     let mut tablet = Tablet::new()?;
     let there = tablet.plug()?;
     let mut show = Show {
+        desktop: Desktop::of_machine(),
         tablet,
         view: ViewRect { corner: DVec2::ZERO, size: SCREEN },
         camera: camera(),
         radius: 0.0,
+        at: SCREEN * 0.45,
+        stops: 0,
         good: true,
     };
-    println!("{}", tool("xinput", &["list"]).trim());
-    show.tell(there, "the X server's libinput has made a pointer of the pen");
-    show.approach(SCREEN * 0.5)?;
-    let mut known = show.find_view()?;
-    for _ in 0..4 {
-        if known {
-            break;
-        }
-        show.approach(SCREEN * 0.5)?;
-        known = show.find_view()?;
-    }
+    show.tell(there, "the desktop's libinput has made a pointer of the pen");
+    let known = show.learned("the whole area over the whole screen")? && show.find_view()?;
     let what = format!("the view on the desktop is {:?}", show.view);
     show.tell(known, &what);
     if !known {
@@ -274,17 +325,15 @@ fn run() -> io::Result<bool> {
          {worst:.2} radii of the brush)"
     );
     show.tell(moved > 50 && outside == 0, &what);
-    let places: Vec<DVec2> = over_clay(show.middle(), 5).iter().map(|l| l.1).collect();
-    show.ring("the whole area over the whole screen", &places)?;
+    show.ring("the whole area over the whole screen")?;
 
     beyond(&mut show)?;
     areas(&mut show)?;
     controls(&mut show)?;
 
     let there = show.tablet.plug()?;
-    let m = show.middle();
-    show.approach(m)?;
-    show.approach(m)?;
+    show.at = SCREEN * 0.45;
+    show.learned("after a replug")?;
     let lines = over_clay(show.middle(), 6);
     let came = show.draw(&lines)?;
     show.tell(there && came == 6, &format!("after a replug 6 strokes drawn, {came} sculpted"));
@@ -298,8 +347,8 @@ fn run() -> io::Result<bool> {
 
 /// On a panel and behind another window.
 fn beyond(show: &mut Show) -> io::Result<()> {
-    let right = show.view.corner.x + show.view.size.x;
-    let on_panel = DVec2::new((right + SCREEN.x) * 0.5, SCREEN.y * 0.93);
+    // The panel of the brush, at the right edge.
+    let on_panel = SCREEN - DVec2::new(110.0, 110.0);
     let lines = (0..6).map(|i| {
         let at = on_panel + DVec2::new(-20.0, f64::from(i));
         (at, at + DVec2::new(30.0, 4.0))
@@ -307,68 +356,61 @@ fn beyond(show: &mut Show) -> io::Result<()> {
     let lines: Vec<(DVec2, DVec2)> = lines.collect();
     let came = show.draw(&lines)?;
     show.tell(came == 0, &format!("6 strokes on a panel, {came} sculpted"));
-    let corner = show.middle() - DVec2::new(150.0, 100.0);
+    if show.desktop == Desktop::X11 {
+        return behind(show);
+    }
+    println!("   not shown here: another window before the clay");
+    Ok(())
+}
+
+fn behind(show: &mut Show) -> io::Result<()> {
+    let m = show.middle();
+    let corner = m - DVec2::new(150.0, 100.0);
     let place = format!("300x200+{:.0}+{:.0}", corner.x, corner.y);
     let cover = spawn("xev", &["-geometry", &place], "/tmp/xev.log")?;
-    pause(2500);
-    let lines = over_clay(show.middle(), 6);
-    // The window hears that the pointer has left it with its next frame.
-    let m = show.middle();
-    show.tablet.hover(&[m, m + 10.0, m, m + 10.0])?;
+    let there =
+        || !tool("xdotool", &["search", "--onlyvisible", "--name", "Event Tester"]).is_empty();
+    let covered = until(BOUND, there) && show.until_ring(false, m)?;
+    let lines = over_clay(m, 6);
     let came = show.draw(&lines)?;
-    show.tell(came == 0, &format!("6 strokes on another window before the clay, {came} sculpted"));
+    let what = format!("6 strokes on another window before the clay, {came} sculpted");
+    show.tell(covered && came == 0, &what);
     drop(cover);
-    pause(1000);
-    let id = tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]);
-    let id = id.lines().next().unwrap_or_default().to_owned();
-    tool("xdotool", &["windowfocus", &id]);
-    show.tablet.hover(&[m, m + 10.0, m, m + 10.0])?;
+    let gone = until(BOUND, || !there());
+    show.desktop.focus();
+    let free = gone && show.until_ring(true, m)?;
     let came = show.draw(&lines)?;
-    show.tell(came == 6, &format!("that window gone, 6 strokes drawn, {came} sculpted"));
+    let what = format!("that window gone, 6 strokes drawn, {came} sculpted");
+    show.tell(free && came == 6, &what);
     Ok(())
 }
 
 /// The window moved, the area turned and cropped.
 fn areas(show: &mut Show) -> io::Result<()> {
-    let id = tool("xdotool", &["search", "--onlyvisible", "--name", "^sculptd$"]);
-    let id = id.lines().next().unwrap_or_default().to_owned();
-    tool("xdotool", &["windowmove", &id, "-60", "35"]);
-    pause(1500);
-    show.view.corner += DVec2::new(-60.0, 35.0);
-    let places =
-        |show: &Show| over_clay(show.middle(), 5).iter().map(|l| l.1).collect::<Vec<DVec2>>();
-    let at = places(show);
-    show.ring("the window moved", &at)?;
-    let turned = DMat3::from_cols_array(&[-1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 1.0, 1.0]);
-    let cropped = DMat3::from_cols_array(&[0.6, 0.0, 0.0, 0.0, 0.7, 0.0, 0.2, 0.15, 1.0]);
-    for (name, area) in [("turned by half a turn", turned), ("over a part of the screen", cropped)]
-    {
-        show.tablet.set_area(area);
-        pause(500);
-        // The old map is contradicted: it goes, and another is learned.
-        let m = show.middle();
-        show.approach(m)?;
-        show.approach(m)?;
-        let at = places(show);
-        show.ring(&format!("the area {name}"), &at)?;
+    show.view.corner += show.desktop.move_window();
+    show.learned("the window moved")?;
+    show.ring("the window moved")?;
+    for area in show.desktop.areas() {
+        show.tablet.set_area(&area);
+        show.learned(area.name)?;
+        show.ring(area.name)?;
         let lines = over_clay(show.middle(), 5);
         let came = show.draw(&lines)?;
-        show.tell(came == 5, &format!("the area {name}: 5 strokes drawn, {came} sculpted"));
+        show.tell(came == 5, &format!("{}: 5 strokes drawn, {came} sculpted", area.name));
     }
-    show.tablet.set_area(DMat3::IDENTITY);
     Ok(())
 }
 
 /// Keys, ring and barrel button.
 fn controls(show: &mut Show) -> io::Result<()> {
     let m = show.middle();
-    show.approach(m)?;
-    show.approach(m)?;
     let pad = |ring: u8, key: u8| [0x0c, ring, key, 0, 0, 0, 0, 0, 0, 0];
+    settle();
     let before = steps();
     show.tablet.report(&pad(0, 1))?;
     show.tablet.report(&pad(0, 0))?;
-    pause(1500);
+    until(BOUND, || steps() != before);
+    settle();
     let now = steps();
     show.tell(now + 1 == before, &format!("key 1 takes a step back: {before} steps, then {now}"));
     let before = radius();
@@ -376,13 +418,14 @@ fn controls(show: &mut Show) -> io::Result<()> {
         show.tablet.report(&pad(0x80 | place, 0))?;
     }
     show.tablet.report(&pad(0, 0))?;
-    pause(1000);
+    until(BOUND, || radius() > 1.1 * before);
     let grown = radius() / before;
     show.tell(grown > 1.1, &format!("a finger round the ring: the radius grows by {grown:.2}"));
     let (yaw, steps_before) = (camera().yaw, steps());
     let stroke = show.tablet.touch(400_000, m - 80.0, m + DVec2::new(80.0, -80.0), 1);
     show.tablet.draw(vec![stroke])?;
-    pause(1500);
+    until(BOUND, || (camera().yaw - yaw).abs() > 0.05);
+    settle();
     let turned = (camera().yaw - yaw).abs();
     let what = format!(
         "the barrel button held: the view turns by {turned:.2} radians, {} strokes",
@@ -390,16 +433,15 @@ fn controls(show: &mut Show) -> io::Result<()> {
     );
     show.tell(turned > 0.05 && steps() == steps_before, &what);
     // Back to the view before, for what follows.
-    let back = json!({ "yaw": yaw, "pitch": show.camera.pitch });
-    ask("camera", &back);
-    pause(1000);
+    ask("camera", &json!({ "yaw": yaw, "pitch": show.camera.pitch }));
+    until(BOUND, || (camera().yaw - yaw).abs() < 1e-3);
     Ok(())
 }
 
 pub fn main() -> ExitCode {
     let shown = run();
     if !matches!(shown, Ok(true)) {
-        for log in ["/tmp/xorg.out", "/tmp/sculptd.log"] {
+        for log in ["/tmp/desktop.log", "/tmp/sculptd.log"] {
             if exists(log) {
                 let text = std::fs::read_to_string(log).unwrap_or_default();
                 let lines: Vec<&str> = text.lines().collect();

@@ -100,6 +100,7 @@ pub(super) fn away(family: Family) -> Option<Vec<u8>> {
         Family::Xenx => of(8, &[0x01]),
         Family::RobotPen => of(12, &[0x02, 0x40]),
         Family::WoodPad => of(14, &[0x02]),
+        Family::Signature => of(10, &[0x02]),
         Family::Digitiser => of(10, &[0x01]),
         Family::WacomBambooPad | Family::Kye | Family::TenMoons | Family::Plain => None,
     }
@@ -320,6 +321,9 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
             vec![0x06, x[0], x[1], y[0], y[1], p[0], p[1], 0, 0, keys]
         }
         Family::RobotPen => vec![0x02, 0x42, 0, 0, 0, 0, x[0], x[1], y[0], y[1], p[0], p[1] & 0x0f],
+        Family::Signature => {
+            vec![0x02, x[0], x[1], y[0], y[1], 3 | bit(c.tip, 4), p[0], p[1], 0, 0]
+        }
         Family::WoodPad => {
             let flags = 3 | bit(c.tip, 4) | (c.buttons as u8) << 3;
             vec![0x02, x[0], x[1], 0, 0, y[0], y[1], 0, 0, flags, p[0], p[1], t[0], t[1]]

@@ -200,6 +200,7 @@ fn reads_what_it_writes(found: &Found) -> Result<(), String> {
             | Family::Plain
             | Family::RobotPen
             | Family::WoodPad
+            | Family::Signature
     );
     // A change of ends begins another visit.
     if contacts < 1000 || visits < if one_ended { 2 } else { 3 } || !ended {
