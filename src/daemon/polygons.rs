@@ -7,27 +7,76 @@
 //! is written; whatever changes triangles gives a list that is not here. The list is compared as a
 //! whole before it is believed.
 //!
-//! Not promised: a session that is opened again has triangles, until its file is loaded again.
+//! A session keeps those of its objects, see `session::stored_polygons`, and gives them back where
+//! it is opened again.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use sculptd_geometry::{PolyMesh, TriMesh};
+use serde::{Deserialize, Serialize};
+
+use sculptd_clay::Snapshot;
+use sculptd_geometry::{FaceAttributes, PolyMesh, TriMesh};
 
 /// Bytes that are kept; the oldest go first.
 const MOST_BYTES: usize = 1 << 30;
 
 /// The faces of a file.
 #[derive(Debug)]
-struct FileFaces {
-    key: u64,
+pub struct FileFaces {
+    /// The hash of the triangles, by which they are found.
+    pub key: u64,
     /// The list that they were cut into.
     triangles: Vec<[u32; 3]>,
     /// The mesh of the file.
     mesh: PolyMesh,
 }
 
+/// The same as it lies in a session.
+#[derive(Debug, Serialize, Deserialize)]
+struct StoredFaces {
+    triangles: Vec<[u32; 3]>,
+    positions: Vec<glam::DVec3>,
+    face_starts: Vec<u32>,
+    corners: Vec<u32>,
+    groups: Option<Vec<u32>>,
+    attributes: Option<FaceAttributes>,
+}
+
 impl FileFaces {
+    /// As bytes, for a session.
+    ///
+    /// # Errors
+    /// Never with plain data such as this.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, postcard::Error> {
+        let mesh = &self.mesh;
+        postcard::to_stdvec(&StoredFaces {
+            triangles: self.triangles.clone(),
+            positions: mesh.positions.clone(),
+            face_starts: mesh.face_starts.clone(),
+            corners: mesh.corners.clone(),
+            groups: mesh.groups.clone(),
+            attributes: mesh.attributes.as_deref().cloned(),
+        })
+    }
+
+    /// From the bytes of a session; `None` where they are not those of a mesh.
+    fn from_bytes(bytes: &[u8]) -> Option<FileFaces> {
+        let StoredFaces { triangles, positions, face_starts, corners, groups, attributes } =
+            postcard::from_bytes(bytes).ok()?;
+        let count = positions.len();
+        let attributes = attributes.map(Arc::new);
+        let mesh =
+            PolyMesh { positions, face_starts, corners, groups, attributes, ..PolyMesh::new() };
+        let named = |v: &u32| (*v as usize) < count;
+        let sound = mesh.face_starts.first() == Some(&0)
+            && mesh.face_starts.last().is_some_and(|l| *l as usize == mesh.corners.len())
+            && mesh.face_starts.is_sorted()
+            && mesh.corners.iter().chain(triangles.iter().flatten()).all(named)
+            && mesh.groups.as_ref().is_none_or(|g| g.len() == mesh.face_count());
+        sound.then(|| FileFaces { key: key(count, &triangles), triangles, mesh })
+    }
+
     fn bytes(&self) -> usize {
         let m = &self.mesh;
         self.triangles.len() * 12
@@ -35,6 +84,7 @@ impl FileFaces {
             + (m.corners.len() + m.face_starts.len()) * 4
             + m.groups.as_ref().map_or(0, |g| g.len() * 4)
             + m.colours.as_ref().map_or(0, |c| c.len() * 4)
+            + m.attributes.as_ref().map_or(0, |a| a.bytes())
     }
 }
 
@@ -57,11 +107,16 @@ fn key(vertices: usize, triangles: &[[u32; 3]]) -> u64 {
 impl PolygonStore {
     /// Keeps the faces of a file that were cut into these triangles.
     pub fn remember(&self, mesh: PolyMesh, plain: &TriMesh) {
-        if mesh.face_count() == plain.triangles.len() && mesh.groups.is_none() {
+        let bare = mesh.groups.is_none() && mesh.attributes.is_none();
+        if mesh.face_count() == plain.triangles.len() && bare {
             return;
         }
         let key = key(plain.positions.len(), &plain.triangles);
-        let new = Arc::new(FileFaces { key, triangles: plain.triangles.clone(), mesh });
+        self.keep(FileFaces { key, triangles: plain.triangles.clone(), mesh });
+    }
+
+    fn keep(&self, new: FileFaces) {
+        let (key, new) = (new.key, Arc::new(new));
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         files.retain(|f| f.key != key);
         files.push_back(new);
@@ -70,8 +125,31 @@ impl PolygonStore {
         }
     }
 
-    /// An object's mesh with the faces and groups of its file, where its triangles are still those
-    /// of the file; else its triangles. A coordinate that is where the file had it has the file's
+    /// The faces of the file that an object was loaded from, where its triangles are still those of
+    /// the file. Looks at the triangles only where a file has as many.
+    pub fn of(&self, clay: &Snapshot) -> Option<Arc<FileFaces>> {
+        let (vertices, triangles) = (clay.vertex_count(), clay.triangle_count());
+        let alike: Vec<Arc<FileFaces>> = {
+            let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+            let fits = |f: &&Arc<FileFaces>| {
+                f.triangles.len() == triangles && f.mesh.positions.len() == vertices
+            };
+            files.iter().filter(fits).cloned().collect()
+        };
+        if alike.is_empty() {
+            return None;
+        }
+        let plain = clay.to_tri();
+        alike.into_iter().find(|f| f.triangles == plain.triangles)
+    }
+
+    /// Takes faces out of a session. False: the bytes are not those of a mesh.
+    pub fn restore(&self, bytes: &[u8]) -> bool {
+        FileFaces::from_bytes(bytes).map(|faces| self.keep(faces)).is_some()
+    }
+
+    /// An object's mesh with the faces, groups, texture coordinates and names of its file, where
+    /// its triangles are still those of the file; else its triangles. A coordinate that is where the file had it has the file's
     /// double precision: rows of vertices that a stroke moves only upwards stay rows.
     pub fn polygons(&self, plain: &TriMesh) -> PolyMesh {
         let key = key(plain.positions.len(), &plain.triangles);
@@ -101,10 +179,23 @@ pub fn polygons(plain: &TriMesh) -> PolyMesh {
     STORE.polygons(plain)
 }
 
+/// As [`PolygonStore::of`], of the files that this process has loaded.
+pub fn of(clay: &Snapshot) -> Option<Arc<FileFaces>> {
+    STORE.of(clay)
+}
+
+/// As [`PolygonStore::restore`], for this process.
+pub fn restore(bytes: &[u8]) -> bool {
+    STORE.restore(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::{DVec3, Vec3};
+    use sculptd_clay::Clay;
+    use sculptd_geometry::GroupName;
+    use sculptd_geometry::job::Job;
     use sculptd_geometry::shapes;
 
     #[test]
@@ -113,6 +204,14 @@ mod tests {
         let mut quads = shapes::torus(3.0, 1.0, 24, 12);
         quads.groups = Some((0..quads.face_count() as u32).map(|f| f / 100).collect());
         quads.positions.iter_mut().for_each(|p| *p += DVec3::splat(0.1));
+        let groups = (0..3).map(|g| GroupName { group: format!("g{g}"), ..GroupName::default() });
+        let uv_corners = (0..quads.corners.len() as u32).map(|c| c % 7).collect();
+        quads.attributes = Some(Arc::new(FaceAttributes {
+            uvs: (0..7).map(|u| [f64::from(u), 0.5]).collect(),
+            uv_corners,
+            groups: groups.collect(),
+            libraries: vec!["ring.mtl".into()],
+        }));
         let mut plain = quads.triangulate().0;
         assert_eq!(store.polygons(&plain), plain.to_poly(), "of a file that was never loaded");
         store.remember(quads.clone(), &plain);
@@ -123,6 +222,13 @@ mod tests {
         let raised = f64::from(plain.positions[7].y);
         assert_eq!(moved.positions[7], DVec3 { y: raised, ..quads.positions[7] });
         assert_eq!(moved.positions[8], quads.positions[8]);
+        // As a session gives them back to another process.
+        let mut clay = Clay::build(&plain, &Job::default()).expect("a form");
+        let bytes = store.of(&clay.snapshot()).expect("the file's").to_bytes().expect("plain");
+        let later = PolygonStore::default();
+        assert!(later.of(&clay.snapshot()).is_none());
+        assert!(later.restore(&bytes) && !later.restore(&bytes[..bytes.len() / 2]));
+        assert_eq!(later.polygons(&plain), moved);
         plain.triangles.swap(3, 4);
         assert_eq!(store.polygons(&plain), plain.to_poly());
     }

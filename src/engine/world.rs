@@ -548,6 +548,8 @@ mod local_remesh_tests;
 #[cfg(test)]
 mod people_tests;
 #[cfg(test)]
+mod scene_combine_tests;
+#[cfg(test)]
 mod scene_tests;
 #[cfg(test)]
 mod surface_edit_tests;

@@ -2,8 +2,12 @@
 //! clay of a sculpture is paged (crate `sculptd-clay`); these are the forms in which it is loaded
 //! and saved.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+
+use super::face_attributes::FaceAttributes;
 
 /// A polygon mesh in double precision. Corners run counter-clockwise seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,6 +23,8 @@ pub struct PolyMesh {
     pub colours: Option<Vec<[u8; 4]>>,
     /// One group (OBJ `g`/`usemtl`, 3MF object) a face, where the file has them.
     pub groups: Option<Vec<u32>>,
+    /// Texture coordinates and the names of groups, where the file has them.
+    pub attributes: Option<Arc<FaceAttributes>>,
 }
 
 impl PolyMesh {

@@ -239,7 +239,7 @@ pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, R
         Some(ExportObjects::Object(id)) => Selection::One(ObjectId(id)),
     };
     let meshes = scene_jobs::selected(&shown.scene, &shown.mesh, which).map_err(failed)?;
-    write_scene(&params.path, &meshes).map_err(failed)?;
+    let warnings = write_scene(&params.path, &meshes).map_err(failed)?;
     let vertices = meshes.iter().map(|m| m.mesh.positions.len() as u64).sum();
-    Ok(ExportReply { path: params.path, tick: shown.tick, vertices })
+    Ok(ExportReply { path: params.path, tick: shown.tick, vertices, warnings })
 }

@@ -215,12 +215,13 @@ impl Tasks {
                     write_scene(&path, &meshes).map_err(|e| e.to_string())
                 });
             let said = match written {
-                Ok(_) => {
+                Ok(lost) => {
                     let [x, y, z] = size.to_array().map(|n| format!("{n:.4}"));
                     let (name, unit) = (path.display().to_string(), tr!(unit));
                     let text = tr!("task-exported", path = name, x = x, y = y, z = z, unit = unit);
                     let _ = say.send(TaskReport::Used(path));
-                    TaskReport::Message(text, false)
+                    let lost: String = lost.iter().map(|l| format!("\n{l}")).collect();
+                    TaskReport::Message(text + &lost, false)
                 }
                 Err(e) => TaskReport::Message(e, true),
             };
