@@ -4,17 +4,20 @@
 
 use std::sync::Arc;
 
+use glam::DQuat;
+
 use sculptd_clay::layers::{Layer, LayerOffsets, MAX_INTENSITY, MAX_LAYERS};
 use sculptd_clay::{Clay, FlatLayers, LayerEdit, Snapshot};
+use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
-    Exchange, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand,
-    SceneError, SceneEvent, SceneView, clean_name,
+    Exchange, LiveBoolean, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform,
+    ObjectView, Operand, Recomputed, SceneCommand, SceneError, SceneEvent, SceneView, clean_name,
 };
 use sculptd_geometry::boolean::{self, BooleanOptions, Operation};
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::io::{MorphTarget, MorphedMesh, SceneMesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::{PolyMesh, TriMesh};
+use sculptd_geometry::{PolyMesh, TriMesh, repair};
 
 use crate::polygons;
 use crate::published::Published;
@@ -43,6 +46,19 @@ pub enum CombineError {
 pub struct Combined {
     pub exchange: Exchange,
     pub clays: Vec<Clay>,
+    /// The new object follows its operands from now on.
+    pub live: Option<LiveBoolean>,
+}
+
+impl Combined {
+    /// What is asked of the scene, and the clays that it needs.
+    pub fn command(self) -> (SceneCommand, Payload) {
+        let command = match self.live {
+            Some(live) => SceneCommand::ExchangeLive(Box::new((self.exchange, live))),
+            None => SceneCommand::Exchange(self.exchange),
+        };
+        (command, Payload::Clays(self.clays))
+    }
 }
 
 /// Which objects go into a file.
@@ -121,9 +137,12 @@ fn operand(
     if object.settings.locked {
         return Err(SceneError::Locked(id).into());
     }
+    Ok((object, clay, as_operand(object, clay)))
+}
+
+fn as_operand(object: &ObjectView, clay: &Snapshot) -> Operand {
     let transform = object.settings.transform;
-    let of = Operand { id, clay: clay.object_id(), revision: clay.revision(), transform };
-    Ok((object, clay, of))
+    Operand { id: object.id, clay: clay.object_id(), revision: clay.revision(), transform }
 }
 
 /// The mesh of an object in the frame of another.
@@ -147,6 +166,8 @@ pub struct SceneBoolean {
     pub operation: Operation,
     /// The operands stay, hidden.
     pub keep: bool,
+    /// So they do, and the result follows them.
+    pub live: bool,
     /// Faces in which the two only touch belong to an intersection too.
     pub keep_contact: bool,
     /// Length in the world within which places are one; `None`: what the vertices resolve.
@@ -156,7 +177,7 @@ pub struct SceneBoolean {
 impl SceneBoolean {
     /// The result takes the place of the operands.
     pub fn new(operation: Operation) -> Self {
-        SceneBoolean { operation, keep: false, keep_contact: false, tolerance: None }
+        SceneBoolean { operation, keep: false, live: false, keep_contact: false, tolerance: None }
     }
 }
 
@@ -175,21 +196,20 @@ fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
     found.max(resolved)
 }
 
-/// A Boolean of two objects where they stand. The result stands where the first does.
-///
-/// # Errors
-/// [`CombineError`]
-pub fn boolean(
-    shown: &Published,
-    ids: [ObjectId; 2],
+/// What a Boolean of two objects gives, in the frame of the first.
+struct Computed {
+    plain: TriMesh,
+    clay: Clay,
+    name: String,
+    transform: ObjectTransform,
+    operands: [Operand; 2],
+}
+
+fn compute(
+    [(a, a_clay), (b, b_clay)]: [(&ObjectView, &Snapshot); 2],
     asked: SceneBoolean,
     job: &Job,
-) -> Result<Combined, CombineError> {
-    if ids[0] == ids[1] {
-        return Err(CombineError::Same);
-    }
-    let (a, a_clay, a_of) = operand(shown, ids[0])?;
-    let (b, b_clay, b_of) = operand(shown, ids[1])?;
+) -> Result<Computed, CombineError> {
     let frame = a.settings.transform;
     let first = seen_from(a_clay, &frame, &frame);
     let second = seen_from(b_clay, &b.settings.transform, &frame);
@@ -211,13 +231,121 @@ pub fn boolean(
     }
     let plain = solid.mesh.triangulate().0;
     let clay = built(&plain, job)?;
-    let source = ObjectSource::Mesh(Arc::new(plain));
-    let new = NewObject::new(&a.settings.name, source, frame);
-    let (remove, hide) =
-        if asked.keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
+    let operands = [as_operand(a, a_clay), as_operand(b, b_clay)];
+    Ok(Computed { plain, clay, name: a.settings.name.clone(), transform: frame, operands })
+}
+
+/// A Boolean of two objects where they stand. The result stands where the first does.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn boolean(
+    shown: &Published,
+    ids: [ObjectId; 2],
+    asked: SceneBoolean,
+    job: &Job,
+) -> Result<Combined, CombineError> {
+    if ids[0] == ids[1] {
+        return Err(CombineError::Same);
+    }
+    let (a, a_clay, _) = operand(shown, ids[0])?;
+    let (b, b_clay, _) = operand(shown, ids[1])?;
+    let Computed { plain, clay, name, transform, operands } =
+        compute([(a, a_clay), (b, b_clay)], asked, job)?;
+    let new = NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform);
+    let keep = asked.keep || asked.live;
+    let (remove, hide) = if keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
     let event = SceneEvent::Boolean;
-    let exchange = Exchange { event, from: vec![a_of, b_of], remove, hide, add: vec![new] };
-    Ok(Combined { exchange, clays: vec![clay] })
+    let exchange = Exchange { event, from: operands.to_vec(), remove, hide, add: vec![new] };
+    let live = asked.live.then_some(LiveBoolean {
+        operation: asked.operation,
+        operands,
+        keep_contact: asked.keep_contact,
+        tolerance: asked.tolerance,
+        result: 0,
+    });
+    Ok(Combined { exchange, clays: vec![clay], live })
+}
+
+/// Which results of live Booleans are no longer of what their operands are.
+pub fn stale(shown: &Published) -> Vec<(ObjectId, [Operand; 2])> {
+    let all = || shown.scene.each(&shown.mesh);
+    let now = |was: &Operand| {
+        let (object, clay) = all().find(|(o, _)| o.id == was.id)?;
+        Some(as_operand(object, clay))
+    };
+    let stale = |(object, clay): (&ObjectView, &Snapshot)| {
+        let live = object.live(clay)?;
+        let [a, b] = &live.operands;
+        let found = [now(a)?, now(b)?];
+        (found != live.operands).then_some((object.id, found))
+    };
+    all().filter_map(stale).collect()
+}
+
+/// The result of a live Boolean of what its operands are now.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn recompute(
+    shown: &Published,
+    id: ObjectId,
+    job: &Job,
+) -> Result<(Recomputed, Clay), CombineError> {
+    let find = |id: ObjectId| {
+        let found = shown.scene.each(&shown.mesh).find(|(o, _)| o.id == id);
+        found.ok_or(SceneError::NoObject(id))
+    };
+    let (object, clay) = find(id)?;
+    let live = object.live(clay).ok_or(SceneError::NotLive(id))?.clone();
+    let [a, b] = [find(live.operands[0].id)?, find(live.operands[1].id)?];
+    let asked = SceneBoolean {
+        operation: live.operation,
+        keep: true,
+        live: true,
+        keep_contact: live.keep_contact,
+        tolerance: live.tolerance,
+    };
+    let made = compute([a, b], asked, job)?;
+    let source = ObjectSource::Mesh(Arc::new(made.plain));
+    let new = NewObject::new(&object.settings.name, source, made.transform);
+    let live = LiveBoolean { operands: made.operands, ..live };
+    Ok((Recomputed { id, live, new }, made.clay))
+}
+
+/// An object mirrored in a plane through the origin of the world, 0 of x, 1 of y, 2 of z: a new
+/// object behind the others. Each coordinate keeps its digits, and the faces of a file theirs.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn mirror(
+    shown: &Published,
+    id: ObjectId,
+    axis: usize,
+    job: &Job,
+) -> Result<Combined, CombineError> {
+    let (object, clay, of) = operand(shown, id)?;
+    let mut mesh = polygons::polygons(&clay.to_tri());
+    mesh.positions.iter_mut().for_each(|p| p[axis] = -p[axis]);
+    repair::flip(&mut mesh);
+    let plain = mesh.triangulate().0;
+    polygons::remember(mesh, &plain);
+    let clay = built(&plain, job)?;
+    // Mirrored in the world and in its own frame again, it is turned and not mirrored.
+    let ObjectTransform { mut shift, turn, scale } = object.settings.transform;
+    shift[axis] = -shift[axis];
+    let [x, y, z, w] = turn.to_array();
+    let mut vector = [-x, -y, -z];
+    vector[axis] = -vector[axis];
+    let turn = DQuat::from_array([vector[0], vector[1], vector[2], w]);
+    let transform = ObjectTransform { shift, turn, scale };
+    let name: String =
+        format!("{} mirrored", object.settings.name).chars().take(MAX_NAME).collect();
+    let new = NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform);
+    let event = SceneEvent::Mirror;
+    let exchange =
+        Exchange { event, from: vec![of], remove: Vec::new(), hide: Vec::new(), add: vec![new] };
+    Ok(Combined { exchange, clays: vec![clay], live: None })
 }
 
 /// Several objects as one, in the frame of the first.
@@ -260,7 +388,7 @@ pub fn merge(shown: &Published, ids: &[ObjectId], job: &Job) -> Result<Combined,
     let new = NewObject::new(&first.settings.name, ObjectSource::Mesh(Arc::new(plain)), frame);
     let event = SceneEvent::Merge;
     let exchange = Exchange { event, from, remove, hide: Vec::new(), add: vec![new] };
-    Ok(Combined { exchange, clays: vec![clay] })
+    Ok(Combined { exchange, clays: vec![clay], live: None })
 }
 
 /// Each connected part of an object as an object of its own, the largest first.
@@ -283,7 +411,7 @@ pub fn split(shown: &Published, id: ObjectId, job: &Job) -> Result<Combined, Com
     }
     let event = SceneEvent::Split;
     let exchange = Exchange { event, from: vec![of], remove: vec![id], hide: Vec::new(), add };
-    Ok(Combined { exchange, clays })
+    Ok(Combined { exchange, clays, live: None })
 }
 
 /// The connected parts of a mesh, by shared vertices: the one of most triangles first, ties in the

@@ -16,6 +16,7 @@ mod layers;
 mod local_camera;
 mod people;
 mod saved;
+mod scene_arrange;
 mod scene_steps;
 mod state;
 mod stroke_context;

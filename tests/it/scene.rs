@@ -1,5 +1,6 @@
 //! The scene by the control protocol of a running loop: objects, Booleans, files, replay.
 
+mod arranged;
 mod face_sets;
 mod layers;
 mod local_remesh;
@@ -330,7 +331,7 @@ fn a_quad_file_leaves_as_it_came_after_strokes_and_after_the_session_is_reopened
     assert!(text(&same) == text(&file), "nothing was done");
     let before = run.live.published.load().mesh.to_tri();
     let points = [[0.3, 0.45, 0.8, 0.0], [0.5, 0.5, 0.9, 200.0], [0.7, 0.55, 0.8, 400.0]];
-    run.ask("stroke", json!({ "points": points, "space": "view", "brush": "draw" }));
+    run.ask("stroke", json!({ "points": points, "space": "view" }));
     run.objects();
     let after = run.live.published.load().mesh.to_tri();
     assert_ne!(before.positions, after.positions);

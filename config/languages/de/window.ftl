@@ -339,6 +339,11 @@ history-sets = Flächengruppen
 history-mask = Maske
 history-remesh = Dreiecksgröße
 history-snapped = bündig gelegt
+history-arranged = umgeordnet
+history-set-named = Flächensatz benannt
+history-followed = den Operanden gefolgt
+history-applied = Boolesche angewandt
+history-mirrored = gespiegelt
 
 ## Page: look
 
@@ -410,6 +415,14 @@ objects-duplicate = Duplizieren
 objects-rename = Umbenennen
 objects-remove = Entfernen
 objects-locked = Gesperrt: kein Strich, keine Bewegung, kein Entfernen
+objects-group = Gruppe
+    .tip = Benennt die Gruppe, in der das Objekt steht; ein leerer Name beendet sie
+objects-mirror = Spiegeln
+objects-live = Boolesche folgen
+    .tip = Die Operanden bleiben verborgen, und das Ergebnis wird neu berechnet, wenn einer bewegt oder geändert wird
+objects-follows = Folgt seinen Operanden
+objects-apply = Anwenden
+    .tip = Die Operanden verschwinden, das Ergebnis bleibt, wie es ist
 objects-gizmo = Gizmo
     .tip = Verschiebt, dreht und skaliert das Objekt mit dem Zeiger; mit Strg in Schritten
 objects-snap = Fläche an Fläche legen
@@ -990,6 +1003,7 @@ task-frames = { $frames } Bilder gespeichert in { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: fertig
 task-snapped = Die Flächen liegen aneinander
+task-mirrored = Ein gespiegelter Zwilling ist da
 task-trimmed = Zugeschnitten
 task-level = Stufe { $at } von { $all }
 task-remesh-local = Geänderte Kanten: { $count }

@@ -341,6 +341,11 @@ history-sets = face sets
 history-mask = mask
 history-remesh = triangle size
 history-snapped = laid flush
+history-arranged = listed elsewhere
+history-set-named = face set named
+history-followed = followed its operands
+history-applied = Boolean applied
+history-mirrored = mirrored
 
 ## Page: look
 
@@ -412,6 +417,14 @@ objects-duplicate = Duplicate
 objects-rename = Rename
 objects-remove = Remove
 objects-locked = Locked: no stroke, no move, no removal
+objects-group = Group
+    .tip = Names the group that the object is listed in; an empty name ends it
+objects-mirror = Mirror
+objects-live = Booleans follow
+    .tip = The operands stay, hidden, and the result is computed again when one of them is moved or changed
+objects-follows = Follows its operands
+objects-apply = Apply
+    .tip = The operands go and the result stays as it is
 objects-gizmo = Gizmo
     .tip = Move, turn and scale the object by the pointer; with Ctrl in steps
 objects-snap = Snap face to face
@@ -992,6 +1005,7 @@ task-frames = Saved { $frames } frames to { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: done
 task-snapped = The faces lie on each other
+task-mirrored = A mirrored twin was added
 task-trimmed = Trimmed
 task-level = Level { $at } of { $all }
 task-remesh-local = Edges changed: { $count }

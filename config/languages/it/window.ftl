@@ -339,6 +339,11 @@ history-sets = insiemi di facce
 history-mask = maschera
 history-remesh = dimensione dei triangoli
 history-snapped = messo a filo
+history-arranged = riordinato
+history-set-named = insieme nominato
+history-followed = ha seguito gli operandi
+history-applied = booleana applicata
+history-mirrored = specchiato
 
 ## Page: look
 
@@ -410,6 +415,14 @@ objects-duplicate = Duplica
 objects-rename = Rinomina
 objects-remove = Rimuovi
 objects-locked = Bloccato: né tratti, né spostamenti, né rimozione
+objects-group = Gruppo
+    .tip = Dà un nome al gruppo dell’oggetto; un nome vuoto lo toglie
+objects-mirror = Specchia
+objects-live = Booleane vive
+    .tip = Gli operandi restano nascosti e il risultato si ricalcola quando uno cambia
+objects-follows = Segue i suoi operandi
+objects-apply = Applica
+    .tip = Gli operandi spariscono e il risultato resta com’è
 objects-gizmo = Gizmo
     .tip = Sposta, ruota e scala l’oggetto con il puntatore; con Ctrl a passi
 objects-snap = Accosta faccia a faccia
@@ -990,6 +1003,7 @@ task-frames = Salvati { $frames } fotogrammi in { $folder }
 task-failed = { $path }: { $error }
 task-done = { $operation }: fatto
 task-snapped = Le facce combaciano
+task-mirrored = Aggiunto un gemello specchiato
 task-trimmed = Tagliato
 task-level = Livello { $at } di { $all }
 task-remesh-local = Spigoli cambiati: { $count }

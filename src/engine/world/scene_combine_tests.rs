@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::World;
 use super::scene_tests::{Dice, ask, tell};
 use crate::command::{Command, JumpObject, OtherWork, SceneJump};
 use crate::payload::Payload;
 use crate::scene::{
-    Exchange, NewObject, Object, ObjectId, ObjectSource, Operand, SceneCommand, SceneEvent,
+    Exchange, LiveBoolean, NewObject, Object, ObjectId, ObjectSource, ObjectTransform, Operand,
+    Primitive, PrimitiveShape, Recomputed, SceneCommand, SceneError, SceneEvent,
 };
 use sculptd_clay::{Clay, ObjectState, Page};
 use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
@@ -57,8 +60,116 @@ pub(super) fn boolean_at_random(world: &mut World, dice: &mut Dice) -> bool {
     let (remove, hide) = if keep { (vec![], ids.to_vec()) } else { (ids.to_vec(), vec![]) };
     let from = vec![operand(a), operand(b)];
     let event = SceneEvent::Boolean;
+    let operands = [operand(a), operand(b)];
     let exchange = Exchange { event, from, remove, hide, add: vec![new] };
-    ask(world, SceneCommand::Exchange(exchange)).is_ok()
+    let command = match keep && dice.roll(2) > 0 {
+        true => SceneCommand::ExchangeLive(Box::new((exchange, live(operation, operands)))),
+        false => SceneCommand::Exchange(exchange),
+    };
+    ask(world, command).is_ok()
+}
+
+fn live(operation: Operation, operands: [Operand; 2]) -> LiveBoolean {
+    LiveBoolean { operation, operands, keep_contact: false, tolerance: None, result: 0 }
+}
+
+/// Computes the results that no longer are of what their operands are, as the daemon does.
+pub(super) fn follow(world: &mut World) -> usize {
+    let mut done = 0;
+    let ids: Vec<ObjectId> = world.scene().objects().iter().map(|o| o.id).collect();
+    for id in ids {
+        let scene = world.scene();
+        let Some(live) = scene.object(id).and_then(Object::live).cloned() else { continue };
+        let [Some(a), Some(b)] = live.operands.map(|o| scene.object(o.id)) else { continue };
+        let operands = [operand(a), operand(b)];
+        if operands == live.operands {
+            continue;
+        }
+        let Some(plain) = boolean_of(a, b, live.operation) else { continue };
+        let source = ObjectSource::Mesh(plain.into());
+        let new = NewObject::new("result", source, a.settings.transform);
+        let again = Recomputed { id, live: LiveBoolean { operands, ..live }, new };
+        let asked = SceneCommand::Recomputed(Box::new(again));
+        done += usize::from(ask(world, asked).is_ok());
+    }
+    done
+}
+
+/// Lists objects elsewhere, names a set, computes what follows, or applies it.
+pub(super) fn arrange_at_random(world: &mut World, dice: &mut Dice) {
+    let id = dice.object(world);
+    let _ = match dice.roll(6) {
+        0 => ask(world, SceneCommand::Move(id, dice.roll(6) as u32)),
+        1 => {
+            let (other, name) = (dice.object(world), ["", "legs", "head"][dice.roll(3)]);
+            ask(world, SceneCommand::Group(vec![id, other], name.into()))
+        }
+        2 => {
+            let name = ["", "hoof"][dice.roll(2)];
+            ask(world, SceneCommand::NameSet(dice.roll(4) as u16, name.into()))
+        }
+        3 => ask(world, SceneCommand::ApplyLive(id)),
+        _ => {
+            follow(world);
+            Ok(id)
+        }
+    };
+}
+
+#[test]
+fn a_live_result_follows_its_operands_within_their_step_until_it_is_changed_or_applied() {
+    let mut world = super::scene_tests::world(1, u64::MAX);
+    let shape = PrimitiveShape::Box([1.0, 1.0, 1.0]);
+    let at = |x: f64| ObjectTransform { shift: DVec3::new(x, 0.0, 0.0), ..ObjectTransform::NONE };
+    let source = ObjectSource::Primitive(Primitive { shape, edge: 0.2 });
+    let new = NewObject::new("box", source, at(0.9));
+    let tool = ask(&mut world, SceneCommand::Add(new)).expect("room");
+    let (a, b) = (&world.scene().objects()[0], &world.scene().objects()[1]);
+    let (ball, operands) = (a.id, [operand(a), operand(b)]);
+    let plain = boolean_of(a, b, Operation::Difference).expect("a ball without a part");
+    let new = NewObject::new("cut", ObjectSource::Mesh(plain.into()), ObjectTransform::NONE);
+    let exchange = Exchange {
+        event: SceneEvent::Boolean,
+        from: operands.to_vec(),
+        remove: vec![],
+        hide: vec![ball, tool],
+        add: vec![new],
+    };
+    let asked = (exchange, live(Operation::Difference, operands));
+    let result = ask(&mut world, SceneCommand::ExchangeLive(Box::new(asked))).expect("made");
+    let volume = |world: &World| {
+        let object = world.scene().object(result).expect("there");
+        sculptd_geometry::measure::measures(&object.clay.to_tri()).volume
+    };
+    assert_eq!(follow(&mut world), 0, "nothing has changed");
+    let (before, steps, hash) = (volume(&world), world.undo_steps(), world.hash());
+    // The tool goes further in: more is cut off, in the same step as the move.
+    ask(&mut world, SceneCommand::Transform(tool, at(0.5))).expect("there");
+    assert_eq!((follow(&mut world), follow(&mut world)), (1, 0));
+    let moved = (volume(&world), world.hash());
+    assert!(moved.0 < before - 0.2, "{} of {before}", moved.0);
+    assert_eq!(world.undo_steps(), steps + 1);
+    tell(&mut world, Command::Undo);
+    assert_eq!((volume(&world), world.hash()), (before, hash));
+    assert_eq!(follow(&mut world), 0, "both were taken back");
+    tell(&mut world, Command::Redo);
+    assert_eq!((volume(&world), world.hash()), moved);
+    // A result that is sculpted is a work of its own.
+    ask(&mut world, SceneCommand::Activate(result)).expect("there");
+    tell(&mut world, Command::Mask(sculptd_clay::brush::MaskAction::Invert));
+    ask(&mut world, SceneCommand::Transform(tool, at(0.9))).expect("there");
+    assert_eq!(follow(&mut world), 0);
+    let applied = SceneCommand::ApplyLive(result);
+    assert_eq!(ask(&mut world, applied.clone()), Err(SceneError::NotLive(result)));
+    tell(&mut world, Command::Undo);
+    tell(&mut world, Command::Undo);
+    // Applied, it stays and its operands go, in one step.
+    ask(&mut world, applied).expect("it follows again");
+    assert_eq!(world.scene().objects().len(), 1);
+    assert_eq!(volume(&world), moved.0);
+    tell(&mut world, Command::Undo);
+    assert_eq!((world.scene().objects().len(), world.hash()), (3, moved.1));
+    world.verify_invariants().expect("sound");
 }
 
 /// States of the scene that one can go back to, as a session's history keeps them.

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, Vec2, Vec3};
 
 use super::layer_tests::edit_at_random;
-use super::scene_combine_tests::{Places, boolean_at_random};
+use super::scene_combine_tests::{Places, arrange_at_random, boolean_at_random};
 use super::{World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Command, NewClay, OfClay};
@@ -182,7 +182,7 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
 fn operate(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
     let full = world.scene().objects().len() > 8;
-    match dice.roll(44) {
+    match dice.roll(47) {
         0..=6 => {
             let (from, to) = (dice.view(), dice.view());
             stroke(world, from, to);
@@ -240,9 +240,10 @@ fn operate(world: &mut World, dice: &mut Dice) {
         }
         24..=31 => edit_at_random(world, dice),
         32..=39 => edit_sets_at_random(world, dice),
-        40.. => {
+        40..=42 => {
             boolean_at_random(world, dice);
         }
+        43.. => arrange_at_random(world, dice),
         _ => {
             let of = world.scene().object(id).expect("there");
             let from = Operand {

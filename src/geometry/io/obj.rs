@@ -448,8 +448,14 @@ struct ObjGroups {
 }
 
 impl ObjGroups {
-    /// What each group is called, by its number.
+    /// What each group is called, by its number. Those that say the number alone are none.
     fn names(&self) -> Vec<GroupName> {
+        let number = |(names, id): (&[String; 3], &u32)| {
+            names[0].is_empty() && names[1] == format!("group_{id}") && names[2].is_empty()
+        };
+        if self.known.iter().all(number) {
+            return Vec::new();
+        }
         let mut all = vec![GroupName::default(); self.known.len()];
         for ([object, group, material], id) in &self.known {
             all[*id as usize] = GroupName {
