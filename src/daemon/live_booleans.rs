@@ -1,8 +1,9 @@
 //! Results of Booleans that follow their operands, see [`LiveBoolean`]: a thread that looks at what
 //! is published and computes a result again where an operand is another than it was computed from.
 //!
-//! An operand under a stroke changes all the time: a result is computed once it has rested for a
-//! look. What cannot be computed stays as it is until an operand changes again, and that is said.
+//! An operand under a stroke changes all the time: a result is computed once its clay has rested for
+//! a look. One that is only moved is followed while it moves, as fast as the Boolean goes. What
+//! cannot be computed stays as it is until an operand changes again, and that is said.
 //!
 //! [`LiveBoolean`]: sculptd_engine::scene::LiveBoolean
 
@@ -42,7 +43,9 @@ impl Follower {
         let before = std::mem::replace(&mut self.seen, stale.iter().copied().collect());
         let mut out = Vec::new();
         for (id, operands) in stale {
-            let rests = before.get(&id) == Some(&operands);
+            let form = |all: &[Operand; 2]| all.map(|o| (o.id, o.clay, o.revision));
+            let moved = stale_of(shown, id).is_some_and(|was| form(&was) == form(&operands));
+            let rests = moved || before.get(&id).map(form) == Some(form(&operands));
             if !rests || self.tried.get(&id) == Some(&operands) {
                 continue;
             }
@@ -57,6 +60,11 @@ impl Follower {
         }
         out
     }
+}
+
+/// The operands that a result is of.
+fn stale_of(shown: &Published, id: ObjectId) -> Option<[Operand; 2]> {
+    shown.scene.object(id)?.settings.live.as_ref().map(|live| live.operands)
 }
 
 /// Follows what is published until `stop`.

@@ -144,6 +144,8 @@ pub struct World {
     late_result: Option<SceneResult>,
     /// Clays put in place so far: each has a number of its own.
     lineages: u32,
+    /// The object that is dragged, and the step that the drag is.
+    dragged: Option<(ObjectId, u64)>,
     /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
     /// The settings of those who share the world; nobody in a world of one person.
@@ -202,6 +204,7 @@ impl World {
             scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
             late_result: None,
             lineages: 0,
+            dragged: None,
             moments: None,
             people: People::default(),
         };

@@ -54,6 +54,9 @@ pub enum SceneCommand {
     /// Triangles of the active object get another size: where it was stretched, or what is seen in
     /// a region of the view.
     RemeshLocal(LocalRemesh),
+    /// As [`SceneCommand::Transform`], while the object is dragged: together with those before and
+    /// after it, it is one step.
+    Drag(ObjectId, ObjectTransform),
     /// An object gets another place in the list, 0 the first; beyond the last it is the last.
     Move(ObjectId, u32),
     /// Objects are listed in the group of this name; without one in none. One step.
@@ -68,8 +71,8 @@ pub enum SceneCommand {
     ApplyLive(ObjectId),
 }
 
-/// The result of a live Boolean, computed again. Nothing is done where an operand has changed
-/// since, or where the result no longer follows them.
+/// The result of a live Boolean, computed again. Nothing is done where the result no longer follows
+/// its operands.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Recomputed {
     /// The result.

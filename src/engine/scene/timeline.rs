@@ -167,13 +167,15 @@ pub(crate) struct Timeline {
     /// Bytes that the steps of all clays but the active one hold, in the scene and in steps:
     /// strokes change those of the active one alone.
     other_bytes: u64,
+    /// How many steps were ever made.
+    made: u64,
 }
 
 impl Timeline {
     /// Nothing to take back; there is room for all that may be.
     pub(crate) fn new() -> Timeline {
         let past = VecDeque::with_capacity(STEPS + 1);
-        Timeline { past, future: Vec::new(), other_bytes: 0 }
+        Timeline { past, future: Vec::new(), other_bytes: 0, made: 0 }
     }
 
     /// Closes the active clay's open step; true if there is one more. Then what could be done again
@@ -204,6 +206,7 @@ impl Timeline {
         self.forget_future(scene, garbage);
         let stroke = matches!(step, SceneStep::Clay(_));
         self.past.push_back(step);
+        self.made += 1;
         if !stroke {
             self.recount(scene);
             self.bound_clays(scene, limit, garbage);
@@ -332,6 +335,11 @@ impl Timeline {
         }
         scene.objects_mut().iter_mut().for_each(|o| o.clay.forget_steps());
         self.other_bytes = 0;
+    }
+
+    /// Names the newest step, as long as it is neither taken back nor followed by another.
+    pub(crate) fn newest(&self) -> Option<u64> {
+        (self.future.is_empty() && !self.past.is_empty()).then_some(self.made)
     }
 
     /// Steps that undo can take back.

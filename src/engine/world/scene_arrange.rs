@@ -4,11 +4,36 @@
 use super::World;
 use super::scene_steps::SceneResult;
 use crate::scene::{
-    LiveBoolean, Object, ObjectId, Recomputed, ReplacedClay, SceneError, SceneStep, clean_name,
+    LiveBoolean, Object, ObjectId, ObjectTransform, Recomputed, ReplacedClay, SceneError,
+    SceneStep, clean_name,
 };
 use sculptd_clay::face_sets::MOST_SETS;
 
 impl World {
+    /// Whether an object is being dragged: nothing was done since, and nothing taken back.
+    pub(super) fn is_dragged(&self) -> bool {
+        self.dragged.is_some_and(|d| self.timeline.newest() == Some(d.1))
+    }
+
+    pub(super) fn is_dragged_object(&self, id: ObjectId) -> bool {
+        self.is_dragged() && self.dragged.is_some_and(|d| d.0 == id)
+    }
+
+    /// An object stands here from now on; `goes_on`: as a part of the newest step.
+    pub(super) fn put_at(
+        &mut self,
+        id: ObjectId,
+        transform: ObjectTransform,
+        goes_on: bool,
+    ) -> SceneResult {
+        if !goes_on {
+            return self.set(id, |settings| settings.transform = transform);
+        }
+        let object = self.scene.object_mut(id).ok_or(SceneError::NoObject(id))?;
+        object.settings.transform = transform;
+        Ok(id)
+    }
+
     pub(super) fn group(&mut self, ids: &[ObjectId], name: &str) -> SceneResult {
         let name = match name {
             "" => String::new(),
@@ -50,15 +75,13 @@ impl World {
         })
     }
 
-    /// The result of a live Boolean, computed again: a part of the step that it follows from.
+    /// The result of a live Boolean, computed again: a part of the step that it follows from. Where
+    /// an operand has gone on meanwhile, the result says what it is of and is computed once more.
     pub(super) fn recomputed(&mut self, again: &Recomputed) -> SceneResult {
         let id = again.id;
         let object = self.scene.object(id).ok_or(SceneError::NoObject(id))?;
         if object.live().is_none_or(|l| l.result != again.live.result) {
             return Err(SceneError::NotLive(id));
-        }
-        for operand in &again.live.operands {
-            self.as_it_was(operand)?;
         }
         let mut clays = self.take_clays(again.new.built);
         let made = self.new_object(&again.new, clays.pop())?;

@@ -98,7 +98,11 @@ pub(super) fn follow(world: &mut World) -> usize {
 /// Lists objects elsewhere, names a set, computes what follows, or applies it.
 pub(super) fn arrange_at_random(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
-    let _ = match dice.roll(6) {
+    let _ = match dice.roll(8) {
+        6.. => {
+            let transform = dice.transform();
+            ask(world, SceneCommand::Drag(id, transform))
+        }
         0 => ask(world, SceneCommand::Move(id, dice.roll(6) as u32)),
         1 => {
             let (other, name) = (dice.object(world), ["", "legs", "head"][dice.roll(3)]);
@@ -154,21 +158,36 @@ fn a_live_result_follows_its_operands_within_their_step_until_it_is_changed_or_a
     assert_eq!(follow(&mut world), 0, "both were taken back");
     tell(&mut world, Command::Redo);
     assert_eq!((volume(&world), world.hash()), moved);
+    // Dragged there and on, with the result after it, and released: one step.
+    tell(&mut world, Command::Undo);
+    for x in [0.8, 0.7, 0.6, 0.5] {
+        ask(&mut world, SceneCommand::Drag(tool, at(x))).expect("there");
+        assert_eq!((follow(&mut world), world.undo_steps()), (1, steps + 1));
+    }
+    ask(&mut world, SceneCommand::Transform(tool, at(0.5))).expect("there");
+    assert_eq!((volume(&world), world.undo_steps()), (moved.0, steps + 1));
+    tell(&mut world, Command::Undo);
+    assert_eq!((volume(&world), world.hash()), (before, hash));
+    tell(&mut world, Command::Redo);
+    // The next drag is another step.
+    ask(&mut world, SceneCommand::Drag(tool, at(0.4))).expect("there");
+    assert_eq!(world.undo_steps(), steps + 2);
+    tell(&mut world, Command::Undo);
+    let moved = (volume(&world), world.hash());
+    assert_eq!((follow(&mut world), moved.0 < before - 0.2), (0, true));
+    // Applied, it stays and its operands go, in one step.
+    let applied = SceneCommand::ApplyLive(result);
+    ask(&mut world, applied.clone()).expect("it follows");
+    assert_eq!(world.scene().objects().len(), 1);
+    assert_eq!(volume(&world), moved.0);
+    tell(&mut world, Command::Undo);
+    assert_eq!((world.scene().objects().len(), world.hash()), (3, moved.1));
     // A result that is sculpted is a work of its own.
     ask(&mut world, SceneCommand::Activate(result)).expect("there");
     tell(&mut world, Command::Mask(sculptd_clay::brush::MaskAction::Invert));
     ask(&mut world, SceneCommand::Transform(tool, at(0.9))).expect("there");
     assert_eq!(follow(&mut world), 0);
-    let applied = SceneCommand::ApplyLive(result);
-    assert_eq!(ask(&mut world, applied.clone()), Err(SceneError::NotLive(result)));
-    tell(&mut world, Command::Undo);
-    tell(&mut world, Command::Undo);
-    // Applied, it stays and its operands go, in one step.
-    ask(&mut world, applied).expect("it follows again");
-    assert_eq!(world.scene().objects().len(), 1);
-    assert_eq!(volume(&world), moved.0);
-    tell(&mut world, Command::Undo);
-    assert_eq!((world.scene().objects().len(), world.hash()), (3, moved.1));
+    assert_eq!(ask(&mut world, applied), Err(SceneError::NotLive(result)));
     world.verify_invariants().expect("sound");
 }
 

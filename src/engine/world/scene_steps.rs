@@ -40,7 +40,11 @@ impl World {
         if result.is_ok() && !noted {
             self.scene.touch();
             self.stand(before);
-            self.note(HistoryEvent::Scene(event_of(command)));
+            // What is under way is noted where it ends.
+            let follows = matches!(command, SceneCommand::Recomputed(_)) && self.is_dragged();
+            if !follows && !matches!(command, SceneCommand::Drag(..)) {
+                self.note(HistoryEvent::Scene(event_of(command)));
+            }
         }
         self.scene_results.push(result);
     }
@@ -86,7 +90,19 @@ impl World {
                 if !transform.is_sane() {
                     return Err(SceneError::Transform);
                 }
-                self.set(*id, |settings| settings.transform = *transform)
+                let goes_on = self.is_dragged_object(*id);
+                self.dragged = None;
+                self.put_at(*id, *transform, goes_on)
+            }
+            SceneCommand::Drag(id, transform) => {
+                self.unlocked(*id)?;
+                if !transform.is_sane() {
+                    return Err(SceneError::Transform);
+                }
+                let goes_on = self.is_dragged_object(*id);
+                let done = self.put_at(*id, *transform, goes_on);
+                self.dragged = self.timeline.newest().map(|step| (*id, step));
+                done
             }
             SceneCommand::Show(id, visible) => self.set(*id, |s| s.visible = *visible),
             SceneCommand::Lock(id, locked) => self.set(*id, |s| s.locked = *locked),
@@ -477,7 +493,7 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Remove(_) => SceneEvent::Remove,
         SceneCommand::Duplicate(_) => SceneEvent::Duplicate,
         SceneCommand::Rename(..) => SceneEvent::Rename,
-        SceneCommand::Transform(..) => SceneEvent::Transform,
+        SceneCommand::Transform(..) | SceneCommand::Drag(..) => SceneEvent::Transform,
         SceneCommand::Activate(_) => SceneEvent::Activate,
         SceneCommand::Show(..) => SceneEvent::Show,
         SceneCommand::Lock(..) => SceneEvent::Lock,

@@ -110,7 +110,7 @@ impl Dice {
         Vec2::new(self.share() as f32, self.share() as f32) * 0.6 + 0.2
     }
 
-    fn transform(&mut self) -> ObjectTransform {
+    pub(super) fn transform(&mut self) -> ObjectTransform {
         let v = |dice: &mut Self| DVec3::new(dice.share(), dice.share(), dice.share()) - 0.5;
         let axis = v(self).normalize_or(DVec3::Y);
         let turn = DQuat::from_axis_angle(axis, self.share() * 6.0);
