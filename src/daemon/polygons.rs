@@ -7,6 +7,10 @@
 //! is written; whatever changes triangles gives a list that is not here. The list is compared as a
 //! whole before it is believed.
 //!
+//! After a change of triangles (a Boolean, triangles cut under a brush, remeshing a part), the faces
+//! whose triangles are all still there, corner by corner in their place, stay polygons; they are
+//! found by the places alone, so what was moved as well is triangles.
+//!
 //! A session keeps those of its objects, see `session::stored_polygons`, and gives them back where
 //! it is opened again.
 
@@ -16,7 +20,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use sculptd_clay::Snapshot;
-use sculptd_geometry::{FaceAttributes, PolyMesh, TriMesh};
+use sculptd_geometry::face_attributes::NO_UV;
+use sculptd_geometry::{FaceAttributes, GroupName, PolyMesh, TriMesh};
 
 /// Bytes that are kept; the oldest go first.
 const MOST_BYTES: usize = 1 << 30;
@@ -160,12 +165,156 @@ impl PolygonStore {
         let same = |f: &Arc<FileFaces>| {
             f.triangles == plain.triangles && f.mesh.positions.len() == plain.positions.len()
         };
-        let Some(file) = found.filter(same) else { return plain.to_poly() };
+        let Some(file) = found.filter(same) else {
+            return self.untouched(plain).unwrap_or_else(|| plain.to_poly());
+        };
         let place = |(now, then): (&glam::Vec3, &glam::DVec3)| {
             glam::DVec3::select(then.as_vec3().cmpeq(*now), *then, now.as_dvec3())
         };
         let positions = plain.positions.iter().zip(&file.mesh.positions).map(place).collect();
         PolyMesh { positions, colours: plain.colours.clone(), ..file.mesh.clone() }
+    }
+}
+
+impl PolygonStore {
+    /// Of an object whose triangles are others now: the faces of the file of which it still has
+    /// most, each where all triangles of it are still in their place, then what is left of the
+    /// triangles, in a group of their own. `None`: no face of any file is there.
+    fn untouched(&self, plain: &TriMesh) -> Option<PolyMesh> {
+        let files: Vec<Arc<FileFaces>> = {
+            let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+            files.iter().cloned().collect()
+        };
+        if files.is_empty() {
+            return None;
+        }
+        let places = Places::of(plain);
+        let found = files.iter().map(|f| (places.faces(f), f));
+        let (faces, file) = found.max_by_key(|(faces, _)| faces.len())?;
+        (!faces.is_empty()).then(|| places.mesh(plain, file, &faces))
+    }
+}
+
+/// A face of a file that an object still has: its number, and its triangles there.
+type FoundFace = (u32, std::ops::Range<usize>);
+
+/// The vertices and triangles of an object by their places.
+struct Places {
+    /// The bits of each place that one vertex alone has, ascending, and the vertex.
+    vertices: Vec<([u32; 3], u32)>,
+    /// The corners of each triangle from the lowest on, ascending, and the triangle.
+    triangles: Vec<([u32; 3], u32)>,
+}
+
+/// From the lowest corner on, the same way around.
+fn from_lowest(t: [u32; 3]) -> [u32; 3] {
+    match t {
+        [a, b, c] if b < a && b < c => [b, c, a],
+        [a, b, c] if c < a && c < b => [c, a, b],
+        t => t,
+    }
+}
+
+fn bits(p: glam::Vec3) -> [u32; 3] {
+    p.to_array().map(|v| (v + 0.0).to_bits())
+}
+
+impl Places {
+    fn of(plain: &TriMesh) -> Places {
+        let numbered = plain.positions.iter().map(|p| bits(*p)).zip(0..);
+        let mut vertices: Vec<([u32; 3], u32)> = numbered.collect();
+        vertices.sort_unstable();
+        let alone = vertices.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1);
+        let vertices = alone.map(|same| same[0]).collect();
+        let numbered = plain.triangles.iter().map(|t| from_lowest(*t)).zip(0..);
+        let mut triangles: Vec<([u32; 3], u32)> = numbered.collect();
+        triangles.sort_unstable();
+        Places { vertices, triangles }
+    }
+
+    fn vertex(&self, p: glam::Vec3) -> Option<u32> {
+        let bits = bits(p);
+        let at = self.vertices.binary_search_by(|v| v.0.cmp(&bits)).ok()?;
+        Some(self.vertices[at].1)
+    }
+
+    fn triangle(&self, t: [u32; 3]) -> Option<u32> {
+        let t = from_lowest(t);
+        let at = self.triangles.binary_search_by(|x| x.0.cmp(&t)).ok()?;
+        Some(self.triangles[at].1)
+    }
+
+    /// What each vertex of a file is here.
+    fn names(&self, file: &FileFaces) -> Vec<Option<u32>> {
+        file.mesh.positions.iter().map(|p| self.vertex(p.as_vec3())).collect()
+    }
+
+    /// The faces of a file that are here.
+    fn faces(&self, file: &FileFaces) -> Vec<FoundFace> {
+        let names = self.names(file);
+        let here = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| names[v as usize]);
+            self.triangle([a?, b?, c?])
+        };
+        let (mut start, mut out) = (0, Vec::new());
+        for (f, corners) in file.mesh.faces().enumerate() {
+            // A face of n corners was cut into n - 2 triangles, in the order of the faces.
+            let range = start..start + corners.len().saturating_sub(2);
+            start = range.end;
+            let own = file.triangles.get(range.clone());
+            if own.is_some_and(|own| own.iter().all(|t| here(t).is_some())) {
+                out.push((f as u32, range));
+            }
+        }
+        out
+    }
+
+    fn mesh(&self, plain: &TriMesh, file: &FileFaces, faces: &[FoundFace]) -> PolyMesh {
+        let names = self.names(file);
+        let name = |v: u32| names[v as usize].unwrap_or_default();
+        let mut out = PolyMesh::new();
+        out.positions = plain.positions.iter().map(|p| p.as_dvec3()).collect();
+        out.colours.clone_from(&plain.colours);
+        let (mut groups, mut uv_corners) = (Vec::new(), Vec::new());
+        let mut rest = vec![true; plain.triangles.len()];
+        for (f, range) in faces {
+            let corners = file.mesh.face(*f as usize);
+            let ring: Vec<u32> = corners.iter().map(|v| name(*v)).collect();
+            out.push_face(&ring);
+            for (new, old) in ring.iter().zip(corners) {
+                out.positions[*new as usize] = file.mesh.positions[*old as usize];
+            }
+            groups.push(file.mesh.groups.as_ref().map_or(0, |g| g[*f as usize]));
+            if let Some((_, own)) = file.mesh.uvs() {
+                let first = file.mesh.face_starts[*f as usize] as usize;
+                uv_corners.extend_from_slice(&own[first..first + corners.len()]);
+            }
+            for t in &file.triangles[range.clone()] {
+                if let Some(t) = self.triangle(t.map(name)) {
+                    rest[t as usize] = false;
+                }
+            }
+        }
+        let other = file.mesh.groups.as_ref().and_then(|g| g.iter().max()).map_or(0, |m| m + 1);
+        for (t, _) in plain.triangles.iter().zip(rest).filter(|(_, rest)| *rest) {
+            out.push_face(t);
+            groups.push(other);
+        }
+        out.groups = file.mesh.groups.is_some().then_some(groups);
+        out.attributes = file.mesh.attributes.as_deref().map(|own| {
+            if file.mesh.uvs().is_some() {
+                uv_corners.resize(out.corners.len(), NO_UV);
+            }
+            let mut names = own.groups.clone();
+            if !names.is_empty() {
+                // What was made anew has a name too, so that it does not go on in the last group.
+                let group = "new".into();
+                names.push(GroupName { group, ..GroupName::default() });
+            }
+            let (uvs, libraries) = (own.uvs.clone(), own.libraries.clone());
+            Arc::new(FaceAttributes { uvs, uv_corners, groups: names, libraries })
+        });
+        out
     }
 }
 
@@ -194,7 +343,6 @@ mod tests {
     use super::*;
     use glam::{DVec3, Vec3};
     use sculptd_clay::Clay;
-    use sculptd_geometry::GroupName;
     use sculptd_geometry::job::Job;
     use sculptd_geometry::shapes;
 
@@ -229,7 +377,50 @@ mod tests {
         assert!(later.of(&clay.snapshot()).is_none());
         assert!(later.restore(&bytes) && !later.restore(&bytes[..bytes.len() / 2]));
         assert_eq!(later.polygons(&plain), moved);
-        plain.triangles.swap(3, 4);
-        assert_eq!(store.polygons(&plain), plain.to_poly());
+    }
+
+    #[test]
+    fn untouched_faces_stay_polygons_after_triangles_have_changed() {
+        let store = PolygonStore::default();
+        let mut quads = shapes::torus(3.0, 1.0, 24, 12);
+        quads.groups = Some((0..quads.face_count() as u32).map(|f| f / 100).collect());
+        let uv_corners = (0..quads.corners.len() as u32).map(|c| c % 7).collect();
+        let groups: Vec<GroupName> =
+            (0..3).map(|g| GroupName { group: format!("g{g}"), ..GroupName::default() }).collect();
+        quads.attributes = Some(Arc::new(FaceAttributes {
+            uvs: vec![[0.25, 0.5]; 7],
+            uv_corners,
+            groups,
+            libraries: Vec::new(),
+        }));
+        let mut plain = quads.triangulate().0;
+        store.remember(quads.clone(), &plain);
+        // A corner more within the first face's first triangle, numbers turned around, and a vertex
+        // moved: four faces around that, and the first, are triangles.
+        let [a, b, c] = plain.triangles[0];
+        let middle = plain.corners(0).iter().sum::<Vec3>() / 3.0;
+        plain.positions.push(middle);
+        let new = plain.positions.len() as u32 - 1;
+        plain.triangles[0] = [a, b, new];
+        plain.triangles.extend([[b, c, new], [c, a, new]]);
+        let far = quads.face(150)[0];
+        plain.positions[far as usize] += Vec3::Y;
+        let count = plain.positions.len() as u32;
+        plain.positions.reverse();
+        plain.triangles.iter_mut().for_each(|t| *t = t.map(|v| count - 1 - v));
+        let made = store.polygons(&plain);
+        let four = made.faces().filter(|f| f.len() == 4).count();
+        assert_eq!(four, quads.face_count() - 5);
+        assert_eq!(made.face_count(), four + 4 * 2 + 4);
+        let volume = |mesh: &TriMesh| sculptd_geometry::measure::measures(mesh).volume;
+        assert!((volume(&made.triangulate().0) / volume(&plain) - 1.0).abs() < 1e-3);
+        let (_, uvs) = made.uvs().expect("texture coordinates");
+        assert_eq!(uvs.iter().filter(|uv| **uv == NO_UV).count(), 3 * (4 * 2 + 4));
+        let of = made.groups.as_ref().expect("groups");
+        assert_eq!((of[0], of.last()), (0, Some(&3)));
+        assert_eq!(made.group_name(3).map(|g| g.group.as_str()), Some("new"));
+        // Nothing of a form that was never a file.
+        let ball = shapes::icosphere(1.0, 3);
+        assert_eq!(store.polygons(&ball), ball.to_poly());
     }
 }
