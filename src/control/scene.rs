@@ -223,6 +223,9 @@ pub struct SceneBooleanParams {
     /// computed again, until it is changed itself or `scene.apply` is asked.
     #[serde(default)]
     pub live: bool,
+    /// All four results become objects, the named one first; those that are empty are left out.
+    #[serde(default)]
+    pub all: bool,
     /// Faces in which the two only touch belong to an intersection too, both sides of them.
     #[serde(default)]
     pub keep_contact: bool,

@@ -159,6 +159,13 @@ fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
     Clay::build(plain, job).map_err(|e| CombineError::Build(e.to_string()))
 }
 
+const ALL_FOUR: [Operation; 4] = [
+    Operation::Union,
+    Operation::Intersection,
+    Operation::Difference,
+    Operation::ReverseDifference,
+];
+
 /// A Boolean of two objects, as it is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBoolean {
@@ -168,6 +175,8 @@ pub struct SceneBoolean {
     pub keep: bool,
     /// So they do, and the result follows them.
     pub live: bool,
+    /// All four results, from one arrangement, the asked one first. They follow nothing.
+    pub all: bool,
     /// Faces in which the two only touch belong to an intersection too.
     pub keep_contact: bool,
     /// Length in the world within which places are one; `None`: what the vertices resolve.
@@ -177,7 +186,14 @@ pub struct SceneBoolean {
 impl SceneBoolean {
     /// The result takes the place of the operands.
     pub fn new(operation: Operation) -> Self {
-        SceneBoolean { operation, keep: false, live: false, keep_contact: false, tolerance: None }
+        SceneBoolean {
+            operation,
+            keep: false,
+            live: false,
+            all: false,
+            keep_contact: false,
+            tolerance: None,
+        }
     }
 }
 
@@ -198,11 +214,22 @@ fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
 
 /// What a Boolean of two objects gives, in the frame of the first.
 struct Computed {
-    plain: TriMesh,
-    clay: Clay,
-    name: String,
+    /// Those that are not empty, each with its operation; at least one.
+    results: Vec<(Operation, TriMesh, Clay)>,
+    names: [String; 2],
     transform: ObjectTransform,
     operands: [Operand; 2],
+}
+
+/// What a result is called where all four are made.
+fn result_name(operation: Operation, [a, b]: &[String; 2]) -> String {
+    let name = match operation {
+        Operation::Union => format!("{a} + {b}"),
+        Operation::Intersection => format!("{a} & {b}"),
+        Operation::Difference => format!("{a} - {b}"),
+        Operation::ReverseDifference => format!("{b} - {a}"),
+    };
+    name.chars().take(MAX_NAME).collect()
 }
 
 fn compute(
@@ -223,16 +250,25 @@ fn compute(
         keep_contact: asked.keep_contact,
         ..BooleanOptions::default()
     };
-    let operations = [asked.operation];
+    let mut operations = vec![asked.operation];
+    if asked.all {
+        operations.extend(ALL_FOUR.into_iter().filter(|o| *o != asked.operation));
+    }
     let (solids, _) = boolean::compute([&first, &second], &operations, &options, job, || 0.0)?;
-    let solid = solids.into_iter().next().ok_or(CombineError::Nothing)?;
-    if solid.mesh.face_count() == 0 {
+    let mut results = Vec::with_capacity(operations.len());
+    for operation in operations {
+        let solid = solids.iter().find(|s| s.operation == operation);
+        let Some(solid) = solid.filter(|s| s.mesh.face_count() > 0) else { continue };
+        let plain = solid.mesh.triangulate().0;
+        let clay = built(&plain, job)?;
+        results.push((operation, plain, clay));
+    }
+    if results.is_empty() {
         return Err(CombineError::Nothing);
     }
-    let plain = solid.mesh.triangulate().0;
-    let clay = built(&plain, job)?;
     let operands = [as_operand(a, a_clay), as_operand(b, b_clay)];
-    Ok(Computed { plain, clay, name: a.settings.name.clone(), transform: frame, operands })
+    let names = [a, b].map(|o| o.settings.name.clone());
+    Ok(Computed { results, names, transform: frame, operands })
 }
 
 /// A Boolean of two objects where they stand. The result stands where the first does.
@@ -250,21 +286,26 @@ pub fn boolean(
     }
     let (a, a_clay, _) = operand(shown, ids[0])?;
     let (b, b_clay, _) = operand(shown, ids[1])?;
-    let Computed { plain, clay, name, transform, operands } =
+    let Computed { results, names, transform, operands } =
         compute([(a, a_clay), (b, b_clay)], asked, job)?;
-    let new = NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform);
+    let (mut add, mut clays) = (Vec::new(), Vec::new());
+    for (operation, plain, clay) in results {
+        let name = if asked.all { result_name(operation, &names) } else { names[0].clone() };
+        add.push(NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform));
+        clays.push(clay);
+    }
     let keep = asked.keep || asked.live;
     let (remove, hide) = if keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
     let event = SceneEvent::Boolean;
-    let exchange = Exchange { event, from: operands.to_vec(), remove, hide, add: vec![new] };
-    let live = asked.live.then_some(LiveBoolean {
+    let exchange = Exchange { event, from: operands.to_vec(), remove, hide, add };
+    let live = (asked.live && !asked.all).then_some(LiveBoolean {
         operation: asked.operation,
         operands,
         keep_contact: asked.keep_contact,
         tolerance: asked.tolerance,
         result: 0,
     });
-    Ok(Combined { exchange, clays: vec![clay], live })
+    Ok(Combined { exchange, clays, live })
 }
 
 /// Which results of live Booleans are no longer of what their operands are.
@@ -303,14 +344,16 @@ pub fn recompute(
         operation: live.operation,
         keep: true,
         live: true,
+        all: false,
         keep_contact: live.keep_contact,
         tolerance: live.tolerance,
     };
-    let made = compute([a, b], asked, job)?;
-    let source = ObjectSource::Mesh(Arc::new(made.plain));
+    let mut made = compute([a, b], asked, job)?;
+    let (_, plain, clay) = made.results.pop().ok_or(CombineError::Nothing)?;
+    let source = ObjectSource::Mesh(Arc::new(plain));
     let new = NewObject::new(&object.settings.name, source, made.transform);
     let live = LiveBoolean { operands: made.operands, ..live };
-    Ok((Recomputed { id, live, new }, made.clay))
+    Ok((Recomputed { id, live, new }, clay))
 }
 
 /// An object mirrored in a plane through the origin of the world, 0 of x, 1 of y, 2 of z: a new

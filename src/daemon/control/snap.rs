@@ -34,6 +34,7 @@ pub(super) fn boolean(host: &Host, p: &SceneBooleanParams) -> Result<CombineRepl
     let asked = SceneBoolean {
         keep: p.keep,
         live: p.live,
+        all: p.all,
         keep_contact: p.keep_contact,
         tolerance: p.tolerance,
         ..SceneBoolean::new(operation(p.operation))

@@ -210,10 +210,18 @@ fn row(
                 for (operation, name) in PAIRINGS {
                     let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
                     if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
-                        let pairing = Pairing { operation, with: id, live: outliner.live };
+                        let (with, live) = (id, outliner.live);
+                        let pairing = Pairing { operation, with, live, all: false };
                         out.push(UiRequest::BooleanWith(pairing));
                         ui.close();
                     }
+                }
+                let all = ui.add_enabled(!busy, egui::Button::new(tr!("operation-all")));
+                if all.on_hover_text(tr!("operation-all.tip")).clicked() {
+                    let operation = Operation::Union;
+                    let pairing = Pairing { operation, with: id, live: false, all: true };
+                    out.push(UiRequest::BooleanWith(pairing));
+                    ui.close();
                 }
             });
         }

@@ -282,8 +282,8 @@ impl Tasks {
             let state = shown.load_full();
             let active = state.scene.active().map_or(pairing.with, |o| o.id);
             let (ids, job) = ([active, pairing.with], Job::default());
-            let live = pairing.live;
-            let asked = SceneBoolean { live, ..SceneBoolean::new(pairing.operation) };
+            let Pairing { operation, live, all, .. } = pairing;
+            let asked = SceneBoolean { live, all, ..SceneBoolean::new(operation) };
             let (text, wrong) = match scene_jobs::boolean(&state, ids, asked, &job) {
                 Ok(done) => {
                     let (command, built) = done.command();

@@ -62,6 +62,27 @@ fn a_boolean_follows_its_operands_by_request_is_replayed_and_applied() {
 }
 
 #[test]
+fn all_four_results_of_two_boxes_are_made_at_once() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (session, out) = (dir.path().join("s.sculpt"), dir.path().join("out.ply"));
+    let run = Running::begin(&[], &session);
+    let (a, b) = (add_box(&run, 2.0, 10.0), add_box(&run, 2.0, 11.5));
+    let asked = json!({ "operation": "difference", "a": a, "b": b, "all": true });
+    let made = run.ask("scene.boolean", asked);
+    assert_eq!(made["objects"], 4);
+    let objects = run.objects();
+    let made = &objects[objects.len() - 4..];
+    let names = ["box - box", "box + box", "box & box", "box - box"];
+    let volumes = [6.0, 14.0, 2.0, 6.0];
+    for ((object, name), volume) in made.iter().zip(names).zip(volumes) {
+        assert_eq!(object["name"], name);
+        let found = volume_of(&run, object["id"].as_u64().expect("an id"), &out);
+        assert!((found - volume).abs() < 1e-4, "{name}: {found}");
+    }
+    run.end();
+}
+
+#[test]
 fn objects_are_listed_elsewhere_grouped_mirrored_and_sets_named_and_a_session_keeps_it() {
     let dir = tempfile::tempdir().expect("a folder");
     let (session, file) = (dir.path().join("s.sculpt"), dir.path().join("ring.obj"));

@@ -51,4 +51,6 @@ pub struct Pairing {
     pub with: ObjectId,
     /// The operands stay, hidden, and the result follows them.
     pub live: bool,
+    /// All four results, the named one first.
+    pub all: bool,
 }
