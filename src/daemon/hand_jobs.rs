@@ -3,7 +3,6 @@
 
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
-use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{ObjectId, ObjectView, SceneCommand, SceneError};
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;

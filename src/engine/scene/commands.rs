@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{LiveBoolean, ObjectId, ObjectTransform, Primitive};
+use super::{LiveBoolean, ObjectId, ObjectTransform, Operand, Primitive};
 use crate::local_remesh::LocalRemesh;
 use crate::payload::PayloadId;
 use crate::view_region::SetsRegion;
@@ -145,19 +145,6 @@ impl NewObject {
     pub fn new(name: &str, source: ObjectSource, transform: ObjectTransform) -> NewObject {
         NewObject { name: name.into(), source, transform, built: None }
     }
-}
-
-/// An object as it was when something was computed from it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Operand {
-    /// The object.
-    pub id: ObjectId,
-    /// The number of its clay, [`sculptd_clay::Clay::object_id`].
-    pub clay: u32,
-    /// The revision of its clay.
-    pub revision: u64,
-    /// Where it stood.
-    pub transform: ObjectTransform,
 }
 
 /// Objects that take the place of others, in one step.

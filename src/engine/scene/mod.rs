@@ -14,6 +14,7 @@
 mod commands;
 mod object;
 mod object_settings;
+mod operand;
 mod primitive;
 mod snap;
 mod timeline;
@@ -23,11 +24,12 @@ mod view;
 use std::sync::Arc;
 
 pub use commands::{
-    Exchange, FlushPlacing, MAX_OBJECTS, NewObject, ObjectSource, Operand, Recomputed,
-    SceneCommand, SceneError, SceneEvent,
+    Exchange, FlushPlacing, MAX_OBJECTS, NewObject, ObjectSource, Recomputed, SceneCommand,
+    SceneError, SceneEvent,
 };
-pub use object::{MAX_NAME, Object, ObjectId, clean_name};
-pub use object_settings::{LiveBoolean, ObjectSettings};
+pub use object::{MAX_NAME, Object, clean_name};
+pub use object_settings::ObjectSettings;
+pub use operand::{LiveBoolean, ObjectId, Operand};
 pub use primitive::{BadPrimitive, Primitive, PrimitiveShape};
 pub use snap::{FaceAlignment, FlatFace, flush};
 pub(crate) use timeline::{Presence, ReplacedClay, SceneStep, Timeline};

@@ -1,23 +1,8 @@
 //! One object of the scene.
 
+use super::{LiveBoolean, ObjectId, ObjectSettings};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
-
-use super::{LiveBoolean, ObjectSettings};
 use sculptd_clay::Clay;
-
-/// Names an object of a scene, for as long as the session lasts: no two objects ever have the same,
-/// and one that comes back by undo has the one that it had.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-)]
-pub struct ObjectId(pub u32);
-
-impl std::fmt::Display for ObjectId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0.fmt(f)
-    }
-}
 
 /// Characters of a name, at most.
 pub const MAX_NAME: usize = 128;

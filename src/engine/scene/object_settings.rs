@@ -11,8 +11,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{ObjectTransform, Operand, Primitive};
-use sculptd_geometry::boolean::Operation;
+use super::{LiveBoolean, ObjectTransform, Primitive};
 
 /// Everything of an object but its clay.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,22 +33,6 @@ pub struct ObjectSettings {
     pub set_names: BTreeMap<u16, String>,
     /// The Boolean that it is the result of, where it follows its operands.
     pub live: Option<Box<LiveBoolean>>,
-}
-
-/// A Boolean whose result is computed again when an operand has changed, until the result itself is
-/// changed or the Boolean is applied.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LiveBoolean {
-    /// What is made of the two.
-    pub operation: Operation,
-    /// The operands as they were when the result was computed.
-    pub operands: [Operand; 2],
-    /// Faces in which the two only touch belong to an intersection too.
-    pub keep_contact: bool,
-    /// Length in the world within which places are one; `None`: what the vertices resolve.
-    pub tolerance: Option<f64>,
-    /// The number of the result's clay: another clay is another's work.
-    pub result: u32,
 }
 
 /// What settings hold beyond the fields that they always had.
@@ -155,7 +138,8 @@ impl<'de> Visitor<'de> for SettingsVisitor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ObjectId;
+    use crate::scene::{ObjectId, Operand};
+    use sculptd_geometry::boolean::Operation;
 
     /// The struct before there were extras.
     #[derive(Serialize, Deserialize)]

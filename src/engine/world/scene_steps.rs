@@ -7,8 +7,8 @@ use crate::hand::ReachBox;
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{
     Exchange, LiveBoolean, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource,
-    Operand, Presence, Recomputed, ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent,
-    SceneStep, clean_name,
+    Operand, Presence, ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep,
+    clean_name,
 };
 use sculptd_clay::Clay;
 
@@ -55,8 +55,8 @@ impl World {
         }
         // Every stroke ends first: it belongs to what is active now. What is computed again is
         // another object, and nobody asked for it now.
-        let beside = |again: &Recomputed| again.id != self.scene.active().id;
-        if !matches!(command, SceneCommand::Recomputed(again) if beside(again)) {
+        let active = self.scene.active().id;
+        if !matches!(command, SceneCommand::Recomputed(again) if again.id != active) {
             self.lift_all();
         }
         match command {
@@ -99,9 +99,11 @@ impl World {
                 if !transform.is_sane() {
                     return Err(SceneError::Transform);
                 }
-                let goes_on = self.is_dragged_object(*id);
+                let (before, goes_on) = (self.timeline.newest(), self.is_dragged_object(*id));
                 let done = self.put_at(*id, *transform, goes_on);
-                self.dragged = self.timeline.newest().map(|step| (*id, step));
+                // Where nothing was moved yet there is no step to go on with.
+                let now = self.timeline.newest().filter(|now| goes_on || Some(*now) != before);
+                self.dragged = now.map(|step| (*id, step));
                 done
             }
             SceneCommand::Show(id, visible) => self.set(*id, |s| s.visible = *visible),

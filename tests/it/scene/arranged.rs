@@ -40,7 +40,7 @@ fn a_boolean_follows_its_operands_by_request_is_replayed_and_applied() {
     assert_eq!(volume(&run), 4.0);
     run.ask("scene.transform", json!({ "id": b, "transform": { "shift": [11.5, 0.0, 0.0] } }));
     until("less is cut off", || volume(&run) == 6.0);
-    // A stroke on an operand: the mask of all of it, and back to where it was.
+    // One step: the move and what followed from it.
     run.ask("undo", json!({}));
     until("both are taken back", || volume(&run) == 4.0);
     run.ask("redo", json!({}));
