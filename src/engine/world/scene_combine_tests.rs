@@ -245,8 +245,16 @@ impl Places {
         self.all.len()
     }
 
-    /// Goes to one of them.
+    /// Goes to one of them, once nothing is under way any more.
     pub(super) fn jump(&mut self, world: &mut World, to: usize) {
+        tell(world, Command::LiftAll);
+        for _ in 0..1000 {
+            if world.is_at_rest() {
+                break;
+            }
+            let tick = world.tick() + 1;
+            world.step(tick, &[], &[]);
+        }
         self.look(world);
         let place = &self.all[to];
         let (mut objects, mut clays) = (Vec::new(), Vec::new());

@@ -306,7 +306,6 @@ fn random_run_with_jumps(workers: usize, rounds: usize) -> Vec<u64> {
     for round in 0..rounds {
         match dice.roll(12) {
             0 => {
-                tell(&mut world, Command::LiftAll);
                 let to = dice.roll(places.len());
                 places.jump(&mut world, to);
                 assert_eq!((state(&world), world.hash()), known[to], "round {round}");
