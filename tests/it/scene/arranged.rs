@@ -8,8 +8,8 @@ use sculptd_daemon::live_booleans;
 
 /// A box of a running loop; its id.
 fn add_box(run: &Running, size: f64, x: f64) -> u64 {
-    let place = json!({ "shift": [x, 0.0, 0.0] });
-    let asked = json!({ "primitive": { "box": [size; 3] }, "edge": 0.25, "transform": place });
+    let (sides, place) = ([size; 3], json!({ "shift": [x, 0.0, 0.0] }));
+    let asked = json!({ "primitive": { "box": sides }, "edge": 0.25, "transform": place });
     run.ask("scene.add", asked)["id"].as_u64().expect("an id")
 }
 
