@@ -24,7 +24,7 @@ ENVIRONMENT = dict(os.environ, XDG_RUNTIME_DIR=FOLDER, XDG_CONFIG_HOME=FOLDER,
 
 
 def ask(method, **params):
-    done = subprocess.run([PROGRAM, "ctl", method, json.dumps(params)], env=ENVIRONMENT,
+    done = subprocess.run([PROGRAM, "--json", "ctl", method, json.dumps(params)], env=ENVIRONMENT,
                           capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{method}: {done.stdout}{done.stderr}")
