@@ -1,8 +1,8 @@
 //! Results of Booleans that follow their operands, see [`LiveBoolean`]: a thread that looks at what
 //! is published and computes a result again where an operand is another than it was computed from.
 //!
-//! An operand under a stroke changes all the time: a result is computed once its clay has rested for
-//! a look. One that is only moved is followed while it moves, as fast as the Boolean goes. What
+//! An operand under a stroke changes all the time: a result is computed once its clay has rested
+//! for a look. One that is only moved is followed while it moves, as fast as the Boolean goes. What
 //! cannot be computed stays as it is until an operand changes again, and that is said.
 //!
 //! [`LiveBoolean`]: sculptd_engine::scene::LiveBoolean

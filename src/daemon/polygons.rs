@@ -7,9 +7,9 @@
 //! is written; whatever changes triangles gives a list that is not here. The list is compared as a
 //! whole before it is believed.
 //!
-//! After a change of triangles (a Boolean, triangles cut under a brush, remeshing a part), the faces
-//! whose triangles are all still there, corner by corner in their place, stay polygons; they are
-//! found by the places alone, so what was moved as well is triangles.
+//! After a change of triangles (a Boolean, triangles cut under a brush, remeshing a part), the
+//! faces whose triangles are all still there, corner by corner in their place, stay polygons; they
+//! are found by the places alone, so what was moved as well is triangles.
 //!
 //! A session keeps those of its objects, see `session::stored_polygons`, and gives them back where
 //! it is opened again.
@@ -154,8 +154,9 @@ impl PolygonStore {
     }
 
     /// An object's mesh with the faces, groups, texture coordinates and names of its file, where
-    /// its triangles are still those of the file; else its triangles. A coordinate that is where the file had it has the file's
-    /// double precision: rows of vertices that a stroke moves only upwards stay rows.
+    /// its triangles are still those of the file; else with the faces that are still there, or its
+    /// triangles. A coordinate that is where the file had it has the file's double precision: rows
+    /// of vertices that a stroke moves only upwards stay rows.
     pub fn polygons(&self, plain: &TriMesh) -> PolyMesh {
         let key = key(plain.positions.len(), &plain.triangles);
         let found = {
