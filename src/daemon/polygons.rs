@@ -189,7 +189,7 @@ impl PolygonStore {
         if files.is_empty() {
             return None;
         }
-        let places = Places::of(plain);
+        let places = TrianglesByPlace::of(plain);
         let found = files.iter().map(|f| (places.faces(f), f));
         let (faces, file) = found.max_by_key(|(faces, _)| faces.len())?;
         (!faces.is_empty()).then(|| places.mesh(plain, file, &faces))
@@ -200,7 +200,7 @@ impl PolygonStore {
 type FoundFace = (u32, std::ops::Range<usize>);
 
 /// The vertices and triangles of an object by their places.
-struct Places {
+struct TrianglesByPlace {
     /// The bits of each place that one vertex alone has, ascending, and the vertex.
     vertices: Vec<([u32; 3], u32)>,
     /// The corners of each triangle from the lowest on, ascending, and the triangle.
@@ -220,8 +220,8 @@ fn bits(p: glam::Vec3) -> [u32; 3] {
     p.to_array().map(|v| (v + 0.0).to_bits())
 }
 
-impl Places {
-    fn of(plain: &TriMesh) -> Places {
+impl TrianglesByPlace {
+    fn of(plain: &TriMesh) -> TrianglesByPlace {
         let numbered = plain.positions.iter().map(|p| bits(*p)).zip(0..);
         let mut vertices: Vec<([u32; 3], u32)> = numbered.collect();
         vertices.sort_unstable();
@@ -230,7 +230,7 @@ impl Places {
         let numbered = plain.triangles.iter().map(|t| from_lowest(*t)).zip(0..);
         let mut triangles: Vec<([u32; 3], u32)> = numbered.collect();
         triangles.sort_unstable();
-        Places { vertices, triangles }
+        TrianglesByPlace { vertices, triangles }
     }
 
     fn vertex(&self, p: glam::Vec3) -> Option<u32> {

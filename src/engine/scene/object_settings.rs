@@ -143,7 +143,7 @@ mod tests {
 
     /// The struct before there were extras.
     #[derive(Serialize, Deserialize)]
-    struct Before {
+    struct SettingsBefore {
         name: String,
         transform: ObjectTransform,
         visible: bool,
@@ -155,7 +155,7 @@ mod tests {
     fn settings_without_extras_have_the_bytes_that_they_had_and_with_some_come_back() {
         for locked in [false, true] {
             let plain = ObjectSettings { name: "pig".into(), locked, ..Default::default() };
-            let before = Before {
+            let before = SettingsBefore {
                 name: "pig".into(),
                 transform: plain.transform,
                 visible: true,

@@ -338,7 +338,7 @@ impl Timeline {
     }
 
     /// Names the newest step, as long as it is neither taken back nor followed by another.
-    pub(crate) fn newest(&self) -> Option<u64> {
+    pub(crate) fn newest_step(&self) -> Option<u64> {
         (self.future.is_empty() && !self.past.is_empty()).then_some(self.made)
     }
 

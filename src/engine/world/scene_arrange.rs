@@ -12,7 +12,7 @@ use sculptd_clay::face_sets::MOST_SETS;
 impl World {
     /// Whether an object is being dragged: nothing was done since, and nothing taken back.
     pub(super) fn is_dragged(&self) -> bool {
-        self.dragged.is_some_and(|d| self.timeline.newest() == Some(d.1))
+        self.dragged.is_some_and(|d| self.timeline.newest_step() == Some(d.1))
     }
 
     pub(super) fn is_dragged_object(&self, id: ObjectId) -> bool {

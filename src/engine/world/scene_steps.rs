@@ -99,10 +99,10 @@ impl World {
                 if !transform.is_sane() {
                     return Err(SceneError::Transform);
                 }
-                let (before, goes_on) = (self.timeline.newest(), self.is_dragged_object(*id));
+                let (before, goes_on) = (self.timeline.newest_step(), self.is_dragged_object(*id));
                 let done = self.put_at(*id, *transform, goes_on);
                 // Where nothing was moved yet there is no step to go on with.
-                let now = self.timeline.newest().filter(|now| goes_on || Some(*now) != before);
+                let now = self.timeline.newest_step().filter(|now| goes_on || Some(*now) != before);
                 self.dragged = now.map(|step| (*id, step));
                 done
             }
