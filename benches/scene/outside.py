@@ -146,8 +146,16 @@ def quads():
     result = file("out.obj")
     warnings = ask("export", path=result, objects={"object": ring})["warnings"]
 
+    def words(line):
+        """Numbers of texture coordinates by their values: 1 and 1.0 are one."""
+        head, *rest = line.split()
+        return (head, *(map(float, rest) if head == "vt" else rest))
+
     def kept(name):
-        return [line.strip() for line in open(name) if line[:2] in ("f ", "g ", "us", "vt", "mt")]
+        """The lines of each kind in their order, faces and what groups them together."""
+        lines = [words(line) for line in open(name) if line.strip()]
+        return [[w for w in lines if w[0] in kinds]
+                for kinds in (("mtllib",), ("vt",), ("f", "g", "usemtl"))]
 
     def places(name):
         return [line for line in open(name) if line.startswith("v ")]
