@@ -109,6 +109,8 @@
 //!   reads, parses, sends samples. Waits for: its device.
 //! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the
 //!   hands, sent back as commands. Waits for: a choice in the hands' menu.
+//! * `sculptd-follow`, made by `daemon::live_booleans`: computes results that follow their operands
+//!   again. Waits for: the published state, time.
 //! * `sculptd-global`, made by `geometry::boolean::global`: the slow exact route of a Boolean, so
 //!   that it can be given up. Waits for: its Boolean.
 //! * `sculptd-tail`, made by `daemon::session::writer`: copies input to memory that outlives the

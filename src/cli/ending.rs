@@ -27,7 +27,9 @@ pub fn export(path: Option<&Path>, world: &mut World) -> Result<Option<String>, 
     let (scene, active) = (world.scene_view(), world.snapshot());
     let meshes = selected(&scene, &active, Selection::Visible);
     let meshes = meshes.map_err(|e| Fail::Input(format!("{}: {e}", path.display())))?;
-    write_scene(path, &meshes).map_err(Fail::from)?;
+    for lost in write_scene(path, &meshes).map_err(Fail::from)? {
+        eprintln!("sculptd: warning: {}: {lost}", path.display());
+    }
     Ok(Some(path.display().to_string()))
 }
 

@@ -133,6 +133,9 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     if let Some(loss) = &opened.loss {
         eprintln!("sculptd: warning: {}: {loss}", args.session.display());
     }
+    if let Err(e) = session::stored_polygons::restore(&args.session) {
+        eprintln!("sculptd: warning: {}: its polygons: {e}", args.session.display());
+    }
     let workers =
         Workers::new(LoopConfig { workers: args.workers, ..LoopConfig::default() }.worker_count());
     let near = args.from_checkpoint.then(|| {

@@ -274,6 +274,9 @@ pub struct ExportReply {
     pub tick: u64,
     /// Vertices that were written.
     pub vertices: u64,
+    /// What of the objects the format does not hold, one sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }
 
 /// Reply of `hash`.

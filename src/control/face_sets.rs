@@ -18,7 +18,7 @@ pub struct FaceSetsReply {
 }
 
 /// A face set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FaceSetInfo {
     /// Its number.
@@ -27,6 +27,23 @@ pub struct FaceSetInfo {
     pub vertices: u64,
     /// How many of them are hidden.
     pub hidden: u64,
+    /// Its name; `null`: it has none.
+    #[serde(default)]
+    pub name: Option<String>,
+}
+
+/// Parameters of `sets.rename`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FaceSetNameParams {
+    /// Its number.
+    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = 32767)))]
+    pub set: u16,
+    /// Its name from now on; without it it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    pub name: Option<String>,
 }
 
 /// What a face set is made from.

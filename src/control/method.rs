@@ -21,8 +21,8 @@ use crate::edit::{
 };
 use crate::event::SubscribeReply;
 use crate::face_sets::{
-    FaceSetExtractParams, FaceSetMakeParams, FaceSetParams, FaceSetRegionParams, FaceSetReply,
-    FaceSetShowParams, FaceSetsReply,
+    FaceSetExtractParams, FaceSetMakeParams, FaceSetNameParams, FaceSetParams, FaceSetRegionParams,
+    FaceSetReply, FaceSetShowParams, FaceSetsReply,
 };
 use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
@@ -33,8 +33,9 @@ use crate::retopology::{
     RemeshQuadsReply,
 };
 use crate::scene::{
-    AddParams, CombineReply, ExportParams, LockParams, MergeParams, ObjectParams, ObjectReply,
-    RenameParams, ReshapeParams, SceneBooleanParams, SceneReply, ShowParams, TransformParams,
+    AddParams, CombineReply, ExportParams, GroupParams, LockParams, MergeParams, MirrorParams,
+    MoveParams, ObjectParams, ObjectReply, RenameParams, ReshapeParams, SceneBooleanParams,
+    SceneReply, ShowParams, TransformParams,
 };
 use crate::snap::{SnapParams, SnapReply};
 use crate::status::{
@@ -270,6 +271,14 @@ methods! {
     "scene.snap" SceneSnap scene_snap(SnapParams) -> SnapReply;
     /// A Boolean of two objects, where they stand. The result is a new object.
     "scene.boolean" SceneBoolean scene_boolean(SceneBooleanParams) -> CombineReply;
+    /// Ends that the result of a Boolean follows its operands: they go, and it stays as it is.
+    "scene.apply" SceneApply scene_apply(ObjectParams) -> ObjectReply;
+    /// Adds a mirrored twin of an object, in a plane through the origin of the world.
+    "scene.mirror" SceneMirror scene_mirror(MirrorParams) -> CombineReply;
+    /// Puts an object at another place of the list.
+    "scene.move" SceneMove scene_move(MoveParams) -> ObjectReply;
+    /// Lists objects in a group, or in none.
+    "scene.group" SceneGroup scene_group(GroupParams) -> ObjectReply;
     /// Makes several objects one, whose parts may overlap.
     "scene.merge" SceneMerge scene_merge(MergeParams) -> CombineReply;
     /// Makes each connected part of an object an object of its own.
@@ -296,6 +305,8 @@ methods! {
     "layers.clear" LayersClear layers_clear(LayerParams) -> LayerReply;
     /// Makes the surface as it is the base, without layers.
     "layers.bake" LayersBake layers_bake(NoParams) -> LayerReply;
+    /// Gives a face set a name, or takes it away.
+    "sets.rename" SetsRename sets_rename(FaceSetNameParams) -> FaceSetReply;
     /// The face sets of the active object, and how much of it is hidden.
     "sets.list" SetsList sets_list(NoParams) -> FaceSetsReply;
     /// Makes face sets from the mask, from what is shown, or by the shape: one step of undo.

@@ -141,6 +141,55 @@ pub struct LockParams {
     pub locked: bool,
 }
 
+/// Parameters of `scene.move`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MoveParams {
+    /// The object.
+    pub id: u32,
+    /// Its new place in the list, 0 the first; beyond the last it is the last.
+    pub to: u32,
+}
+
+/// Parameters of `scene.group`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GroupParams {
+    /// The objects, one or more.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 4096)))]
+    pub ids: Vec<u32>,
+    /// The name of their group; without it they are in none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    pub name: Option<String>,
+}
+
+/// An axis of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum WorldAxis {
+    /// To the right.
+    X,
+    /// Up.
+    Y,
+    /// Towards the eye at first.
+    Z,
+}
+
+/// Parameters of `scene.mirror`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MirrorParams {
+    /// The object.
+    pub id: u32,
+    /// The axis whose sign is turned: the mirror stands in the origin of the world, across it.
+    pub axis: WorldAxis,
+}
+
 /// Parameters of `scene.reshape`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -170,6 +219,13 @@ pub struct SceneBooleanParams {
     /// The operands stay, hidden; else the result takes their place.
     #[serde(default)]
     pub keep: bool,
+    /// So they do, and the result follows them: where one of them is moved or changed, it is
+    /// computed again, until it is changed itself or `scene.apply` is asked.
+    #[serde(default)]
+    pub live: bool,
+    /// All four results become objects, the named one first; those that are empty are left out.
+    #[serde(default)]
+    pub all: bool,
     /// Faces in which the two only touch belong to an intersection too, both sides of them.
     #[serde(default)]
     pub keep_contact: bool,
@@ -255,6 +311,24 @@ pub struct ObjectInfo {
     pub triangles: u64,
     /// The lower and the upper corner of its box in the world.
     pub bounds: [[f32; 3]; 2],
+    /// The name of its group; `null`: it is in none.
+    #[serde(default)]
+    pub group: Option<String>,
+    /// The Boolean whose result it is, as long as it follows its operands.
+    #[serde(default)]
+    pub follows: Option<FollowedBoolean>,
+}
+
+/// A Boolean whose result follows its operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FollowedBoolean {
+    /// What is made of the two.
+    pub operation: Operation,
+    /// The first operand.
+    pub a: u32,
+    /// The second operand.
+    pub b: u32,
 }
 
 /// Parameters of `export`.

@@ -3,7 +3,6 @@
 
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
-use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{ObjectId, ObjectView, SceneCommand, SceneError};
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
@@ -70,8 +69,8 @@ pub fn join(
     let operation = operation(choice).ok_or(CombineError::Nothing)?;
     let other = partner(shown, held).ok_or(SceneError::Last)?;
     let done = scene_jobs::boolean(shown, [other, held], SceneBoolean::new(operation), job)?;
-    let command = Command::Scene(SceneCommand::Exchange(done.exchange));
-    Ok(QueuedCommand::with_payload(command, Payload::Clays(done.clays)))
+    let (command, payload) = done.command();
+    Ok(QueuedCommand::with_payload(Command::Scene(command), payload))
 }
 
 #[cfg(test)]

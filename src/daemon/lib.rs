@@ -24,6 +24,7 @@ pub mod hand_jobs;
 pub mod http;
 pub mod kiosk;
 pub mod live;
+pub mod live_booleans;
 pub mod live_run;
 pub mod mask_jobs;
 #[cfg(unix)]

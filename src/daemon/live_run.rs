@@ -16,6 +16,7 @@ use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::settings::LanguageTexts;
 use crate::kiosk::{KioskConfig, keeper};
 use crate::live::{Live, LiveError};
+use crate::live_booleans;
 use crate::session::Health;
 use crate::session::history::Handle;
 use crate::session::writer::WriterThread;
@@ -170,10 +171,20 @@ impl LiveRun {
             .with_models(models.of(adaptors.clone()));
         let drain = (config.channel.drain_per_tick, Some(actions));
         let (rate, shared) = (config.r#loop, options.shared.take());
+        let followed = shared.is_none();
         let live =
             Live::start_shared(begun.world, receiver, clock.clone(), rate, drain, journal, shared)?;
         if let Some(history) = &history {
             history.connect(live.commands.clone());
+        }
+        if followed {
+            // In a shared sculpture each daemon would compute the same.
+            let (commands, published) = (live.commands.clone(), live.published.clone());
+            let started = live_booleans::start(commands, published, stop.clone());
+            started.map_err(|source| LiveRunError::Service {
+                what: "sculptd-follow".into(),
+                source,
+            })?;
         }
         let mut notices = Vec::new();
         if let Some(folder) = options.brushes.take() {

@@ -4,17 +4,20 @@
 
 use std::sync::Arc;
 
+use glam::DQuat;
+
 use sculptd_clay::layers::{Layer, LayerOffsets, MAX_INTENSITY, MAX_LAYERS};
 use sculptd_clay::{Clay, FlatLayers, LayerEdit, Snapshot};
+use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
-    Exchange, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform, ObjectView, Operand,
-    SceneError, SceneEvent, SceneView, clean_name,
+    Exchange, LiveBoolean, MAX_NAME, NewObject, ObjectId, ObjectSource, ObjectTransform,
+    ObjectView, Operand, Recomputed, SceneCommand, SceneError, SceneEvent, SceneView, clean_name,
 };
 use sculptd_geometry::boolean::{self, BooleanOptions, Operation};
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::io::{MorphTarget, MorphedMesh, SceneMesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::{PolyMesh, TriMesh};
+use sculptd_geometry::{PolyMesh, TriMesh, repair};
 
 use crate::polygons;
 use crate::published::Published;
@@ -43,6 +46,19 @@ pub enum CombineError {
 pub struct Combined {
     pub exchange: Exchange,
     pub clays: Vec<Clay>,
+    /// The new object follows its operands from now on.
+    pub live: Option<LiveBoolean>,
+}
+
+impl Combined {
+    /// What is asked of the scene, and the clays that it needs.
+    pub fn command(self) -> (SceneCommand, Payload) {
+        let command = match self.live {
+            Some(live) => SceneCommand::ExchangeLive(Box::new((self.exchange, live))),
+            None => SceneCommand::Exchange(self.exchange),
+        };
+        (command, Payload::Clays(self.clays))
+    }
 }
 
 /// Which objects go into a file.
@@ -121,9 +137,12 @@ fn operand(
     if object.settings.locked {
         return Err(SceneError::Locked(id).into());
     }
+    Ok((object, clay, as_operand(object, clay)))
+}
+
+fn as_operand(object: &ObjectView, clay: &Snapshot) -> Operand {
     let transform = object.settings.transform;
-    let of = Operand { id, clay: clay.object_id(), revision: clay.revision(), transform };
-    Ok((object, clay, of))
+    Operand { id: object.id, clay: clay.object_id(), revision: clay.revision(), transform }
 }
 
 /// The mesh of an object in the frame of another.
@@ -140,6 +159,13 @@ fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
     Clay::build(plain, job).map_err(|e| CombineError::Build(e.to_string()))
 }
 
+const ALL_FOUR: [Operation; 4] = [
+    Operation::Union,
+    Operation::Intersection,
+    Operation::Difference,
+    Operation::ReverseDifference,
+];
+
 /// A Boolean of two objects, as it is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBoolean {
@@ -147,6 +173,10 @@ pub struct SceneBoolean {
     pub operation: Operation,
     /// The operands stay, hidden.
     pub keep: bool,
+    /// So they do, and the result follows them.
+    pub live: bool,
+    /// All four results, from one arrangement, the asked one first. They follow nothing.
+    pub all: bool,
     /// Faces in which the two only touch belong to an intersection too.
     pub keep_contact: bool,
     /// Length in the world within which places are one; `None`: what the vertices resolve.
@@ -156,7 +186,14 @@ pub struct SceneBoolean {
 impl SceneBoolean {
     /// The result takes the place of the operands.
     pub fn new(operation: Operation) -> Self {
-        SceneBoolean { operation, keep: false, keep_contact: false, tolerance: None }
+        SceneBoolean {
+            operation,
+            keep: false,
+            live: false,
+            all: false,
+            keep_contact: false,
+            tolerance: None,
+        }
     }
 }
 
@@ -175,21 +212,31 @@ fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
     found.max(resolved)
 }
 
-/// A Boolean of two objects where they stand. The result stands where the first does.
-///
-/// # Errors
-/// [`CombineError`]
-pub fn boolean(
-    shown: &Published,
-    ids: [ObjectId; 2],
+/// What a Boolean of two objects gives, in the frame of the first.
+struct Computed {
+    /// Those that are not empty, each with its operation; at least one.
+    results: Vec<(Operation, TriMesh, Clay)>,
+    names: [String; 2],
+    transform: ObjectTransform,
+    operands: [Operand; 2],
+}
+
+/// What a result is called where all four are made.
+fn result_name(operation: Operation, [a, b]: &[String; 2]) -> String {
+    let name = match operation {
+        Operation::Union => format!("{a} + {b}"),
+        Operation::Intersection => format!("{a} & {b}"),
+        Operation::Difference => format!("{a} - {b}"),
+        Operation::ReverseDifference => format!("{b} - {a}"),
+    };
+    name.chars().take(MAX_NAME).collect()
+}
+
+fn compute(
+    [(a, a_clay), (b, b_clay)]: [(&ObjectView, &Snapshot); 2],
     asked: SceneBoolean,
     job: &Job,
-) -> Result<Combined, CombineError> {
-    if ids[0] == ids[1] {
-        return Err(CombineError::Same);
-    }
-    let (a, a_clay, a_of) = operand(shown, ids[0])?;
-    let (b, b_clay, b_of) = operand(shown, ids[1])?;
+) -> Result<Computed, CombineError> {
     let frame = a.settings.transform;
     let first = seen_from(a_clay, &frame, &frame);
     let second = seen_from(b_clay, &b.settings.transform, &frame);
@@ -203,21 +250,145 @@ pub fn boolean(
         keep_contact: asked.keep_contact,
         ..BooleanOptions::default()
     };
-    let operations = [asked.operation];
+    let mut operations = vec![asked.operation];
+    if asked.all {
+        operations.extend(ALL_FOUR.into_iter().filter(|o| *o != asked.operation));
+    }
     let (solids, _) = boolean::compute([&first, &second], &operations, &options, job, || 0.0)?;
-    let solid = solids.into_iter().next().ok_or(CombineError::Nothing)?;
-    if solid.mesh.face_count() == 0 {
+    let mut results = Vec::with_capacity(operations.len());
+    for operation in operations {
+        let solid = solids.iter().find(|s| s.operation == operation);
+        let Some(solid) = solid.filter(|s| s.mesh.face_count() > 0) else { continue };
+        let plain = solid.mesh.triangulate().0;
+        let clay = built(&plain, job)?;
+        results.push((operation, plain, clay));
+    }
+    if results.is_empty() {
         return Err(CombineError::Nothing);
     }
-    let plain = solid.mesh.triangulate().0;
-    let clay = built(&plain, job)?;
-    let source = ObjectSource::Mesh(Arc::new(plain));
-    let new = NewObject::new(&a.settings.name, source, frame);
-    let (remove, hide) =
-        if asked.keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
+    let operands = [as_operand(a, a_clay), as_operand(b, b_clay)];
+    let names = [a, b].map(|o| o.settings.name.clone());
+    Ok(Computed { results, names, transform: frame, operands })
+}
+
+/// A Boolean of two objects where they stand. The result stands where the first does.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn boolean(
+    shown: &Published,
+    ids: [ObjectId; 2],
+    asked: SceneBoolean,
+    job: &Job,
+) -> Result<Combined, CombineError> {
+    if ids[0] == ids[1] {
+        return Err(CombineError::Same);
+    }
+    let (a, a_clay, _) = operand(shown, ids[0])?;
+    let (b, b_clay, _) = operand(shown, ids[1])?;
+    let Computed { results, names, transform, operands } =
+        compute([(a, a_clay), (b, b_clay)], asked, job)?;
+    let (mut add, mut clays) = (Vec::new(), Vec::new());
+    for (operation, plain, clay) in results {
+        let name = if asked.all { result_name(operation, &names) } else { names[0].clone() };
+        add.push(NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform));
+        clays.push(clay);
+    }
+    let keep = asked.keep || asked.live;
+    let (remove, hide) = if keep { (Vec::new(), ids.to_vec()) } else { (ids.to_vec(), Vec::new()) };
     let event = SceneEvent::Boolean;
-    let exchange = Exchange { event, from: vec![a_of, b_of], remove, hide, add: vec![new] };
-    Ok(Combined { exchange, clays: vec![clay] })
+    let exchange = Exchange { event, from: operands.to_vec(), remove, hide, add };
+    let live = (asked.live && !asked.all).then_some(LiveBoolean {
+        operation: asked.operation,
+        operands,
+        keep_contact: asked.keep_contact,
+        tolerance: asked.tolerance,
+        result: 0,
+    });
+    Ok(Combined { exchange, clays, live })
+}
+
+/// Which results of live Booleans are no longer of what their operands are.
+pub fn stale(shown: &Published) -> Vec<(ObjectId, [Operand; 2])> {
+    let all = || shown.scene.each(&shown.mesh);
+    let now = |was: &Operand| {
+        let (object, clay) = all().find(|(o, _)| o.id == was.id)?;
+        Some(as_operand(object, clay))
+    };
+    let stale = |(object, clay): (&ObjectView, &Snapshot)| {
+        let live = object.live(clay)?;
+        let [a, b] = &live.operands;
+        let found = [now(a)?, now(b)?];
+        (found != live.operands).then_some((object.id, found))
+    };
+    all().filter_map(stale).collect()
+}
+
+/// The result of a live Boolean of what its operands are now.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn recompute(
+    shown: &Published,
+    id: ObjectId,
+    job: &Job,
+) -> Result<(Recomputed, Clay), CombineError> {
+    let find = |id: ObjectId| {
+        let found = shown.scene.each(&shown.mesh).find(|(o, _)| o.id == id);
+        found.ok_or(SceneError::NoObject(id))
+    };
+    let (object, clay) = find(id)?;
+    let live = object.live(clay).ok_or(SceneError::NotLive(id))?.clone();
+    let [a, b] = [find(live.operands[0].id)?, find(live.operands[1].id)?];
+    let asked = SceneBoolean {
+        operation: live.operation,
+        keep: true,
+        live: true,
+        all: false,
+        keep_contact: live.keep_contact,
+        tolerance: live.tolerance,
+    };
+    let mut made = compute([a, b], asked, job)?;
+    let (_, plain, clay) = made.results.pop().ok_or(CombineError::Nothing)?;
+    let source = ObjectSource::Mesh(Arc::new(plain));
+    let new = NewObject::new(&object.settings.name, source, made.transform);
+    let live = LiveBoolean { operands: made.operands, ..live };
+    Ok((Recomputed { id, live, new }, clay))
+}
+
+/// An object mirrored in a plane through the origin of the world, 0 of x, 1 of y, 2 of z: a new
+/// object behind the others. Each coordinate keeps its digits, and the faces of a file theirs.
+///
+/// # Errors
+/// [`CombineError`]
+pub fn mirror(
+    shown: &Published,
+    id: ObjectId,
+    axis: usize,
+    job: &Job,
+) -> Result<Combined, CombineError> {
+    let (object, clay, of) = operand(shown, id)?;
+    let mut mesh = polygons::polygons(&clay.to_tri());
+    mesh.positions.iter_mut().for_each(|p| p[axis] = -p[axis]);
+    repair::flip(&mut mesh);
+    let plain = mesh.triangulate().0;
+    polygons::remember(mesh, &plain);
+    let clay = built(&plain, job)?;
+    // Mirrored in the world and in its own frame again, it is turned and not mirrored.
+    let ObjectTransform { mut shift, turn, scale } = object.settings.transform;
+    shift[axis] = -shift[axis];
+    let [x, y, z, w] = turn.to_array();
+    let mut vector = [-x, -y, -z];
+    vector[axis] = -vector[axis];
+    let turn = DQuat::from_array([vector[0], vector[1], vector[2], w]);
+    let transform = ObjectTransform { shift, turn, scale };
+    let name: String =
+        format!("{} mirrored", object.settings.name).chars().take(MAX_NAME).collect();
+    let new = NewObject::new(&name, ObjectSource::Mesh(Arc::new(plain)), transform);
+    let event = SceneEvent::Mirror;
+    let exchange =
+        Exchange { event, from: vec![of], remove: Vec::new(), hide: Vec::new(), add: vec![new] };
+    Ok(Combined { exchange, clays: vec![clay], live: None })
 }
 
 /// Several objects as one, in the frame of the first.
@@ -260,7 +431,7 @@ pub fn merge(shown: &Published, ids: &[ObjectId], job: &Job) -> Result<Combined,
     let new = NewObject::new(&first.settings.name, ObjectSource::Mesh(Arc::new(plain)), frame);
     let event = SceneEvent::Merge;
     let exchange = Exchange { event, from, remove, hide: Vec::new(), add: vec![new] };
-    Ok(Combined { exchange, clays: vec![clay] })
+    Ok(Combined { exchange, clays: vec![clay], live: None })
 }
 
 /// Each connected part of an object as an object of its own, the largest first.
@@ -283,7 +454,7 @@ pub fn split(shown: &Published, id: ObjectId, job: &Job) -> Result<Combined, Com
     }
     let event = SceneEvent::Split;
     let exchange = Exchange { event, from: vec![of], remove: vec![id], hide: Vec::new(), add };
-    Ok(Combined { exchange, clays })
+    Ok(Combined { exchange, clays, live: None })
 }
 
 /// The connected parts of a mesh, by shared vertices: the one of most triangles first, ties in the

@@ -183,6 +183,7 @@ pub fn begin_with(
             }
         }
         let opened = opened?;
+        restore_polygons(&path, &mut warnings);
         let count = config.r#loop.worker_count();
         let (mut replayed, purge, node) = match session::reopen(&path, &opened, None, count, job) {
             Some(r) => (r.replayed, r.checkpoint, Some(r.node)),
@@ -289,6 +290,17 @@ fn add_others(
     if let Some(journal) = journal {
         journal.tick(tick, &[], &commands, world);
     }
+}
+
+/// The polygons of the session's objects are there for what is written of them.
+fn restore_polygons(path: &Path, warnings: &mut Vec<String>) {
+    let why = match session::stored_polygons::restore(path) {
+        Ok(0) => return,
+        Ok(n) => format!("{n} are damaged"),
+        Err(e) => e.to_string(),
+    };
+    let path = path.display();
+    warnings.push(format!("{path}: polygons of its files cannot be read, triangles stay: {why}"));
 }
 
 /// The session goes on without its history where that cannot be written; that is said.

@@ -16,6 +16,7 @@ mod layers;
 mod local_camera;
 mod people;
 mod saved;
+mod scene_arrange;
 mod scene_steps;
 mod state;
 mod stroke_context;
@@ -143,6 +144,8 @@ pub struct World {
     late_result: Option<SceneResult>,
     /// Clays put in place so far: each has a number of its own.
     lineages: u32,
+    /// The object that is dragged, and the step that the drag is.
+    dragged: Option<(ObjectId, u64)>,
     /// What was done in this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
     /// The settings of those who share the world; nobody in a world of one person.
@@ -201,6 +204,7 @@ impl World {
             scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
             late_result: None,
             lineages: 0,
+            dragged: None,
             moments: None,
             people: People::default(),
         };
@@ -547,6 +551,8 @@ mod layer_tests;
 mod local_remesh_tests;
 #[cfg(test)]
 mod people_tests;
+#[cfg(test)]
+mod scene_combine_tests;
 #[cfg(test)]
 mod scene_tests;
 #[cfg(test)]

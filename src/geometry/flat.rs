@@ -2,8 +2,12 @@
 //! clay of a sculpture is paged (crate `sculptd-clay`); these are the forms in which it is loaded
 //! and saved.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+
+use super::face_attributes::{FaceAttributes, GroupName};
 
 /// A polygon mesh in double precision. Corners run counter-clockwise seen from outside.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,6 +23,8 @@ pub struct PolyMesh {
     pub colours: Option<Vec<[u8; 4]>>,
     /// One group (OBJ `g`/`usemtl`, 3MF object) a face, where the file has them.
     pub groups: Option<Vec<u32>>,
+    /// Texture coordinates and the names of groups, where the file has them.
+    pub attributes: Option<Arc<FaceAttributes>>,
 }
 
 impl PolyMesh {
@@ -49,6 +55,47 @@ impl PolyMesh {
         }
         self.corners.extend_from_slice(corners);
         self.face_starts.push(self.corners.len() as u32);
+    }
+}
+
+/// What the file says of faces and corners besides.
+impl PolyMesh {
+    /// The texture coordinates and, for each corner, which of them it has.
+    pub fn uvs(&self) -> Option<(&[[f64; 2]], &[u32])> {
+        let all = self.attributes.as_deref()?;
+        let fits = !all.uv_corners.is_empty() && all.uv_corners.len() == self.corners.len();
+        fits.then_some((&all.uvs[..], &all.uv_corners[..]))
+    }
+
+    /// What a group is called.
+    pub fn group_name(&self, group: u32) -> Option<&GroupName> {
+        self.attributes.as_deref()?.groups.get(group as usize)
+    }
+
+    /// Whether any group names a material.
+    pub fn has_materials(&self) -> bool {
+        let groups = self.attributes.as_deref().map_or(&[][..], |a| &a.groups);
+        groups.iter().any(|g| !g.material.is_empty())
+    }
+
+    /// Lets the texture coordinates go: the corners are others now. The names stay.
+    pub fn drop_uvs(&mut self) {
+        if self.attributes.as_ref().is_some_and(|a| !a.uv_corners.is_empty()) {
+            let own = self.attributes.get_or_insert_default();
+            let own = Arc::make_mut(own);
+            (own.uvs, own.uv_corners) = (Vec::new(), Vec::new());
+        }
+    }
+
+    /// Turns face `f` over, its texture coordinates with it.
+    pub fn turn_face(&mut self, f: usize) {
+        let range = self.face_starts[f] as usize..self.face_starts[f + 1] as usize;
+        if self.uvs().is_some()
+            && let Some(own) = &mut self.attributes
+        {
+            Arc::make_mut(own).uv_corners[range.clone()].reverse();
+        }
+        self.corners[range].reverse();
     }
 }
 

@@ -47,6 +47,7 @@ pub mod decimate;
 pub mod disjoint_sets;
 pub mod distance;
 pub mod edges;
+pub mod face_attributes;
 mod fans;
 pub mod flat;
 pub mod flat_region;
@@ -78,4 +79,5 @@ pub mod written;
 
 pub use aabb::Aabb;
 pub use centred::CentredMesh;
+pub use face_attributes::{FaceAttributes, GroupName};
 pub use flat::{PolyMesh, TriMesh};

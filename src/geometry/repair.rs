@@ -2,6 +2,7 @@
 //! function works in place and returns how much it changed; none moves a vertex.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -10,14 +11,14 @@ use super::boolean::box_tree::Span;
 use super::boolean::classify::crossings;
 use super::disjoint_sets::DisjointSets;
 use super::edges::EdgeTable;
+use super::face_attributes::NO_UV;
 use super::job::Job;
 use super::{self_intersection, triangulate};
 
 /// Turns every face over.
 pub fn flip(mesh: &mut PolyMesh) {
     for f in 0..mesh.face_count() {
-        let (a, b) = (mesh.face_starts[f] as usize, mesh.face_starts[f + 1] as usize);
-        mesh.corners[a..b].reverse();
+        mesh.turn_face(f);
     }
 }
 
@@ -40,6 +41,9 @@ fn rebuild(mesh: &mut PolyMesh, mut make: impl FnMut(&[u32], &mut Vec<u32>)) -> 
         }
     }
     mesh.face_starts = starts;
+    if corners.len() != mesh.corners.len() {
+        mesh.drop_uvs();
+    }
     mesh.corners = corners;
     mesh.groups = groups;
     before - mesh.face_count()
@@ -245,8 +249,7 @@ pub fn orient_shells(mesh: &mut PolyMesh) -> OrientedShells {
     }
     let mut out = turn_out(mesh, &shell, shells as usize, &open, &mut turned);
     for (f, _) in turned.iter().enumerate().filter(|(_, t)| **t) {
-        let (a, b) = (mesh.face_starts[f] as usize, mesh.face_starts[f + 1] as usize);
-        mesh.corners[a..b].reverse();
+        mesh.turn_face(f);
         out.turned += 1;
     }
     out
@@ -425,6 +428,11 @@ pub fn fill_holes(mesh: &mut PolyMesh, longest: usize) -> Filled {
             groups.resize(groups.len() + triangles.len(), *id);
             *id += 1;
         }
+    }
+    if filled.faces > 0
+        && let Some(own) = mesh.attributes.as_mut().filter(|a| !a.uv_corners.is_empty())
+    {
+        Arc::make_mut(own).uv_corners.resize(mesh.corners.len(), NO_UV);
     }
     filled
 }

@@ -232,6 +232,7 @@ pub fn loop_(mesh: &PolyMesh, levels: u32, job: &Job) -> Result<PolyMesh, Cancel
         groups: mesh.groups.as_ref().map(|g| of.iter().map(|&f| g[f as usize]).collect()),
         positions: mesh.positions.clone(),
         colours: mesh.colours.clone(),
+        attributes: None,
     };
     for _ in 0..levels {
         job.check()?;

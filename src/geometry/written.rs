@@ -9,11 +9,13 @@
 
 use std::borrow::Cow;
 use std::cell::Cell;
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::PolyMesh;
 use crate::boolean::box_tree::{Span, SpanTree};
+use crate::face_attributes::{FaceAttributes, NO_UV};
 use crate::job::{Cancelled, Job};
 use crate::self_intersection;
 
@@ -136,13 +138,27 @@ pub fn for_file<'a>(
 /// A mesh with all its faces in triangles, colours and groups with them.
 pub fn triangulated(mesh: &PolyMesh) -> PolyMesh {
     let (triangles, of) = mesh.triangles();
-    PolyMesh {
+    let mut out = PolyMesh {
         positions: mesh.positions.clone(),
         face_starts: (0..=of.len() as u32).map(|t| t * 3).collect(),
         corners: triangles.into_iter().flatten().collect(),
         colours: mesh.colours.clone(),
         groups: mesh.groups.as_ref().map(|g| of.iter().map(|&f| g[f as usize]).collect()),
+        attributes: mesh.attributes.clone(),
+    };
+    // By vertex of a face, which is one corner of it, unless the face meets a vertex twice.
+    if let Some((uvs, old)) = mesh.uvs() {
+        let uv = |(t, &v): (usize, &u32)| {
+            let f = of[t / 3] as usize;
+            let own = mesh.face(f).iter().position(|&c| c == v);
+            own.map_or(NO_UV, |k| old[mesh.face_starts[f] as usize + k])
+        };
+        let uv_corners = out.corners.iter().enumerate().map(uv).collect();
+        let rest = mesh.attributes.as_deref().cloned().unwrap_or_default();
+        let uvs = uvs.to_vec();
+        out.attributes = Some(Arc::new(FaceAttributes { uvs, uv_corners, ..rest }));
     }
+    out
 }
 
 /// Triangles that change one by one.
@@ -505,6 +521,8 @@ impl LocalMesh {
         }
         mesh.groups = old.groups.map(|g| names.iter().map(|&f| g[f as usize]).collect());
         mesh.colours = old.colours;
+        mesh.attributes = old.attributes;
+        mesh.drop_uvs();
         mesh.positions = self.positions;
         crate::repair::drop_unused(mesh);
     }

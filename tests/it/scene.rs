@@ -1,5 +1,6 @@
 //! The scene by the control protocol of a running loop: objects, Booleans, files, replay.
 
+mod arranged;
 mod face_sets;
 mod layers;
 mod local_remesh;
@@ -25,6 +26,7 @@ use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::measures;
 use sculptd_geometry::shapes;
+use sculptd_geometry::{FaceAttributes, GroupName, PolyMesh};
 
 /// A loop that runs, and its host.
 struct Running {
@@ -289,20 +291,98 @@ fn an_object_is_placed_flush_by_request_and_joined_without_a_gap() {
     assert_eq!(replayed.expect("replays").world.hash(), hash);
 }
 
+/// A ring of quads with texture coordinates that have a seam, groups and materials.
+fn unwrapped_ring() -> PolyMesh {
+    let (round, tube) = (48u32, 24u32);
+    let mut quads = shapes::torus(3.0, 1.0, round, tube);
+    quads.positions.iter_mut().for_each(|p| *p += glam::DVec3::splat(0.1));
+    // A row and a column more of texture coordinates than of vertices: the seams.
+    let at = |i: u32| [f64::from(i % (tube + 1)) / 24.0, f64::from(i / (tube + 1)) / 48.0];
+    let uvs: Vec<[f64; 2]> = (0..(round + 1) * (tube + 1)).map(at).collect();
+    let count = uvs.len() as u32;
+    let uv_corners = (0..quads.corners.len() as u32).map(|c| (c * 7 + c / 4) % count).collect();
+    let name = |object: &str, group: &str, material: &str| GroupName {
+        object: object.into(),
+        group: group.into(),
+        material: material.into(),
+    };
+    let groups = vec![
+        name("ring", "outer side", "brass"),
+        name("ring", "outer side", "gold leaf"),
+        name("ring", "inner", "gold leaf"),
+    ];
+    let group_of = (0..quads.face_count() as u32).map(|f| f / 400 % 3).collect();
+    quads.groups = Some(group_of);
+    let libraries = vec!["ring.mtl".into()];
+    quads.attributes = Some(Arc::new(FaceAttributes { uvs, uv_corners, groups, libraries }));
+    quads
+}
+
 #[test]
-fn a_quad_file_leaves_as_quads_after_strokes() {
+fn a_quad_file_leaves_as_it_came_after_strokes_and_after_the_session_is_reopened() {
     let dir = tempfile::tempdir().expect("a folder");
     let (file, session) = (dir.path().join("ring.obj"), dir.path().join("s.sculpt"));
-    let quads = shapes::torus(3.0, 1.0, 48, 24);
+    let quads = unwrapped_ring();
     write_mesh(&file, &quads).expect("written");
+    let text = |path: &Path| sculptd_geometry::io::read_regular(path, 1 << 30).expect("there");
     let run = Running::begin(std::slice::from_ref(&file), &session);
-    let revision = run.live.published.load().mesh.revision();
-    run.ask("mask", json!({ "action": "invert" }));
-    run.ask("mask", json!({ "action": "invert" }));
-    until("a change", || run.live.published.load().mesh.revision() > revision);
-    let path = dir.path().join("out.obj");
-    run.ask("export", json!({ "path": path }));
-    let read = read_mesh(&path, &Job::default()).expect("readable").mesh;
-    assert_eq!((read.corners, read.face_starts), (quads.corners, quads.face_starts));
+    let same = dir.path().join("same.obj");
+    assert_eq!(run.ask("export", json!({ "path": same }))["warnings"], json!([]));
+    assert!(text(&same) == text(&file), "nothing was done");
+    let before = run.live.published.load().mesh.to_tri();
+    let points = [[0.3, 0.45, 0.8, 0.0], [0.5, 0.5, 0.9, 200.0], [0.7, 0.55, 0.8, 400.0]];
+    run.ask("stroke", json!({ "points": points, "space": "view" }));
+    run.objects();
+    let after = run.live.published.load().mesh.to_tri();
+    assert_ne!(before.positions, after.positions);
+    // A file loaded while the session runs has its own.
+    let (second, lid) = (shapes::torus(2.0, 0.5, 30, 12), dir.path().join("lid.obj"));
+    write_mesh(&lid, &second).expect("written");
+    let lid = run.ask("scene.add", json!({ "path": lid }))["id"].clone();
+    let read = |path: &Path| read_mesh(path, &Job::default()).expect("readable").mesh;
+    let check = |run: &Running, name: &str| {
+        let path = dir.path().join(name);
+        run.ask("export", json!({ "path": path, "objects": { "object": 0 } }));
+        let now = read(&path);
+        assert_eq!((&now.corners, &now.face_starts), (&quads.corners, &quads.face_starts));
+        assert_eq!((&now.groups, &now.attributes), (&quads.groups, &quads.attributes));
+        let places = now.positions.iter().zip(&after.positions);
+        assert!(places.clone().all(|(a, b)| a.as_vec3() == *b), "{name}");
+        let exact = now.positions.iter().zip(&quads.positions).filter(|(a, b)| a == b).count();
+        assert!(exact > 600 && exact < now.positions.len(), "{exact}");
+        let path = dir.path().join(format!("lid-{name}"));
+        run.ask("export", json!({ "path": path, "objects": { "object": lid } }));
+        assert_eq!(read(&path), second);
+    };
+    check(&run, "strokes.obj");
+    // Both in one file: their names, their own groups, and every face of both.
+    let both = dir.path().join("both.obj");
+    run.ask("export", json!({ "path": both, "objects": "all" }));
+    let all = read(&both);
+    assert_eq!(all.face_count(), quads.face_count() + second.face_count());
+    let names = &all.attributes.as_ref().expect("names").groups;
+    let objects: Vec<&str> = names.iter().map(|g| g.object.as_str()).collect();
+    assert_eq!(objects, ["object", "object", "object", "lid"]);
+    assert_eq!((names[2].group.as_str(), names[2].material.as_str()), ("inner", "gold leaf"));
+    let (uvs, corners) = all.uvs().expect("texture coordinates");
+    let (own, theirs) = quads.uvs().expect("texture coordinates");
+    assert_eq!((uvs, &corners[..theirs.len()]), (own, theirs));
+    // What a format does not hold is said.
+    let stl = run.ask("export", json!({ "path": dir.path().join("all.stl") }))["warnings"].clone();
+    let said = stl.to_string();
+    for lost in ["groups", "materials", "texture", "polygons", "one mesh"] {
+        assert!(said.contains(lost), "{lost}: {said}");
+    }
     run.end();
+    let run = Running::begin(&[], &session);
+    check(&run, "reopened.obj");
+    run.end();
+    // Another process, which never saw the file.
+    for from in [&["--from-checkpoint"][..], &[]] {
+        let path = dir.path().join("replayed.obj");
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_sculptd"));
+        command.arg("replay").arg(&session).args(from).arg("--export").arg(&path);
+        assert!(command.output().expect("runs").status.success());
+        assert!(text(&path) == text(&both), "{from:?}");
+    }
 }

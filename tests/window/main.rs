@@ -12,6 +12,7 @@ mod fingers;
 mod first_minutes;
 mod idle;
 mod lost_screen;
+mod objects;
 mod presses;
 mod regions;
 mod sessions;

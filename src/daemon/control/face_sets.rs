@@ -12,8 +12,8 @@ use crate::face_set_jobs;
 use sculptd_clay::face_sets::{FaceSetPart, PartEdit, Partition, SetsEdit, partition};
 use sculptd_control::RpcError;
 use sculptd_control::face_sets::{
-    FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetParams, FaceSetRegionParams,
-    FaceSetReply, FaceSetSource, FaceSetsReply,
+    FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetNameParams, FaceSetParams,
+    FaceSetRegionParams, FaceSetReply, FaceSetSource, FaceSetsReply,
 };
 use sculptd_control::scene::ObjectReply;
 use sculptd_engine::payload::Payload;
@@ -28,7 +28,11 @@ const USUAL_DEGREES: f32 = 40.0;
 
 /// The face sets of the active object.
 pub(super) fn list(shown: &Published) -> FaceSetsReply {
-    let info = |(set, vertices, hidden)| FaceSetInfo { set, vertices, hidden };
+    let names = shown.scene.active().map(|o| &o.settings.set_names);
+    let info = |(set, vertices, hidden)| {
+        let name = names.and_then(|n| n.get(&set)).cloned();
+        FaceSetInfo { set, vertices, hidden, name }
+    };
     let sets: Vec<FaceSetInfo> = shown.mesh.face_sets().into_iter().map(info).collect();
     FaceSetsReply {
         object: shown.scene.active().map_or(0, |o| o.id.0),
@@ -98,6 +102,11 @@ pub(super) fn isolate(host: &Host, p: &FaceSetParams) -> SetsDone {
     let set = named(host, p)?;
     let masked = || RpcError::bad_params("expected one of `set` and `at`");
     edit(host, SetsEdit::Isolate(set.ok_or_else(masked)?))
+}
+
+pub(super) fn rename(host: &Host, p: FaceSetNameParams) -> SetsDone {
+    ask(host, SceneCommand::NameSet(p.set, p.name.unwrap_or_default()))?;
+    Ok(FaceSetReply { set: Some(p.set), made: 0 })
 }
 
 pub(super) fn extract(host: &Host, p: &FaceSetExtractParams) -> Result<ObjectReply, RpcError> {

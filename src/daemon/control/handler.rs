@@ -19,7 +19,7 @@ use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
 use super::{retopology, scene, snap};
-use crate::command_queue::QueuedCommand;
+
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
@@ -43,9 +43,8 @@ use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::{Handler, Request, RpcError};
 use sculptd_devices::Clock;
-use sculptd_engine::command::{Command, NewClay};
+use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
-use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
 use sculptd_engine::stroke::CurveAction;
 use sculptd_geometry::io::{read_mesh_within, read_regular};
@@ -59,6 +58,7 @@ const SENT: SentReply = SentReply { sent: true };
 
 /// What a method that is about one object answers.
 type ObjectDone = Result<asked_scene::ObjectReply, RpcError>;
+type CombineDone = Result<asked_scene::CombineReply, RpcError>;
 
 /// Answers one request by its name.
 ///
@@ -303,15 +303,7 @@ impl Handler for Host {
     }
 
     fn load(&self, params: asked::PathParams) -> Result<edit::LoadReply, RpcError> {
-        let loaded = load(&params.path)?;
-        let vertices = loaded.mesh.vertex_count() as u64;
-        let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
-        let built = Payload::Clay(Box::new(loaded.mesh));
-        self.send(QueuedCommand::with_payload(command, built))?;
-        if let Some(targets) = scene_jobs::layers_of(&loaded.targets) {
-            self.send(Command::Scene(SceneCommand::Layers(targets)))?;
-        }
-        Ok(edit::LoadReply { vertices, warnings: loaded.warnings })
+        scene::load(self, load(&params.path)?)
     }
 
     fn export(&self, params: asked_scene::ExportParams) -> Result<edit::ExportReply, RpcError> {
@@ -364,22 +356,33 @@ impl Handler for Host {
         snap::snap(self, &p)
     }
 
-    fn scene_boolean(
-        &self,
-        p: asked_scene::SceneBooleanParams,
-    ) -> Result<asked_scene::CombineReply, RpcError> {
+    fn scene_boolean(&self, p: asked_scene::SceneBooleanParams) -> CombineDone {
         snap::boolean(self, &p)
     }
 
-    fn scene_merge(
-        &self,
-        p: asked_scene::MergeParams,
-    ) -> Result<asked_scene::CombineReply, RpcError> {
+    fn scene_apply(&self, p: ObjectParams) -> ObjectDone {
+        scene::ask(self, SceneCommand::ApplyLive(ObjectId(p.id)))
+    }
+
+    fn scene_mirror(&self, p: asked_scene::MirrorParams) -> CombineDone {
+        scene::mirror(self, p)
+    }
+
+    fn scene_move(&self, p: asked_scene::MoveParams) -> ObjectDone {
+        scene::ask(self, SceneCommand::Move(ObjectId(p.id), p.to))
+    }
+
+    fn scene_group(&self, p: asked_scene::GroupParams) -> ObjectDone {
+        let ids = p.ids.into_iter().map(ObjectId).collect();
+        scene::ask(self, SceneCommand::Group(ids, p.name.unwrap_or_default()))
+    }
+
+    fn scene_merge(&self, p: asked_scene::MergeParams) -> CombineDone {
         let ids: Vec<ObjectId> = p.ids.iter().map(|id| ObjectId(*id)).collect();
         scene::combine(self, |shown, job| scene_jobs::merge(shown, &ids, job))
     }
 
-    fn scene_split(&self, p: ObjectParams) -> Result<asked_scene::CombineReply, RpcError> {
+    fn scene_split(&self, p: ObjectParams) -> CombineDone {
         scene::combine(self, |shown, job| scene_jobs::split(shown, ObjectId(p.id), job))
     }
 
@@ -425,6 +428,10 @@ impl Handler for Host {
 
     fn sets_list(&self, _: NoParams) -> Result<asked_sets::FaceSetsReply, RpcError> {
         Ok(face_sets::list(&self.published.load()))
+    }
+
+    fn sets_rename(&self, p: asked_sets::FaceSetNameParams) -> SetsDone {
+        face_sets::rename(self, p)
     }
 
     fn sets_make(&self, p: asked_sets::FaceSetMakeParams) -> SetsDone {

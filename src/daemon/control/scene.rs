@@ -1,5 +1,6 @@
 //! What the methods of the scene do.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel as cc;
@@ -12,17 +13,19 @@ use crate::scene_jobs::{self, Combined, Selection};
 use crate::startup;
 use sculptd_clay::Clay;
 use sculptd_control::RpcError;
-use sculptd_control::edit::ExportReply;
+use sculptd_control::edit::{ExportReply, LoadReply, Operation as AskedOperation};
 use sculptd_control::scene::{
-    AddParams, CombineReply, ExportObjects, ExportParams, ObjectInfo, ObjectReply, Placement,
-    PrimitiveShape as AskedShape, ReshapeParams, SceneReply, TransformParams,
+    AddParams, CombineReply, ExportObjects, ExportParams, FollowedBoolean, MirrorParams,
+    ObjectInfo, ObjectReply, Placement, PrimitiveShape as AskedShape, ReshapeParams, SceneReply,
+    TransformParams, WorldAxis,
 };
 use sculptd_devices::Clock;
-use sculptd_engine::command::Command;
+use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
     NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape, SceneCommand,
 };
+use sculptd_geometry::boolean;
 use sculptd_geometry::io::write_scene;
 use sculptd_geometry::job::Job;
 
@@ -72,6 +75,15 @@ fn told_shape(shape: PrimitiveShape) -> AskedShape {
     }
 }
 
+fn told_operation(operation: boolean::Operation) -> AskedOperation {
+    match operation {
+        boolean::Operation::Union => AskedOperation::Union,
+        boolean::Operation::Intersection => AskedOperation::Intersection,
+        boolean::Operation::Difference => AskedOperation::Difference,
+        boolean::Operation::ReverseDifference => AskedOperation::ReverseDifference,
+    }
+}
+
 /// Every object.
 pub(super) fn list(shown: &Published) -> SceneReply {
     let scene = &shown.scene;
@@ -93,6 +105,12 @@ pub(super) fn list(shown: &Published) -> SceneReply {
             vertices: clay.vertex_count() as u64,
             triangles: clay.triangle_count() as u64,
             bounds: [lo.to_array(), hi.to_array()],
+            group: Some(o.settings.group.clone()).filter(|g| !g.is_empty()),
+            follows: o.live(clay).map(|live| FollowedBoolean {
+                operation: told_operation(live.operation),
+                a: live.operands[0].id.0,
+                b: live.operands[1].id.0,
+            }),
         }
     };
     let objects = scene.each(&shown.mesh).enumerate().map(info).collect();
@@ -223,11 +241,32 @@ pub(super) fn combine(
     let layers_baked = operands().map(layers).sum();
     let sets_dropped = operands().map(|clay| clay.face_set_count()).sum();
     let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
-    let payload = Some(Payload::Clays(done.clays));
-    let command = SceneCommand::Exchange(done.exchange);
+    let (command, payload) = done.command();
+    let payload = Some(payload);
     let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
     Ok(CombineReply { id, objects, vertices, seconds, layers_baked, sets_dropped })
+}
+
+/// A mesh in the place of the active object, with its morph targets as layers.
+pub(super) fn load(host: &Host, loaded: startup::Loaded) -> Result<LoadReply, RpcError> {
+    let vertices = loaded.mesh.vertex_count() as u64;
+    let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
+    let built = Payload::Clay(Box::new(loaded.mesh));
+    host.send(QueuedCommand::with_payload(command, built))?;
+    if let Some(targets) = scene_jobs::layers_of(&loaded.targets) {
+        host.send(Command::Scene(SceneCommand::Layers(targets)))?;
+    }
+    Ok(LoadReply { vertices, warnings: loaded.warnings })
+}
+
+pub(super) fn mirror(host: &Host, params: MirrorParams) -> Result<CombineReply, RpcError> {
+    let axis = match params.axis {
+        WorldAxis::X => 0,
+        WorldAxis::Y => 1,
+        WorldAxis::Z => 2,
+    };
+    combine(host, |shown, job| scene_jobs::mirror(shown, ObjectId(params.id), axis, job))
 }
 
 pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {
@@ -239,7 +278,7 @@ pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, R
         Some(ExportObjects::Object(id)) => Selection::One(ObjectId(id)),
     };
     let meshes = scene_jobs::selected(&shown.scene, &shown.mesh, which).map_err(failed)?;
-    write_scene(&params.path, &meshes).map_err(failed)?;
+    let warnings = write_scene(&params.path, &meshes).map_err(failed)?;
     let vertices = meshes.iter().map(|m| m.mesh.positions.len() as u64).sum();
-    Ok(ExportReply { path: params.path, tick: shown.tick, vertices })
+    Ok(ExportReply { path: params.path, tick: shown.tick, vertices, warnings })
 }

@@ -33,6 +33,8 @@ pub(super) fn boolean(host: &Host, p: &SceneBooleanParams) -> Result<CombineRepl
     let ids = [ObjectId(p.a), ObjectId(p.b)];
     let asked = SceneBoolean {
         keep: p.keep,
+        live: p.live,
+        all: p.all,
         keep_contact: p.keep_contact,
         tolerance: p.tolerance,
         ..SceneBoolean::new(operation(p.operation))

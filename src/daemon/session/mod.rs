@@ -25,6 +25,7 @@ mod reopen;
 pub mod replay;
 pub mod salvage;
 pub mod shared_memory_log;
+pub mod stored_polygons;
 mod syncer;
 pub mod writer;
 

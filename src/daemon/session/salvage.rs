@@ -24,6 +24,7 @@ use super::history::{Node, Store, StoreError};
 use super::reader::{Loss, OpenError, Opened, indices_hold, open, salts_are_foreign};
 use super::reopen::from_checkpoint;
 use super::shared_memory_log::{self, LogEntry};
+use super::stored_polygons;
 use sculptd_clay::Clay;
 use sculptd_engine::old_layout::from_bytes;
 use sculptd_geometry::TriMesh;
@@ -99,6 +100,8 @@ struct Readable {
     last: Option<u64>,
     /// A session that was no longer replayed from its start.
     replay_from: Option<ReplayFrom>,
+    /// Entries of [`stored_polygons`] whose checksums hold.
+    polygons: Vec<(String, Vec<u8>)>,
     layout: u32,
 }
 
@@ -141,6 +144,10 @@ pub fn salvage(path: &Path) -> Result<Saved, SalvageError> {
     let draft = SessionDraft::begin(path, &readable.start, &readable.settings)?;
     let db = draft.db().ok_or_else(|| SalvageError::NoName { path: path.display().to_string() })?;
     copy_history(&mut image, db).map_err(create)?;
+    for entry in &readable.polygons {
+        let put = "INSERT OR REPLACE INTO meta (key, value) VALUES (?1, ?2)";
+        db.execute(put, (&entry.0, &entry.1)).map_err(create)?;
+    }
     let kept = choose(&draft, db, &readable).map_err(create)?;
     let Some(kept) = kept else {
         let path = path.display().to_string();
@@ -210,6 +217,12 @@ fn read(
         .into_iter()
         .flatten()
         .find_map(|v| postcard::from_bytes(v).ok());
+    let polygons = carved.meta.range(stored_polygons::PREFIX.to_string()..);
+    let polygons = polygons.take_while(|(key, _)| key.starts_with(stored_polygons::PREFIX));
+    let whole = |v: &&Vec<u8>| stored_polygons::from_entry(v).is_some();
+    let polygons: Vec<(String, Vec<u8>)> = polygons
+        .filter_map(|(key, all)| Some((key.clone(), all.iter().find(whole)?.clone())))
+        .collect();
     let mut last = acknowledged;
     let runs = if layout == v3::LAYOUT {
         last = last.max(carved.old_groups.values().map(|g| g.1).max());
@@ -231,7 +244,7 @@ fn read(
         }
         runs(&carved.rows.into_values().collect::<Vec<_>>(), identity, &logs)
     };
-    Ok(Readable { start, settings, start_changed, runs, last, replay_from, layout })
+    Ok(Readable { start, settings, start_changed, runs, last, replay_from, polygons, layout })
 }
 
 /// Rows that hang together, by number and chain; each run lengthened by what follows on it in

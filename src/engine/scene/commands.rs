@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ObjectId, ObjectTransform, Primitive};
+use super::{LiveBoolean, ObjectId, ObjectTransform, Operand, Primitive};
 use crate::local_remesh::LocalRemesh;
 use crate::payload::PayloadId;
 use crate::view_region::SetsRegion;
@@ -54,6 +54,33 @@ pub enum SceneCommand {
     /// Triangles of the active object get another size: where it was stretched, or what is seen in
     /// a region of the view.
     RemeshLocal(LocalRemesh),
+    /// As [`SceneCommand::Transform`], while the object is dragged: together with those before and
+    /// after it, it is one step.
+    Drag(ObjectId, ObjectTransform),
+    /// An object gets another place in the list, 0 the first; beyond the last it is the last.
+    Move(ObjectId, u32),
+    /// Objects are listed in the group of this name; without one in none. One step.
+    Group(Vec<ObjectId>, String),
+    /// A face set of the active object gets a name; an empty one takes it away.
+    NameSet(u16, String),
+    /// As [`SceneCommand::Exchange`] of one new object, which follows its operands from now on.
+    ExchangeLive(Box<(Exchange, LiveBoolean)>),
+    /// The result of a live Boolean was computed again. It belongs to the step before it.
+    Recomputed(Box<Recomputed>),
+    /// The result of a live Boolean stays as it is, and the operands go. One step.
+    ApplyLive(ObjectId),
+}
+
+/// The result of a live Boolean, computed again. Nothing is done where the result no longer follows
+/// its operands.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Recomputed {
+    /// The result.
+    pub id: ObjectId,
+    /// The Boolean, with the operands that it was computed from.
+    pub live: LiveBoolean,
+    /// What it is now. Its name and its transform are not looked at.
+    pub new: NewObject,
 }
 
 impl SceneCommand {
@@ -62,6 +89,8 @@ impl SceneCommand {
         match self {
             SceneCommand::Add(new) | SceneCommand::Reshape(_, new) => std::slice::from_mut(new),
             SceneCommand::Exchange(exchange) => &mut exchange.add,
+            SceneCommand::ExchangeLive(exchange) => &mut exchange.0.add,
+            SceneCommand::Recomputed(again) => std::slice::from_mut(&mut again.new),
             _ => &mut [],
         }
     }
@@ -79,6 +108,10 @@ impl SceneCommand {
                 | SceneCommand::SetsRegion(_)
                 | SceneCommand::MaskMeasured(_)
                 | SceneCommand::RemeshLocal(_)
+                | SceneCommand::Group(..)
+                | SceneCommand::NameSet(..)
+                | SceneCommand::ExchangeLive(_)
+                | SceneCommand::Recomputed(_)
         ) || matches!(self, SceneCommand::Sets(edit) if edit.owns_memory())
     }
 }
@@ -112,19 +145,6 @@ impl NewObject {
     pub fn new(name: &str, source: ObjectSource, transform: ObjectTransform) -> NewObject {
         NewObject { name: name.into(), source, transform, built: None }
     }
-}
-
-/// An object as it was when something was computed from it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Operand {
-    /// The object.
-    pub id: ObjectId,
-    /// The number of its clay, [`sculptd_clay::Clay::object_id`].
-    pub clay: u32,
-    /// The revision of its clay.
-    pub revision: u64,
-    /// Where it stood.
-    pub transform: ObjectTransform,
 }
 
 /// Objects that take the place of others, in one step.
@@ -193,6 +213,16 @@ pub enum SceneEvent {
     Mask,
     /// Triangles of an object got another size.
     Remesh,
+    /// An object got another place in the list, or another group.
+    Arrange,
+    /// A face set got a name.
+    NameSet,
+    /// The result of a live Boolean was computed again.
+    Follow,
+    /// A live Boolean was applied.
+    Apply,
+    /// A mirrored twin of an object was added.
+    Mirror,
 }
 
 /// Why a command to the scene was not carried out. Nothing was changed.
@@ -252,6 +282,12 @@ pub enum SceneError {
     /// Something that is kept by vertex would have to be given up.
     #[error("the object has layers, which are kept by vertex: flatten them first")]
     KeptByVertex,
+    /// An object that is no result of a live Boolean, or no longer.
+    #[error("object {0} does not follow any operands: it was changed, or applied")]
+    NotLive(ObjectId),
+    /// A number that no face set has.
+    #[error("expected the number of a face set, 1 to 32767")]
+    SetNumber,
     /// An undo took back what was under way.
     #[error("taken back by an undo before it was done")]
     TakenBack,

@@ -13,6 +13,8 @@
 
 mod commands;
 mod object;
+mod object_settings;
+mod operand;
 mod primitive;
 mod snap;
 mod timeline;
@@ -22,10 +24,12 @@ mod view;
 use std::sync::Arc;
 
 pub use commands::{
-    Exchange, FlushPlacing, MAX_OBJECTS, NewObject, ObjectSource, Operand, SceneCommand,
+    Exchange, FlushPlacing, MAX_OBJECTS, NewObject, ObjectSource, Recomputed, SceneCommand,
     SceneError, SceneEvent,
 };
-pub use object::{MAX_NAME, Object, ObjectId, ObjectSettings, clean_name};
+pub use object::{MAX_NAME, Object, clean_name};
+pub use object_settings::ObjectSettings;
+pub use operand::{LiveBoolean, ObjectId, Operand};
 pub use primitive::{BadPrimitive, Primitive, PrimitiveShape};
 pub use snap::{FaceAlignment, FlatFace, flush};
 pub(crate) use timeline::{Presence, ReplacedClay, SceneStep, Timeline};
@@ -136,6 +140,17 @@ impl Scene {
         self.active = (self.active - usize::from(index < self.active)).min(self.objects.len() - 1);
         self.stale = true;
         Some(object)
+    }
+
+    /// Puts an object at another place of the list; which one is active stays. The place that it
+    /// had; `None`: there is no such one.
+    pub(crate) fn move_to(&mut self, id: ObjectId, place: usize) -> Option<usize> {
+        let from = self.index_of(id)?;
+        let active = self.active().id;
+        let object = self.objects.remove(from);
+        self.objects.insert(place.min(self.objects.len()), object);
+        self.activate(active);
+        Some(from)
     }
 
     /// Makes an object active. False: there is no such one.

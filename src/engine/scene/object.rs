@@ -1,54 +1,11 @@
 //! One object of the scene.
 
+use super::{LiveBoolean, ObjectId, ObjectSettings};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
-
-use super::{ObjectTransform, Primitive};
 use sculptd_clay::Clay;
-
-/// Names an object of a scene, for as long as the session lasts: no two objects ever have the same,
-/// and one that comes back by undo has the one that it had.
-#[derive(
-    Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-)]
-pub struct ObjectId(pub u32);
-
-impl std::fmt::Display for ObjectId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0.fmt(f)
-    }
-}
 
 /// Characters of a name, at most.
 pub const MAX_NAME: usize = 128;
-
-/// Everything of an object but its clay.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ObjectSettings {
-    /// For people; several objects may have the same. At most [`MAX_NAME`] characters.
-    pub name: String,
-    /// Where it stands.
-    pub transform: ObjectTransform,
-    /// Whether it is drawn, and written where the visible objects are.
-    pub visible: bool,
-    /// Strokes, Booleans, transforms and removal are refused.
-    pub locked: bool,
-    /// The numbers that it was made of, which can be changed as long as nothing has changed its
-    /// clay.
-    pub primitive: Option<Primitive>,
-}
-
-impl Default for ObjectSettings {
-    fn default() -> Self {
-        ObjectSettings {
-            name: "object".into(),
-            transform: ObjectTransform::NONE,
-            visible: true,
-            locked: false,
-            primitive: None,
-        }
-    }
-}
 
 /// A name without control characters and blanks at its ends, of 1 to [`MAX_NAME`] characters.
 pub fn clean_name(name: &str) -> Option<String> {
@@ -97,6 +54,13 @@ impl Object {
     /// visible and not of an intensity near 0.
     pub fn takes_strokes(&self) -> bool {
         self.is_editable() && self.clay.takes_strokes()
+    }
+
+    /// The Boolean whose result it is, where it still follows its operands: nothing has changed its
+    /// clay since it was computed.
+    pub fn live(&self) -> Option<&LiveBoolean> {
+        let computed = |l: &&LiveBoolean| l.result == self.clay.object_id();
+        self.settings.live.as_deref().filter(computed).filter(|_| self.clay.revision() == 0)
     }
 
     /// Centre of its bounding box when it was put in place, in the world.

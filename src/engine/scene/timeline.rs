@@ -32,6 +32,8 @@ pub(crate) enum SceneStep {
     Present(Box<Presence>),
     /// Another object was made active: the one that is not.
     Active(ObjectId),
+    /// An object was put at another place of the list: the place that it does not have.
+    Moved(ObjectId, usize),
     /// Several in one, in order.
     Group(Vec<SceneStep>),
 }
@@ -78,7 +80,10 @@ impl SceneStep {
             SceneStep::Replaced(_, other) => visit(&mut other.clay),
             SceneStep::Present(p) => p.object.iter_mut().for_each(|o| visit(&mut o.clay)),
             SceneStep::Group(all) => all.iter_mut().for_each(|s| s.each_clay(visit)),
-            SceneStep::Clay(_) | SceneStep::Set(..) | SceneStep::Active(_) => {}
+            SceneStep::Clay(_)
+            | SceneStep::Set(..)
+            | SceneStep::Active(_)
+            | SceneStep::Moved(..) => {}
         }
     }
 
@@ -124,6 +129,11 @@ impl SceneStep {
                 scene.activate(*other);
                 *other = active;
             }
+            SceneStep::Moved(id, place) => {
+                if let Some(from) = scene.move_to(*id, *place) {
+                    *place = from;
+                }
+            }
             SceneStep::Group(all) => match to {
                 Direction::Back => all.iter_mut().rev().for_each(|s| s.travel(scene, to)),
                 Direction::Forth => all.iter_mut().for_each(|s| s.travel(scene, to)),
@@ -141,7 +151,10 @@ impl SceneStep {
                 }
             }
             SceneStep::Group(all) => all.into_iter().for_each(|s| s.discard(garbage)),
-            SceneStep::Clay(_) | SceneStep::Set(..) | SceneStep::Active(_) => {}
+            SceneStep::Clay(_)
+            | SceneStep::Set(..)
+            | SceneStep::Active(_)
+            | SceneStep::Moved(..) => {}
         }
     }
 }
@@ -154,13 +167,15 @@ pub(crate) struct Timeline {
     /// Bytes that the steps of all clays but the active one hold, in the scene and in steps:
     /// strokes change those of the active one alone.
     other_bytes: u64,
+    /// How many steps were ever made.
+    made: u64,
 }
 
 impl Timeline {
     /// Nothing to take back; there is room for all that may be.
     pub(crate) fn new() -> Timeline {
         let past = VecDeque::with_capacity(STEPS + 1);
-        Timeline { past, future: Vec::new(), other_bytes: 0 }
+        Timeline { past, future: Vec::new(), other_bytes: 0, made: 0 }
     }
 
     /// Closes the active clay's open step; true if there is one more. Then what could be done again
@@ -191,6 +206,7 @@ impl Timeline {
         self.forget_future(scene, garbage);
         let stroke = matches!(step, SceneStep::Clay(_));
         self.past.push_back(step);
+        self.made += 1;
         if !stroke {
             self.recount(scene);
             self.bound_clays(scene, limit, garbage);
@@ -200,6 +216,28 @@ impl Timeline {
         while !self.past.is_empty() && (self.past.len() > STEPS || held(self, scene) > limit) {
             self.forget_oldest(scene, garbage);
         }
+    }
+
+    /// A change that follows from the newest step: both are taken back as one. What could be done
+    /// again still can. Without any step it is one of its own.
+    pub(crate) fn follow(
+        &mut self,
+        step: SceneStep,
+        scene: &mut Scene,
+        limit: u64,
+        garbage: &GarbageSink,
+    ) {
+        let newest = match self.past.pop_back() {
+            None => return self.push(step, scene, limit, garbage),
+            Some(SceneStep::Group(mut all)) => {
+                all.push(step);
+                SceneStep::Group(all)
+            }
+            Some(one) => SceneStep::Group(vec![one, step]),
+        };
+        self.past.push_back(newest);
+        self.recount(scene);
+        self.bound_clays(scene, limit, garbage);
     }
 
     fn recount(&mut self, scene: &Scene) {
@@ -297,6 +335,11 @@ impl Timeline {
         }
         scene.objects_mut().iter_mut().for_each(|o| o.clay.forget_steps());
         self.other_bytes = 0;
+    }
+
+    /// Names the newest step, as long as it is neither taken back nor followed by another.
+    pub(crate) fn newest_step(&self) -> Option<u64> {
+        (self.future.is_empty() && !self.past.is_empty()).then_some(self.made)
     }
 
     /// Steps that undo can take back.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{ObjectId, ObjectSettings};
+use super::{LiveBoolean, ObjectId, ObjectSettings};
 use sculptd_clay::Snapshot;
 
 /// One object as others see it.
@@ -19,6 +19,14 @@ pub struct ObjectView {
     /// Its clay; `None` of the active object, whose newest snapshot lies beside the view: a view
     /// holds as long as no object is added, removed or set, and strokes go on meanwhile.
     pub clay: Option<Snapshot>,
+}
+
+impl ObjectView {
+    /// As [`super::Object::live`], with the clay that [`SceneView::each`] gives.
+    pub fn live(&self, clay: &Snapshot) -> Option<&LiveBoolean> {
+        let computed = |l: &&LiveBoolean| l.result == clay.object_id();
+        self.settings.live.as_deref().filter(computed).filter(|_| clay.revision() == 0)
+    }
 }
 
 /// The list of objects, and which is active. Made anew only when one of them is added, removed, set
@@ -80,6 +88,14 @@ pub(crate) fn combined_hash<'a>(
         settings.transform.bits().into_iter().for_each(&mut eat);
         settings.name.bytes().for_each(|b| eat(u64::from(b)));
         eat(u64::from(settings.visible) | u64::from(settings.locked) << 1);
+        settings.group.bytes().for_each(|b| eat(u64::from(b)));
+        for (set, name) in &settings.set_names {
+            eat(u64::from(*set));
+            name.bytes().for_each(|b| eat(u64::from(b)));
+        }
+        if let Some(live) = &settings.live {
+            live.operands.iter().for_each(|o| eat(u64::from(o.id.0) << 32 | u64::from(o.clay)));
+        }
     }
     eat(active as u64);
     if plain { first } else { h }

@@ -6,8 +6,9 @@ use crate::command::{JumpObject, NewClay, OfClay, SceneJump};
 use crate::hand::ReachBox;
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{
-    Exchange, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource, Operand,
-    Presence, ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep, clean_name,
+    Exchange, LiveBoolean, MAX_OBJECTS, NewObject, Object, ObjectId, ObjectSettings, ObjectSource,
+    Operand, Presence, ReplacedClay, Scene, SceneCommand, SceneError, SceneEvent, SceneStep,
+    clean_name,
 };
 use sculptd_clay::Clay;
 
@@ -39,7 +40,11 @@ impl World {
         if result.is_ok() && !noted {
             self.scene.touch();
             self.stand(before);
-            self.note(HistoryEvent::Scene(event_of(command)));
+            // What is under way is noted where it ends.
+            let follows = matches!(command, SceneCommand::Recomputed(_)) && self.is_dragged();
+            if !follows && !matches!(command, SceneCommand::Drag(..)) {
+                self.note(HistoryEvent::Scene(event_of(command)));
+            }
         }
         self.scene_results.push(result);
     }
@@ -48,8 +53,12 @@ impl World {
         if let SceneCommand::Layers(edit) = command {
             return self.edit_layers(edit);
         }
-        // Every stroke ends first: it belongs to what is active now.
-        self.lift_all();
+        // Every stroke ends first: it belongs to what is active now. What is computed again is
+        // another object, and nobody asked for it now.
+        let active = self.scene.active().id;
+        if !matches!(command, SceneCommand::Recomputed(again) if again.id != active) {
+            self.lift_all();
+        }
         match command {
             SceneCommand::Add(new) => {
                 let mut clays = self.take_clays(new.built);
@@ -66,7 +75,7 @@ impl World {
                 let twin = self.scene.fresh_id();
                 let number = self.fresh_clay_number();
                 let of = self.scene.object(*id).ok_or(SceneError::NoObject(*id))?;
-                let settings = ObjectSettings { locked: false, ..of.settings.clone() };
+                let settings = ObjectSettings { locked: false, live: None, ..of.settings.clone() };
                 let (middle, extent) = (of.middle, of.extent);
                 let clay = of.clay.duplicate(number);
                 let clay = self.adopted(clay);
@@ -81,7 +90,21 @@ impl World {
                 if !transform.is_sane() {
                     return Err(SceneError::Transform);
                 }
-                self.set(*id, |settings| settings.transform = *transform)
+                let goes_on = self.is_dragged_object(*id);
+                self.dragged = None;
+                self.put_at(*id, *transform, goes_on)
+            }
+            SceneCommand::Drag(id, transform) => {
+                self.unlocked(*id)?;
+                if !transform.is_sane() {
+                    return Err(SceneError::Transform);
+                }
+                let (before, goes_on) = (self.timeline.newest_step(), self.is_dragged_object(*id));
+                let done = self.put_at(*id, *transform, goes_on);
+                // Where nothing was moved yet there is no step to go on with.
+                let now = self.timeline.newest_step().filter(|now| goes_on || Some(*now) != before);
+                self.dragged = now.map(|step| (*id, step));
+                done
             }
             SceneCommand::Show(id, visible) => self.set(*id, |s| s.visible = *visible),
             SceneCommand::Lock(id, locked) => self.set(*id, |s| s.locked = *locked),
@@ -95,7 +118,7 @@ impl World {
                 }
                 Ok(*id)
             }
-            SceneCommand::Exchange(exchange) => self.exchange(exchange),
+            SceneCommand::Exchange(exchange) => self.exchange(exchange, None),
             SceneCommand::Snap(placing) => {
                 self.as_it_was(&placing.moved)?;
                 self.as_it_was(&placing.target)?;
@@ -128,6 +151,19 @@ impl World {
                 ]));
                 Ok(*id)
             }
+            SceneCommand::Move(id, place) => {
+                let from = self.scene.move_to(*id, *place as usize);
+                let from = from.ok_or(SceneError::NoObject(*id))?;
+                if self.scene.index_of(*id) != Some(from) {
+                    self.push(SceneStep::Moved(*id, from));
+                }
+                Ok(*id)
+            }
+            SceneCommand::Group(ids, name) => self.group(ids, name),
+            SceneCommand::NameSet(set, name) => self.name_set(*set, name),
+            SceneCommand::ExchangeLive(asked) => self.exchange(&asked.0, Some(&asked.1)),
+            SceneCommand::Recomputed(again) => self.recomputed(again),
+            SceneCommand::ApplyLive(id) => self.apply_live(*id),
             SceneCommand::Sets(edit) => self.edit_sets(edit),
             SceneCommand::SetsRegion(asked) => self.edit_sets_seen(asked),
             SceneCommand::MaskMeasured(mask) => self.mask_measured(mask),
@@ -138,7 +174,7 @@ impl World {
     }
 
     /// An object of the scene that is not locked.
-    fn unlocked(&self, id: ObjectId) -> Result<&Object, SceneError> {
+    pub(super) fn unlocked(&self, id: ObjectId) -> Result<&Object, SceneError> {
         let object = self.scene.object(id).ok_or(SceneError::NoObject(id))?;
         if object.settings.locked { Err(SceneError::Locked(id)) } else { Ok(object) }
     }
@@ -148,7 +184,11 @@ impl World {
         if fits { Ok(()) } else { Err(SceneError::Full) }
     }
 
-    fn set(&mut self, id: ObjectId, change: impl FnOnce(&mut ObjectSettings)) -> SceneResult {
+    pub(super) fn set(
+        &mut self,
+        id: ObjectId,
+        change: impl FnOnce(&mut ObjectSettings),
+    ) -> SceneResult {
         let object = self.scene.object_mut(id).ok_or(SceneError::NoObject(id))?;
         let old = object.settings.clone();
         change(&mut object.settings);
@@ -163,7 +203,7 @@ impl World {
         self.push(SceneStep::Set(id, Box::new(before)));
     }
 
-    fn push(&mut self, step: SceneStep) {
+    pub(super) fn push(&mut self, step: SceneStep) {
         let World { timeline, scene, garbage, options, .. } = self;
         timeline.push(step, scene, options.undo_bytes, garbage);
     }
@@ -188,7 +228,7 @@ impl World {
         Ok(())
     }
 
-    fn cut_out(&mut self, id: ObjectId) -> Result<SceneStep, SceneError> {
+    pub(super) fn cut_out(&mut self, id: ObjectId) -> Result<SceneStep, SceneError> {
         let index = self.scene.index_of(id).ok_or(SceneError::NoObject(id))?;
         let other_active = self.scene.active().id;
         let object = Some(self.scene.take(id).ok_or(SceneError::Last)?);
@@ -196,7 +236,7 @@ impl World {
     }
 
     /// Refuses where an object has changed since something was computed from it.
-    fn as_it_was(&self, from: &Operand) -> Result<(), SceneError> {
+    pub(super) fn as_it_was(&self, from: &Operand) -> Result<(), SceneError> {
         let same = self.scene.object(from.id).is_some_and(|o| {
             (o.clay.object_id(), o.clay.revision()) == (from.clay, from.revision)
                 && o.settings.transform == from.transform
@@ -204,7 +244,8 @@ impl World {
         if same { Ok(()) } else { Err(SceneError::Changed(from.id)) }
     }
 
-    fn exchange(&mut self, exchange: &Exchange) -> SceneResult {
+    /// `live`: the first new object follows its operands from now on.
+    fn exchange(&mut self, exchange: &Exchange, live: Option<&LiveBoolean>) -> SceneResult {
         for from in &exchange.from {
             self.as_it_was(from)?;
         }
@@ -216,7 +257,11 @@ impl World {
         let mut clays = self.take_clays(first.built).into_iter();
         let made: Result<Vec<Object>, SceneError> =
             exchange.add.iter().map(|new| self.new_object(new, clays.next())).collect();
-        let made = made?;
+        let mut made = made?;
+        if let (Some(live), Some(first)) = (live, made.first_mut()) {
+            let result = first.clay.object_id();
+            first.settings.live = Some(Box::new(LiveBoolean { result, ..live.clone() }));
+        }
         let mut steps = Vec::with_capacity(made.len() + exchange.remove.len() + 2);
         let mut ids = Vec::with_capacity(made.len());
         for object in made {
@@ -242,7 +287,11 @@ impl World {
         Ok(ids[0])
     }
 
-    fn new_object(&mut self, new: &NewObject, built: Option<Clay>) -> Result<Object, SceneError> {
+    pub(super) fn new_object(
+        &mut self,
+        new: &NewObject,
+        built: Option<Clay>,
+    ) -> Result<Object, SceneError> {
         self.room(1)?;
         if !new.transform.is_sane() {
             return Err(SceneError::Transform);
@@ -285,7 +334,7 @@ impl World {
         clay
     }
 
-    fn take_clays(&mut self, built: Option<PayloadId>) -> Vec<Clay> {
+    pub(super) fn take_clays(&mut self, built: Option<PayloadId>) -> Vec<Clay> {
         match built.and_then(|id| self.payloads.take(id)) {
             Some(Payload::Clay(clay)) => vec![*clay],
             Some(Payload::Clays(clays)) => clays,
@@ -446,7 +495,7 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Remove(_) => SceneEvent::Remove,
         SceneCommand::Duplicate(_) => SceneEvent::Duplicate,
         SceneCommand::Rename(..) => SceneEvent::Rename,
-        SceneCommand::Transform(..) => SceneEvent::Transform,
+        SceneCommand::Transform(..) | SceneCommand::Drag(..) => SceneEvent::Transform,
         SceneCommand::Activate(_) => SceneEvent::Activate,
         SceneCommand::Show(..) => SceneEvent::Show,
         SceneCommand::Lock(..) => SceneEvent::Lock,
@@ -458,5 +507,10 @@ fn event_of(command: &SceneCommand) -> SceneEvent {
         SceneCommand::Sets(_) | SceneCommand::SetsRegion(_) => SceneEvent::Sets,
         SceneCommand::MaskMeasured(_) => SceneEvent::Mask,
         SceneCommand::RemeshLocal(_) => SceneEvent::Remesh,
+        SceneCommand::Move(..) | SceneCommand::Group(..) => SceneEvent::Arrange,
+        SceneCommand::NameSet(..) => SceneEvent::NameSet,
+        SceneCommand::ExchangeLive(asked) => asked.0.event,
+        SceneCommand::Recomputed(_) => SceneEvent::Follow,
+        SceneCommand::ApplyLive(_) => SceneEvent::Apply,
     }
 }

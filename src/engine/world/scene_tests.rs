@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3, Vec2, Vec3};
 
 use super::layer_tests::edit_at_random;
+use super::scene_combine_tests::{Places, arrange_at_random, boolean_at_random};
 use super::{World, WorldOptions};
 use crate::camera::Camera;
 use crate::command::{Command, NewClay, OfClay};
@@ -109,14 +110,14 @@ impl Dice {
         Vec2::new(self.share() as f32, self.share() as f32) * 0.6 + 0.2
     }
 
-    fn transform(&mut self) -> ObjectTransform {
+    pub(super) fn transform(&mut self) -> ObjectTransform {
         let v = |dice: &mut Self| DVec3::new(dice.share(), dice.share(), dice.share()) - 0.5;
         let axis = v(self).normalize_or(DVec3::Y);
         let turn = DQuat::from_axis_angle(axis, self.share() * 6.0);
         ObjectTransform { shift: v(self), turn, scale: 0.5 + self.share() }
     }
 
-    fn object(&mut self, world: &World) -> ObjectId {
+    pub(super) fn object(&mut self, world: &World) -> ObjectId {
         let all = world.scene().objects();
         all[self.roll(all.len())].id
     }
@@ -181,7 +182,7 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
 fn operate(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
     let full = world.scene().objects().len() > 8;
-    match dice.roll(40) {
+    match dice.roll(47) {
         0..=6 => {
             let (from, to) = (dice.view(), dice.view());
             stroke(world, from, to);
@@ -239,6 +240,10 @@ fn operate(world: &mut World, dice: &mut Dice) {
         }
         24..=31 => edit_at_random(world, dice),
         32..=39 => edit_sets_at_random(world, dice),
+        40..=42 => {
+            boolean_at_random(world, dice);
+        }
+        43.. => arrange_at_random(world, dice),
         _ => {
             let of = world.scene().object(id).expect("there");
             let from = Operand {
@@ -287,6 +292,72 @@ fn random_run(workers: usize, rounds: usize, undo_bytes: u64) -> Vec<u64> {
     }
     assert_eq!(state(&world), newest, "redo of everything");
     hashes
+}
+
+/// The same with jumps between the operations, each to a state before; the hash after each
+/// operation, and at the start, to which the last jump goes.
+fn random_run_with_jumps(workers: usize, rounds: usize) -> Vec<u64> {
+    let mut world = world(workers, u64::MAX);
+    let mut dice = Dice(7);
+    let start = (state(&world), world.hash());
+    let (mut places, mut known, mut hashes) = (Places::default(), Vec::new(), Vec::new());
+    places.keep(&world);
+    known.push(start.clone());
+    for round in 0..rounds {
+        match dice.roll(12) {
+            0 => {
+                let to = dice.roll(places.len());
+                places.jump(&mut world, to);
+                assert_eq!((state(&world), world.hash()), known[to], "round {round}");
+                assert_eq!(world.undo_steps(), 0, "the file takes back what lies before");
+            }
+            1 if world.is_at_rest() => {
+                places.keep(&world);
+                known.push((state(&world), world.hash()));
+            }
+            _ => operate(&mut world, &mut dice),
+        }
+        places.look(&world);
+        world.verify_invariants().unwrap_or_else(|e| panic!("round {round}: {e}"));
+        hashes.push(world.hash());
+    }
+    while world.undo_steps() > 0 {
+        tell(&mut world, Command::Undo);
+        world.verify_invariants().expect("sound on the way back");
+    }
+    places.jump(&mut world, 0);
+    assert_eq!((state(&world), world.hash()), start, "back to the start");
+    hashes
+}
+
+#[test]
+fn random_operations_with_jumps_give_the_same_bits_with_any_number_of_workers() {
+    let one = random_run_with_jumps(1, 400);
+    for workers in [2, 3, 7, 16] {
+        assert_eq!(random_run_with_jumps(workers, 400), one, "{workers} workers");
+    }
+}
+
+#[test]
+fn booleans_of_random_objects_are_taken_back_to_the_bit() {
+    let mut world = world(1, u64::MAX);
+    let mut dice = Dice(3);
+    let mut made = 0;
+    for _ in 0..40 {
+        let new = dice.shape();
+        ask(&mut world, SceneCommand::Add(new)).expect("room");
+        let before = (state(&world), world.hash());
+        if boolean_at_random(&mut world, &mut dice) {
+            made += 1;
+            let after = (state(&world), world.hash());
+            tell(&mut world, Command::Undo);
+            assert_eq!((state(&world), world.hash()), before);
+            tell(&mut world, Command::Redo);
+            assert_eq!((state(&world), world.hash()), after);
+        }
+        world.verify_invariants().expect("sound");
+    }
+    assert!(made > 10, "{made} of 40");
 }
 
 #[test]

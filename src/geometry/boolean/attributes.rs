@@ -1,11 +1,30 @@
 //! What faces carry besides their shape, from the operands to a result: colours by place within the
 //! face of origin, groups by face.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::BooleanSolid;
 use super::emit::FaceOrigin;
-use crate::{PolyMesh, triangulate};
+use crate::{FaceAttributes, GroupName, PolyMesh, triangulate};
+
+/// What the groups are called, B's counted on from A's; `None` where no operand names any.
+fn names(operands: [&PolyMesh; 2], first: u32) -> Option<Arc<FaceAttributes>> {
+    let own = operands.map(|m| m.attributes.as_deref().filter(|a| !a.groups.is_empty()));
+    if own.iter().all(|a| a.is_none()) {
+        return None;
+    }
+    let mut all = FaceAttributes::default();
+    for attributes in own.into_iter().enumerate() {
+        let (operand, Some(attributes)) = attributes else { continue };
+        all.groups.resize(if operand == 0 { 0 } else { first as usize }, GroupName::default());
+        all.groups.extend_from_slice(&attributes.groups);
+        all.libraries.extend_from_slice(&attributes.libraries);
+    }
+    all.libraries.dedup();
+    Some(Arc::new(all))
+}
 
 /// Gives a result its colours and groups where an operand has some. Vertices of an operand without
 /// colours are white; B's groups are counted on from A's, so that no two become one.
@@ -18,6 +37,7 @@ pub fn carry(mesh: &mut PolyMesh, origins: &[FaceOrigin], operands: [&PolyMesh; 
             if o.operand == 0 { own } else { first + own }
         };
         mesh.groups = Some(origins.iter().map(group).collect());
+        mesh.attributes = names(operands, first);
     }
     if operands.iter().any(|m| m.colours.is_some()) {
         let mut colours: Vec<Option<[u8; 4]>> = vec![None; mesh.positions.len()];

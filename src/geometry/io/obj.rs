@@ -1,20 +1,22 @@
 //! Wavefront OBJ. Own code, so that errors name their line, double precision and polygons are kept,
 //! and pieces of the file are read on all cores.
 //!
-//! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative
-//! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, lines,
-//! points and smoothing groups are passed over in silence; texture coordinates, free-form curves
-//! and surfaces with a warning.
+//! Read: `v` (with `w` ignored or colours after it), `vt`, `f` with any number of corners, negative
+//! indices, a backslash that continues a line, `g`, `usemtl`, `o` as groups with their names, and
+//! `mtllib`. Normals, lines, points and smoothing groups are passed over in silence; a third
+//! texture coordinate, free-form curves and surfaces with a warning.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::problem::{FilePlace, FileProblem, ParseError};
 use super::text::{TextCursor, float, integer, line_of, pieces, refuse, unexpected};
-use crate::PolyMesh;
+use crate::face_attributes::NO_UV;
 use crate::job::Job;
+use crate::{FaceAttributes, GroupName, PolyMesh};
 
 /// Large enough that a piece's start-up costs nothing, small enough that two cores end together.
 const PIECE: usize = 1 << 20;
@@ -26,11 +28,19 @@ struct ObjPiece {
     positions: Vec<DVec3>,
     colours: Vec<[u8; 4]>,
     corners: Vec<i64>,
+    /// Texture coordinates.
+    uvs: Vec<[f64; 2]>,
+    /// Of each corner its texture coordinate, counted as corners are, 0 for none; shorter than
+    /// `corners` where the last ones have none.
+    uv_corners: Vec<i64>,
     lengths: Vec<u32>,
     /// (face of this piece from which it holds, kind, name)
     names: Vec<(u32, u8, String)>,
+    libraries: Vec<String>,
     short_faces: u64,
-    texture: u64,
+    /// Texture coordinates with a third number other than 0, and those that are no numbers.
+    deep_uvs: u64,
+    bad_uvs: u64,
     free_form: u64,
 }
 
@@ -82,7 +92,8 @@ pub(super) fn parse(
     let coloured = parts.iter().any(|p| !p.colours.is_empty());
     let mut colours = Vec::new();
     let mut groups = ObjGroups::default();
-    let (mut short, mut free, mut texture) = (0, 0, 0);
+    let (mut short, mut free, mut deep, mut bad) = (0, 0, 0, 0);
+    let mut uvs = UvList::new(&parts);
     for (part, &(start, end)) in parts.iter().zip(&spans) {
         job.check()?;
         let base = mesh.positions.len() as i64;
@@ -92,6 +103,7 @@ pub(super) fn parse(
             colours.resize(mesh.positions.len(), [255; 4]);
         }
         groups.take(part, mesh.face_count());
+        uvs.take(part);
         let mut at = 0;
         for (f, &n) in part.lengths.iter().enumerate() {
             for &c in &part.corners[at..at + n as usize] {
@@ -114,16 +126,31 @@ pub(super) fn parse(
         }
         short += part.short_faces;
         free += part.free_form;
-        texture += part.texture;
+        deep += part.deep_uvs;
+        bad += part.bad_uvs;
     }
     groups.fill(mesh.face_count());
+    let attributes = FaceAttributes {
+        groups: groups.names(),
+        uvs: uvs.values,
+        uv_corners: uvs.corners,
+        libraries: parts.iter().flat_map(|p| p.libraries.iter().cloned()).collect(),
+    };
+    mesh.attributes = (!attributes.is_empty()).then(|| Arc::new(attributes));
     mesh.groups = groups.used.then_some(groups.of_face);
     mesh.colours = coloured.then_some(colours);
     if short > 0 {
         warnings.push(format!("{short} faces of fewer than three corners left out"));
     }
-    if texture > 0 {
-        warnings.push(format!("{texture} texture coordinates (vt) left out"));
+    if deep > 0 {
+        warnings.push(format!("the third number of {deep} texture coordinates (vt) left out"));
+    }
+    if bad > 0 {
+        warnings.push(format!("{bad} texture coordinates (vt) that are no numbers taken as 0"));
+    }
+    if uvs.missing > 0 {
+        let count = uvs.missing;
+        warnings.push(format!("{count} corners name a texture coordinate (vt) that is not there"));
     }
     if free > 0 {
         warnings.push(format!("{free} free-form curves or surfaces left out"));
@@ -228,22 +255,47 @@ fn piece(text: &[u8]) -> Result<ObjPiece, FileProblem> {
             b"v" => vertex(&mut cursor, &mut out, text, line)?,
             b"f" | b"fo" => face(&mut cursor, &mut out, text)?,
             b"g" | b"usemtl" | b"o" => {
-                let mut name = Vec::new();
-                while let Some(w) = words_on(&mut cursor) {
-                    name.extend_from_slice(w);
-                    name.push(b' ');
-                }
-                let name = String::from_utf8_lossy(&name).trim_end().to_string();
+                let name = rest_of_line(&mut cursor);
                 out.names.push((out.lengths.len() as u32, keyword[0], name));
                 continue;
             }
-            b"vt" => out.texture += 1,
+            b"vt" => texture(&mut cursor, &mut out),
+            b"mtllib" => {
+                let name = rest_of_line(&mut cursor);
+                out.libraries.extend((!name.is_empty()).then_some(name));
+                continue;
+            }
             b"curv" | b"curv2" | b"surf" => out.free_form += 1,
             _ => {}
         }
         skip_logical(&mut cursor);
     }
     Ok(out)
+}
+
+/// The words that are left on the line, a blank between each two.
+fn rest_of_line(cursor: &mut TextCursor) -> String {
+    let mut name = Vec::new();
+    while let Some(w) = words_on(cursor) {
+        name.extend_from_slice(w);
+        name.push(b' ');
+    }
+    String::from_utf8_lossy(&name).trim_end().to_string()
+}
+
+/// A texture coordinate. It moves nothing, so what is wrong with one is counted and told.
+fn texture(cursor: &mut TextCursor, out: &mut ObjPiece) {
+    let mut values = [0f64; 3];
+    let mut good = true;
+    for value in &mut values {
+        let Some(word) = words_on(cursor) else { break };
+        let number = float(word).filter(|v| v.is_finite());
+        good &= number.is_some();
+        *value = number.unwrap_or(0.0);
+    }
+    out.bad_uvs += u64::from(!good);
+    out.deep_uvs += u64::from(values[2] != 0.0);
+    out.uvs.push([values[0], values[1]]);
 }
 
 #[inline]
@@ -309,7 +361,10 @@ fn face(cursor: &mut TextCursor, out: &mut ObjPiece, text: &[u8]) -> Result<(), 
         let at = cursor.at;
         let Some(word) = words_on(cursor) else { break };
         let digits = match memchr::memchr(b'/', word) {
-            Some(n) => &word[..n],
+            Some(n) => {
+                uv_of_corner(&word[n + 1..], out);
+                &word[..n]
+            }
             None => word,
         };
         match integer(digits) {
@@ -321,11 +376,64 @@ fn face(cursor: &mut TextCursor, out: &mut ObjPiece, text: &[u8]) -> Result<(), 
     let n = out.corners.len() - first;
     if n < 3 {
         out.corners.truncate(first);
+        out.uv_corners.truncate(first);
         out.short_faces += 1;
     } else {
         out.lengths.push(n as u32);
     }
     Ok(())
+}
+
+/// The texture coordinate of the corner that is read now, from what follows its first slash.
+#[inline]
+fn uv_of_corner(word: &[u8], out: &mut ObjPiece) {
+    let digits = &word[..memchr::memchr(b'/', word).unwrap_or(word.len())];
+    let index = match integer(digits) {
+        Some(i) if i > 0 => i,
+        Some(i) if i < 0 => RELATIVE + out.uvs.len() as i64 + i,
+        _ => return,
+    };
+    out.uv_corners.resize(out.corners.len(), 0);
+    out.uv_corners.push(index);
+}
+
+/// Texture coordinates of the whole file.
+struct UvList {
+    values: Vec<[f64; 2]>,
+    /// One a corner; empty where no corner has any.
+    corners: Vec<u32>,
+    /// Texture coordinates of the whole file.
+    count: i64,
+    used: bool,
+    missing: u64,
+}
+
+impl UvList {
+    fn new(parts: &[ObjPiece]) -> UvList {
+        let count = parts.iter().map(|p| p.uvs.len() as i64).sum();
+        let used = parts.iter().any(|p| !p.uv_corners.is_empty());
+        UvList { values: Vec::new(), corners: Vec::new(), count, used, missing: 0 }
+    }
+
+    fn take(&mut self, part: &ObjPiece) {
+        if !self.used {
+            return;
+        }
+        let base = self.values.len() as i64;
+        self.values.extend_from_slice(&part.uvs);
+        let first = self.corners.len();
+        for &c in &part.uv_corners {
+            let at = match c {
+                0 => -1,
+                c if c > 0 => c - 1,
+                c => base + (c - RELATIVE),
+            };
+            let there = (0..self.count.min(i64::from(NO_UV))).contains(&at);
+            self.missing += u64::from(c != 0 && !there);
+            self.corners.push(if there { at as u32 } else { NO_UV });
+        }
+        self.corners.resize(first + part.corners.len(), NO_UV);
+    }
 }
 
 /// Numbers groups in the order in which faces use them: one for each different set of object, group
@@ -340,6 +448,25 @@ struct ObjGroups {
 }
 
 impl ObjGroups {
+    /// What each group is called, by its number. Those that say the number alone are none.
+    fn names(&self) -> Vec<GroupName> {
+        let number = |(names, id): (&[String; 3], &u32)| {
+            names[0].is_empty() && names[1] == format!("group_{id}") && names[2].is_empty()
+        };
+        if self.known.iter().all(number) {
+            return Vec::new();
+        }
+        let mut all = vec![GroupName::default(); self.known.len()];
+        for ([object, group, material], id) in &self.known {
+            all[*id as usize] = GroupName {
+                object: object.clone(),
+                group: group.clone(),
+                material: material.clone(),
+            };
+        }
+        all
+    }
+
     fn take(&mut self, part: &ObjPiece, first_face: usize) {
         for (face, kind, name) in &part.names {
             self.used = true;

@@ -1,12 +1,14 @@
 //! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in
-//! single precision and no colours, OFF no groups, PLY no groups; [`left_out`] says which.
+//! single precision and no colours; OBJ alone holds groups, texture coordinates and the names of
+//! materials; [`left_out`] says which.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use super::write_packed::GltfMesh;
 use super::{WriteError, extension, write_beside, write_packed};
-use crate::PolyMesh;
+use crate::face_attributes::NO_UV;
+use crate::{GroupName, PolyMesh};
 
 /// The formats written, by the ending of a name.
 const ENDINGS: [&str; 7] = ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"];
@@ -55,6 +57,15 @@ pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     if mesh.groups.is_some() && kind != "obj" {
         out.push(format!("the groups of faces are left out: .{kind} is written without"));
     }
+    if mesh.has_materials() && kind != "obj" {
+        out.push(format!("the names of materials are left out: .{kind} is written without"));
+    }
+    if mesh.uvs().is_some() && kind != "obj" {
+        out.push(format!("the texture coordinates are left out: .{kind} is written without"));
+    }
+    if matches!(kind, "stl" | "glb" | "gltf" | "3mf") && mesh.faces().any(|f| f.len() > 3) {
+        out.push(format!("the polygons are cut: .{kind} holds triangles alone"));
+    }
     out
 }
 
@@ -64,6 +75,9 @@ fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         return out.write_all(b"# no vertices\n");
     }
     let mut line = Vec::with_capacity(128);
+    for library in mesh.attributes.iter().flat_map(|a| &a.libraries) {
+        writeln!(out, "mtllib {library}")?;
+    }
     for (v, p) in mesh.positions.iter().enumerate() {
         line.clear();
         write!(line, "v {} {} {}", p.x, p.y, p.z)?;
@@ -74,24 +88,58 @@ fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         line.push(b'\n');
         out.write_all(&line)?;
     }
-    let mut group = None;
+    let uvs = mesh.uvs();
+    for [u, v] in uvs.iter().flat_map(|(values, _)| *values) {
+        line.clear();
+        writeln!(line, "vt {u} {v}")?;
+        out.write_all(&line)?;
+    }
+    let (mut group, mut named) = (None, GroupName::default());
     for (f, corners) in mesh.faces().enumerate() {
         line.clear();
         let now = mesh.groups.as_ref().map(|g| g[f]);
         if now != group {
             group = now;
             if let Some(g) = group {
-                writeln!(line, "g group_{g}")?;
+                group_lines(&mut line, g, mesh.group_name(g), &mut named)?;
             }
         }
         line.push(b'f');
-        for &c in corners {
+        let first = mesh.face_starts[f] as usize;
+        for (k, &c) in corners.iter().enumerate() {
             line.push(b' ');
             whole(&mut line, c as u64 + 1);
+            if let Some(uv) = uvs.map(|(_, of)| of[first + k]).filter(|uv| *uv != NO_UV) {
+                line.push(b'/');
+                whole(&mut line, u64::from(uv) + 1);
+            }
         }
         line.push(b'\n');
         out.write_all(&line)?;
     }
+    Ok(())
+}
+
+/// What begins a group: the names that differ from those in force. A name that ends while others go
+/// on is the format's own word for none.
+fn group_lines(
+    line: &mut Vec<u8>,
+    number: u32,
+    name: Option<&GroupName>,
+    named: &mut GroupName,
+) -> io::Result<()> {
+    let Some(name) = name else { return writeln!(line, "g group_{number}") };
+    let pairs = [
+        ("o", &name.object, &named.object),
+        ("g", &name.group, &named.group),
+        ("usemtl", &name.material, &named.material),
+    ];
+    for (word, now, before) in pairs {
+        if now != before {
+            writeln!(line, "{word} {}", if now.is_empty() { "default" } else { now })?;
+        }
+    }
+    named.clone_from(name);
     Ok(())
 }
 

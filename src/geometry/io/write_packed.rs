@@ -2,7 +2,7 @@
 
 use std::io::{self, Cursor, Write};
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Value, json};
 use zip::write::SimpleFileOptions;
 
@@ -231,8 +231,67 @@ const RELATIONS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
+/// A mesh on its way to a 3MF file: a component of one object.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ThreeMfPart<'a> {
+    pub mesh: &'a PolyMesh,
+    pub name: &'a str,
+    /// Turn and scale.
+    pub rows: DMat3,
+    pub shift: DVec3,
+}
+
 /// One object, in millimetres, double precision.
 pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    threemf_model(out, |text| {
+        threemf_mesh(1, "", mesh, text)?;
+        writeln!(text, "</resources><build><item objectid=\"1\"/></build></model>")
+    })
+}
+
+/// One object whose components are the parts, each with its name and its transform.
+pub(super) fn threemf_parts(parts: &[ThreeMfPart<'_>], out: &mut dyn Write) -> io::Result<()> {
+    threemf_model(out, |text| {
+        for (i, part) in parts.iter().enumerate() {
+            let name = format!(" name=\"{}\"", xml(part.name));
+            threemf_mesh(i + 1, &name, part.mesh, text)?;
+        }
+        let all = parts.len() + 1;
+        writeln!(text, "<object id=\"{all}\" type=\"model\"><components>")?;
+        for (i, part) in parts.iter().enumerate() {
+            // Row vectors: the axes one after the other, then the shift.
+            let numbers = part.rows.to_cols_array().into_iter().chain(part.shift.to_array());
+            let numbers: Vec<String> = numbers.map(|n| n.to_string()).collect();
+            let at = numbers.join(" ");
+            writeln!(text, "<component objectid=\"{}\" transform=\"{at}\"/>", i + 1)?;
+        }
+        writeln!(
+            text,
+            "</components></object></resources><build><item objectid=\"{all}\"/></build></model>"
+        )
+    })
+}
+
+/// A text as the value of an attribute.
+fn xml(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// The package around a model whose resources and build `rest` writes.
+fn threemf_model(
+    out: &mut dyn Write,
+    rest: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     // No clock in it: the same mesh gives the same bytes.
     let options =
@@ -249,7 +308,15 @@ pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         "<model unit=\"millimeter\" xml:lang=\"en\" \
          xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
     )?;
-    writeln!(text, "<resources><object id=\"1\" type=\"model\"><mesh><vertices>")?;
+    writeln!(text, "<resources>")?;
+    rest(&mut text)?;
+    text.flush()?;
+    drop(text);
+    out.write_all(&zip.finish()?.into_inner())
+}
+
+fn threemf_mesh(id: usize, name: &str, mesh: &PolyMesh, text: &mut dyn Write) -> io::Result<()> {
+    writeln!(text, "<object id=\"{id}\" type=\"model\"{name}><mesh><vertices>")?;
     for p in &mesh.positions {
         writeln!(text, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z)?;
     }
@@ -257,11 +324,5 @@ pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     for [a, b, c] in mesh.triangles().0 {
         writeln!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>")?;
     }
-    writeln!(
-        text,
-        "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>"
-    )?;
-    text.flush()?;
-    drop(text);
-    out.write_all(&zip.finish()?.into_inner())
+    writeln!(text, "</triangles></mesh></object>")
 }

@@ -2,13 +2,15 @@
 
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
-use super::write::{encode, writable_format};
-use super::write_packed::{self, GltfMesh};
+use super::write::{encode, left_out, writable_format};
+use super::write_packed::{self, GltfMesh, ThreeMfPart};
 use super::{MorphedMesh, WriteError, write_beside};
-use crate::PolyMesh;
+use crate::face_attributes::NO_UV;
+use crate::{FaceAttributes, GroupName, PolyMesh};
 
 /// A mesh with a name and a place.
 #[derive(Debug, Clone)]
@@ -44,14 +46,38 @@ impl SceneMesh {
     }
 }
 
-/// Writes several meshes in the format that the extension of `path` names, whole or not at all.
-/// glTF keeps each as a node with its name and its transform; every other format gets one mesh, in
-/// which the transforms are applied, the meshes one after the other, and in OBJ each is a group.
+/// Writes several meshes in the format that the extension of `path` names, whole or not at all, and
+/// says what of them the file does not hold, one sentence each. glTF keeps each as a node with its
+/// name and its transform, 3MF as a component of one object; every other format gets one mesh, in
+/// which the transforms are applied, the meshes one after the other, and in OBJ each has its name.
 ///
 /// # Errors
 /// An extension that no format has, and what the disk does not take.
-pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<(), WriteError> {
+pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<Vec<String>, WriteError> {
     let kind = writable_format(path)?;
+    encode_scene(path, kind, meshes)?;
+    Ok(scene_left_out(kind, meshes))
+}
+
+/// What of the meshes a file of the ending `kind` does not hold.
+fn scene_left_out(kind: &str, meshes: &[SceneMesh]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for text in meshes.iter().flat_map(|m| left_out(kind, &m.mesh)) {
+        if !out.contains(&text) {
+            out.push(text);
+        }
+    }
+    let gltf = matches!(kind, "glb" | "gltf");
+    if !gltf && meshes.iter().any(|m| m.morphed.is_some()) {
+        out.push(format!("the layers are part of the surface: .{kind} is written without"));
+    }
+    if meshes.len() > 1 && matches!(kind, "stl" | "ply" | "off") {
+        out.push(format!("the objects are one mesh without names: .{kind} holds no others"));
+    }
+    out
+}
+
+fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), WriteError> {
     let failed = |source: io::Error| WriteError::Io { path: path.into(), source };
     match kind {
         "glb" | "gltf" => {
@@ -70,6 +96,18 @@ pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<(), WriteError> 
             })
             .map_err(failed)
         }
+        "3mf" if meshes.len() > 1 => {
+            let parts: Vec<ThreeMfPart<'_>> = meshes
+                .iter()
+                .map(|m| ThreeMfPart {
+                    mesh: &m.mesh,
+                    name: &m.name,
+                    rows: DMat3::from_quat(m.turn) * m.scale,
+                    shift: m.shift,
+                })
+                .collect();
+            write_beside(path, |out| write_packed::threemf_parts(&parts, out)).map_err(failed)
+        }
         _ => {
             let mesh = merged(meshes);
             write_beside(path, |out| encode(kind, &mesh, out)).map_err(failed)
@@ -77,15 +115,30 @@ pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<(), WriteError> 
     }
 }
 
-/// All meshes as one, in the world, each a group of its own where there are several. Colours stay
-/// where any mesh has them; the others are white.
+/// All meshes as one, in the world. Where there are several, each has its name and its own groups.
+/// Colours stay where any mesh has them; the others are white.
 pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
     let mut all = PolyMesh::new();
     let coloured = meshes.iter().any(|m| m.mesh.colours.is_some());
     let mut colours = Vec::new();
+    if let [one] = meshes {
+        all.groups.clone_from(&one.mesh.groups);
+        all.attributes.clone_from(&one.mesh.attributes);
+    }
     let mut groups = Vec::new();
-    for (g, part) in meshes.iter().enumerate() {
+    let mut attributes = FaceAttributes::default();
+    for part in meshes {
         let first = all.positions.len() as u32;
+        let group = attributes.groups.len() as u32;
+        attributes.groups.extend(named_groups(part));
+        take_uvs(&mut attributes, &part.mesh, all.corners.len());
+        if let Some(own) = &part.mesh.attributes {
+            for library in &own.libraries {
+                if !attributes.libraries.contains(library) {
+                    attributes.libraries.push(library.clone());
+                }
+            }
+        }
         let place = |p: &DVec3| match part.stands_still() {
             true => *p,
             false => part.shift + part.turn * (*p * part.scale),
@@ -97,16 +150,44 @@ pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
             None => {}
         }
         let mut corners = Vec::new();
-        for face in part.mesh.faces() {
+        for (f, face) in part.mesh.faces().enumerate() {
             corners.clear();
             corners.extend(face.iter().map(|v| v + first));
             all.push_face(&corners);
-            groups.push(g as u32);
+            groups.push(group + part.mesh.groups.as_ref().map_or(0, |g| g[f]));
         }
     }
     all.colours = coloured.then_some(colours);
-    all.groups = (meshes.len() > 1).then_some(groups);
+    if meshes.len() > 1 {
+        all.groups = Some(groups);
+        if !attributes.uv_corners.is_empty() {
+            attributes.uv_corners.resize(all.corners.len(), NO_UV);
+        }
+        all.attributes = Some(Arc::new(attributes));
+    }
     all
+}
+
+/// The groups of one mesh of several: its name as the object, and its own groups within it.
+fn named_groups(part: &SceneMesh) -> Vec<GroupName> {
+    let own = part.mesh.groups.as_ref().and_then(|g| g.iter().max());
+    let count = own.map_or(1, |most| most + 1);
+    let group = |g: u32| {
+        let own = part.mesh.group_name(g).cloned().unwrap_or_default();
+        let named = [&own.group, &own.object].into_iter().find(|n| !n.is_empty());
+        let group = named.unwrap_or(&part.name).clone();
+        GroupName { object: part.name.clone(), group, material: own.material }
+    };
+    (0..count).map(group).collect()
+}
+
+/// Appends the texture coordinates of a mesh whose corners begin at `first`.
+fn take_uvs(all: &mut FaceAttributes, mesh: &PolyMesh, first: usize) {
+    let Some((values, corners)) = mesh.uvs() else { return };
+    let base = all.uvs.len() as u32;
+    all.uv_corners.resize(first, NO_UV);
+    all.uv_corners.extend(corners.iter().map(|&c| if c == NO_UV { c } else { base + c }));
+    all.uvs.extend_from_slice(values);
 }
 
 #[cfg(test)]

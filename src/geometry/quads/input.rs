@@ -106,8 +106,7 @@ fn triangles_of(positions: Vec<DVec3>, triangles: &[[u32; 3]]) -> PolyMesh {
         positions,
         face_starts: (0..=triangles.len() as u32).map(|i| i * 3).collect(),
         corners: triangles.iter().flatten().copied().collect(),
-        colours: None,
-        groups: None,
+        ..PolyMesh::new()
     }
 }
 

@@ -1,6 +1,8 @@
 //! The face sets of the active object: making them, hiding parts of the surface, and parts of it
 //! as objects of their own.
 
+use std::collections::BTreeMap;
+
 use super::region;
 use super::rows;
 use super::state::region::RegionPurpose;
@@ -70,6 +72,8 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
     let sets = ui_state.face_sets.sets(view.state).to_vec();
     let hidden: u64 = sets.iter().map(|s| s.2).sum();
     let plain = sets.iter().all(|s| s.0 == 0);
+    let none = BTreeMap::new();
+    let names = view.state.scene.active().map_or(&none, |o| &o.settings.set_names);
     let brush = &view.state.brush;
     let drawn =
         (brush.kind == BrushKind::DrawFaceSets).then(|| brush.extra[draw_face_sets::SET] as u16);
@@ -96,11 +100,28 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
                             tr!("sets-row", number = set, count = vertices)
                         }
                     };
-                    let short = match set {
-                        0 => name.clone(),
+                    let short = match (set, names.get(&set)) {
+                        (0, _) => name.clone(),
+                        (_, Some(own)) => own.clone(),
                         _ => set.to_string(),
                     };
-                    ui.add(egui::Label::new(short).truncate()).on_hover_text(name);
+                    let panel = &mut ui_state.face_sets;
+                    if let Some((_, text)) = panel.renaming.as_mut().filter(|r| r.0 == set) {
+                        let field = ui.text_edit_singleline(text);
+                        if field.lost_focus() {
+                            let named = SceneCommand::NameSet(set, text.trim().into());
+                            out.push(UiRequest::World(Command::Scene(named)));
+                            panel.renaming = None;
+                        } else {
+                            field.request_focus();
+                        }
+                        return;
+                    }
+                    let label = egui::Label::new(short).truncate().sense(egui::Sense::click());
+                    let label = ui.add(label).on_hover_text(name);
+                    if set > 0 && label.double_clicked() {
+                        panel.renaming = Some((set, names.get(&set).cloned().unwrap_or_default()));
+                    }
                 });
             });
         }

@@ -57,7 +57,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         });
     });
     let busy = ui_state.joining;
+    let mut group = "";
     for (i, object) in scene.objects.iter().enumerate() {
+        // Where objects of one group follow each other, its name stands above them.
+        if object.settings.group != group {
+            group = &object.settings.group;
+            if !group.is_empty() {
+                ui.colored_label(theme::quiet(ui), group);
+            }
+        }
         row(ui, object, i == scene.active, busy, &mut ui_state.outliner, out);
     }
     let Some(active) = scene.active() else { return };
@@ -74,6 +82,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             ask(out, SceneCommand::Remove(id));
         }
     });
+    arrange(ui, view, active, &mut ui_state.outliner, out);
     rows::flow(ui, |ui| {
         let gizmo = ui.selectable_label(ui_state.outliner.gizmo, tr!("objects-gizmo"));
         if gizmo.on_hover_text(tr!("objects-gizmo.tip")).clicked() {
@@ -103,6 +112,61 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         }
     }
     ui.separator();
+}
+
+/// Where the active object is listed, its mirrored twin, and the Boolean that it follows.
+fn arrange(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    active: &ObjectView,
+    outliner: &mut Outliner,
+    out: &mut Vec<UiRequest>,
+) {
+    let scene = &view.state.scene;
+    let (id, place) = (active.id, scene.active);
+    rows::flow(ui, |ui| {
+        let mut to = |ui: &mut egui::Ui, can: bool, name: &str, place: usize| {
+            if ui.add_enabled(can, egui::Button::new(tr!(name))).clicked() {
+                ask(out, SceneCommand::Move(id, place as u32));
+            }
+        };
+        to(ui, place > 0, "layers-up", place.saturating_sub(1));
+        to(ui, place + 1 < scene.objects.len(), "layers-down", place + 1);
+        let group = ui.button(tr!("objects-group"));
+        if group.on_hover_text(tr!("objects-group.tip")).clicked() {
+            outliner.grouping = Some((id, active.settings.group.clone()));
+        }
+        ui.menu_button(tr!("objects-mirror"), |ui| {
+            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+                if ui.button(name).clicked() {
+                    out.push(UiRequest::Mirror(id, axis));
+                    ui.close();
+                }
+            }
+        });
+    });
+    if let Some((grouped, text)) = outliner.grouping.as_mut().filter(|g| g.0 == id) {
+        let field = ui.text_edit_singleline(text);
+        if field.lost_focus() {
+            ask(out, SceneCommand::Group(vec![*grouped], text.trim().into()));
+            outliner.grouping = None;
+        } else {
+            field.request_focus();
+        }
+    }
+    if scene.objects.len() > 1 {
+        let live = ui.checkbox(&mut outliner.live, tr!("objects-live"));
+        live.on_hover_text(tr!("objects-live.tip"));
+    }
+    if active.live(&view.state.mesh).is_some() {
+        rows::flow(ui, |ui| {
+            ui.colored_label(theme::quiet(ui), tr!("objects-follows"));
+            let apply = ui.button(tr!("objects-apply"));
+            if apply.on_hover_text(tr!("objects-apply.tip")).clicked() {
+                ask(out, SceneCommand::ApplyLive(id));
+            }
+        });
+    }
 }
 
 fn row(
@@ -146,10 +210,18 @@ fn row(
                 for (operation, name) in PAIRINGS {
                     let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
                     if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
-                        let pairing = Pairing { operation, with: id };
+                        let (with, live) = (id, outliner.live);
+                        let pairing = Pairing { operation, with, live, all: false };
                         out.push(UiRequest::BooleanWith(pairing));
                         ui.close();
                     }
+                }
+                let all = ui.add_enabled(!busy, egui::Button::new(tr!("operation-all")));
+                if all.on_hover_text(tr!("operation-all.tip")).clicked() {
+                    let operation = Operation::Union;
+                    let pairing = Pairing { operation, with: id, live: false, all: true };
+                    out.push(UiRequest::BooleanWith(pairing));
+                    ui.close();
                 }
             });
         }

@@ -74,6 +74,10 @@ impl WindowState {
                 self.ui_state.joining = true;
                 self.tasks.pair(pairing, wiring.published.clone(), wiring.commands.clone());
             }
+            UiRequest::Mirror(id, axis) => {
+                let shown = wiring.published.load_full();
+                self.tasks.mirror(id, axis, shown, wiring.commands.clone());
+            }
             UiRequest::Trim(part) => {
                 self.ui_state.joining = true;
                 self.tasks.trim(part, wiring.published.clone(), wiring.commands.clone());

@@ -17,9 +17,10 @@ use sculptd_engine::scene::{ObjectTransform, ObjectView, SceneCommand};
 
 const BOX: [u8; 4] = [255, 220, 120, 160];
 
-/// The active object, where a gizmo may move it.
+/// The active object, where a gizmo may move it: a hidden one too, as an operand that a result
+/// follows.
 fn movable(state: &Published) -> Option<&ObjectView> {
-    state.scene.active().filter(|o| o.settings.visible && !o.settings.locked)
+    state.scene.active().filter(|o| !o.settings.locked)
 }
 
 impl WindowState {
@@ -67,8 +68,12 @@ impl WindowState {
         let steps = GizmoSteps::of(f64::from(state.extent));
         let steps = self.mods.control_key().then_some(steps);
         let to = self.camera.ray(view);
-        if let Some(now) = gizmo.drag(drag.handle, &drag.before, drag.from, to, steps) {
+        if let Some(now) = gizmo.drag(drag.handle, &drag.before, drag.from, to, steps)
+            && now != drag.now
+        {
             drag.now = now;
+            // The object goes with the pointer, and what follows it does; one step in the end.
+            let _ = wiring.commands.try_send(Command::Scene(SceneCommand::Drag(object.id, now)));
         }
     }
 
@@ -92,6 +97,8 @@ impl WindowState {
         gizmo.lines(lines, hot);
         if let Some(drag) = self.pointer.gizmo {
             outline(lines, state, &drag.now);
+        } else if let Some(hidden) = movable(state).filter(|o| !o.settings.visible) {
+            outline(lines, state, &hidden.settings.transform);
         }
     }
 

@@ -220,12 +220,13 @@ impl Tasks {
                     write_scene(&path, &meshes).map_err(|e| e.to_string())
                 });
             let said = match written {
-                Ok(_) => {
+                Ok(lost) => {
                     let [x, y, z] = size.to_array().map(|n| format!("{n:.4}"));
                     let (name, unit) = (path.display().to_string(), tr!(unit));
                     let text = tr!("task-exported", path = name, x = x, y = y, z = z, unit = unit);
                     let _ = say.send(TaskReport::Used(path));
-                    TaskReport::Message(text, false)
+                    let lost: String = lost.iter().map(|l| format!("\n{l}")).collect();
+                    TaskReport::Message(text + &lost, false)
                 }
                 Err(e) => TaskReport::Message(e, true),
             };
@@ -286,11 +287,12 @@ impl Tasks {
             let state = shown.load_full();
             let active = state.scene.active().map_or(pairing.with, |o| o.id);
             let (ids, job) = ([active, pairing.with], Job::default());
-            let asked = SceneBoolean::new(pairing.operation);
+            let Pairing { operation, live, all, .. } = pairing;
+            let asked = SceneBoolean { live, all, ..SceneBoolean::new(operation) };
             let (text, wrong) = match scene_jobs::boolean(&state, ids, asked, &job) {
                 Ok(done) => {
-                    let command = Command::Scene(SceneCommand::Exchange(done.exchange));
-                    let built = Payload::Clays(done.clays);
+                    let (command, built) = done.command();
+                    let command = Command::Scene(command);
                     let sent = commands.send(QueuedCommand::with_payload(command, built));
                     let operation = operation_title(pairing.operation);
                     (tr!("task-done", operation = operation), sent.is_err())
@@ -299,6 +301,23 @@ impl Tasks {
             };
             let _ = say.send(TaskReport::Message(text, wrong));
             let _ = say.send(TaskReport::Joined);
+        });
+    }
+
+    /// A mirrored twin of an object, in a plane through the origin of the world.
+    pub fn mirror(&self, id: ObjectId, axis: usize, state: Arc<Published>, to: CommandSender) {
+        let say = self.say.clone();
+        thread("sculptd-boolean", move || {
+            let (text, wrong) = match scene_jobs::mirror(&state, id, axis, &Job::default()) {
+                Ok(done) => {
+                    let (command, built) = done.command();
+                    let command = Command::Scene(command);
+                    let sent = to.send(QueuedCommand::with_payload(command, built));
+                    (tr!("task-mirrored"), sent.is_err())
+                }
+                Err(e) => (e.to_string(), true),
+            };
+            let _ = say.send(TaskReport::Message(text, wrong));
         });
     }
 

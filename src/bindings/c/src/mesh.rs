@@ -83,8 +83,7 @@ pub unsafe extern "C" fn sculptd_mesh_new(
         if let Some(at) = positions.iter().position(|p| !p.is_finite()) {
             return Err(Failure::argument(format!("vertex {at} is not finite")));
         }
-        let poly =
-            PolyMesh { positions, face_starts: starts, corners, colours: None, groups: None };
+        let poly = PolyMesh { positions, face_starts: starts, corners, ..PolyMesh::new() };
         // SAFETY: as this function's caller promises.
         unsafe { hand_out(mesh, SculptdMesh { poly }) }
     })

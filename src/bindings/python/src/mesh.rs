@@ -106,7 +106,7 @@ impl Mesh {
                 Some(bytes.as_chunks::<4>().0.to_vec())
             }
         };
-        Ok(PolyMesh { positions, face_starts: starts, corners, colours, groups: None }.into())
+        Ok(PolyMesh { positions, face_starts: starts, corners, colours, ..PolyMesh::new() }.into())
     }
 
     /// (n, 3) float64, read-only, shared with the mesh.

@@ -11,6 +11,7 @@ use super::tree::{Change, NOTHING, Node, Tree};
 use crate::session::VERSION;
 use crate::session::history::retention::{Freed, HighestNumbers, Pin, bound};
 use crate::session::history::thumbnail;
+use crate::session::stored_polygons::StoredPolygons;
 use sculptd_clay::{Page, Snapshot};
 use sculptd_engine::scene::{ObjectId, ObjectSettings, SceneEvent, SceneView};
 use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
@@ -35,6 +36,7 @@ pub struct HistoryWriter {
     topologies: BTreeSet<Name>,
     sides: Vec<(SideData, u64)>,
     next_side: u64,
+    polygons: StoredPolygons,
     /// Bytes in the open transaction.
     open: usize,
     /// Bytes that the history takes in the file, and may take.
@@ -106,6 +108,7 @@ impl HistoryWriter {
         topologies.retain(|n| n.2 == 0 || kept.contains(n));
         store.db.execute_batch("COMMIT")?;
         let next_side = store.next_side()?;
+        let polygons = StoredPolygons::read(&store.db)?;
         let bytes = store.total()?;
         Ok(HistoryWriter {
             store,
@@ -118,6 +121,7 @@ impl HistoryWriter {
             topologies,
             sides: Vec::new(),
             next_side,
+            polygons,
             open: 0,
             bytes,
             most,
@@ -133,6 +137,7 @@ impl HistoryWriter {
         at: Option<u64>,
     ) -> Result<(), StoreError> {
         let work = &first.work;
+        self.keep_polygons(first)?;
         let scene = self.scene_of(&first.scene)?;
         let parent = at.filter(|id| self.tree.node(*id).is_some());
         let known = parent.map(|id| self.tree.versions(id)).unwrap_or_default();
@@ -180,6 +185,15 @@ impl HistoryWriter {
         }
         let scene = scene.filter(|_| !same);
         self.finish_node(Node { changes, scene, ..node }, work)
+    }
+
+    /// The polygons of the files that new objects were loaded from are stored too.
+    fn keep_polygons(&mut self, moment: &HistoryEntry) -> Result<(), StoreError> {
+        let others = moment.scene.objects.iter().filter_map(|o| o.clay.as_ref());
+        for clay in others.chain([&moment.work]) {
+            self.polygons.keep(&self.store.db, clay)?;
+        }
+        Ok(())
     }
 
     /// The objects as they are stored, with the pages of those that are not active, which are
@@ -311,6 +325,9 @@ impl HistoryWriter {
             return Ok(());
         }
         let changes = self.differences(work);
+        if changes.is_none() || !Arc::ptr_eq(&moment.scene, &self.view) {
+            self.keep_polygons(moment)?;
+        }
         let scene = self.scene_of(&moment.scene)?;
         // Not what was seen last: after an error that may not have been written.
         let same = same_scene(self.tree.scene_at(self.tree.cursor), scene.as_ref());

@@ -11,6 +11,8 @@ pub struct FaceSetPanel {
     /// Each with its number, its vertices, and how many of them are hidden.
     sets: Vec<(u16, u64, u64)>,
     had: Option<HadSets>,
+    /// The name that is being typed for a set.
+    pub renaming: Option<(u16, String)>,
     /// Where creases and turns part sets, degrees.
     pub degrees: f32,
     /// Of what is extracted, as a share of the object's longest side; below 0 inwards.
@@ -28,7 +30,14 @@ struct HadSets {
 
 impl Default for FaceSetPanel {
     fn default() -> Self {
-        FaceSetPanel { seen: None, had: None, sets: Vec::new(), degrees: 40.0, thickness: 0.02 }
+        FaceSetPanel {
+            seen: None,
+            sets: Vec::new(),
+            had: None,
+            renaming: None,
+            degrees: 40.0,
+            thickness: 0.02,
+        }
     }
 }
 

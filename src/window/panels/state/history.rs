@@ -60,6 +60,11 @@ fn operation(event: HistoryEvent) -> Option<&'static str> {
             SceneEvent::Mask => "history-mask",
             SceneEvent::Remesh => "history-remesh",
             SceneEvent::Snap => "history-snapped",
+            SceneEvent::Arrange => "history-arranged",
+            SceneEvent::NameSet => "history-set-named",
+            SceneEvent::Follow => "history-followed",
+            SceneEvent::Apply => "history-applied",
+            SceneEvent::Mirror => "history-mirrored",
         }),
         _ => None,
     }

@@ -14,6 +14,10 @@ pub struct Outliner {
     pub place: Option<(ObjectId, ObjectTransform)>,
     /// The numbers of a primitive that are being dragged.
     pub primitive: Option<(ObjectId, Primitive)>,
+    /// The name of a group that is being typed for an object.
+    pub grouping: Option<(ObjectId, String)>,
+    /// Booleans of two objects follow their operands.
+    pub live: bool,
     /// The gizmo of the active object is shown.
     pub gizmo: bool,
     /// Two faces are being picked, to lay the first on the second.
@@ -45,4 +49,8 @@ impl SnapPicks {
 pub struct Pairing {
     pub operation: Operation,
     pub with: ObjectId,
+    /// The operands stay, hidden, and the result follows them.
+    pub live: bool,
+    /// All four results, the named one first.
+    pub all: bool,
 }

@@ -44,8 +44,11 @@ pub enum UiRequest {
     AddHeld,
     /// A primitive gets other numbers.
     Reshape(ObjectId, Primitive),
-    /// A Boolean of the active object and another; the result takes the place of both.
+    /// A Boolean of the active object and another; the result takes the place of both, or follows
+    /// them.
     BooleanWith(Pairing),
+    /// A mirrored twin of an object, in a plane through the origin: 0 of x, 1 of y, 2 of z.
+    Mirror(ObjectId, usize),
     /// What is seen in this part of the view is cut off.
     Trim(Part),
     /// The object one level finer, or coarser.
