@@ -23,26 +23,26 @@ const EDGE_RANGE: f32 = 16.0;
 const MOST_TRIANGLES: f32 = 1e8;
 /// Triangles that may be made of a whole object, at most: strokes wait meanwhile, half a minute.
 const MOST_NEW: f32 = 8e6;
-/// Counted work of a tick, in the units of dynamic topology: some three milliseconds on one core.
+/// Counted work of a tick, in the units of dynamic topology: some three milliseconds on two cores.
 /// Strokes wait, so it is more than they leave.
-const TICK_BUDGET: usize = 12_000;
+const TICK_BUDGET: usize = 24_000;
 /// Vertices that are looked at in the time of one operation.
 const LOOKED: u64 = 10;
 /// What finding out about a vertex costs, as [`RegionSeen::cost`] says it, where a pass takes twice
 /// the time that it counts.
 const COSTLY: u64 = 8;
-/// Pages that one pass looks at together.
-const TOGETHER: usize = 2;
+/// Pages that one pass works on, each by a task.
+const TOGETHER: usize = 3;
+/// Pages that are known to have something to do, at most: among them some lie apart.
+const KNOWN: usize = 32;
 /// The first time through the pages edges are split down to this power of two times the wanted
 /// length, then to half of that, until all have it: where fine triangles meet coarse ones at once,
 /// vertices come to have as many neighbours as they may, and then nothing about them can be split.
 const COARSEST: u32 = 3;
-/// Rounds over all pages at the wanted length, at most: a round finds what the one before has moved
-/// from page to page.
-const ROUNDS: u32 = 4;
-/// Passes over the same pages, at most. Each operation brings edges nearer to their length or makes
-/// an angle wider, so they end by themselves; the bound is for numbers that round.
-const PASSES: u32 = 256;
+/// Rounds over the pages at the wanted length, at most, each over those that the one before has
+/// changed. Each operation brings edges nearer to their length or makes an angle wider, so they end
+/// by themselves; the bound is for numbers that round.
+const ROUNDS: u32 = 12;
 /// Edges that are looked at for the usual length, at most.
 const SAMPLED: usize = 4096;
 
@@ -52,17 +52,21 @@ pub(crate) struct RemeshWork {
     seen: Option<RegionSeen>,
     edge: f32,
     collapse: bool,
+    /// The next page to be looked at.
     next: usize,
-    balls: Vec<Detail>,
-    passes: u32,
-    /// Counted work of a pass at most: less where pages would grow too much at once.
-    pass_budget: usize,
+    /// Pages that have something to do.
+    todo: Vec<u32>,
+    /// For each page that there was at first, whether it has something of the region.
+    region: Vec<bool>,
+    /// Counted work of a page's task at most: less where pages would grow too much at once.
+    page_budget: usize,
     /// The power of two times the wanted length that edges are split down to.
     coarse: u32,
     /// The longest edge of the pages that were looked through this time, before anything was split.
     longest: f32,
     round: u32,
-    changed_in_round: bool,
+    /// The clay's revision when this round began, and when the one before did.
+    revisions: [u64; 2],
     /// Edges that were changed.
     changes: u32,
 }
@@ -95,19 +99,18 @@ impl RemeshWork {
             return Err(SceneError::Fine);
         }
         clay.prepare_topology();
-        clay.forget_balls();
         Ok(RemeshWork {
             seen,
             edge,
             collapse: !asked.stretched_only,
             next: 0,
-            balls: Vec::with_capacity(TOGETHER),
-            passes: 0,
-            pass_budget: TICK_BUDGET,
+            todo: Vec::with_capacity(KNOWN),
+            region: vec![true; clay.page_count()],
+            page_budget: TICK_BUDGET,
             coarse: COARSEST,
             longest: 0.0,
-            round: 1,
-            changed_in_round: false,
+            round: 0,
+            revisions: [clay.revision(); 2],
             changes: 0,
         })
     }
@@ -126,67 +129,99 @@ impl RemeshWork {
         let mut left = budget;
         // With less a pass might get nowhere.
         while left >= LEAST_TOPOLOGY_BUDGET {
-            if self.balls.is_empty() {
-                let looked = self.choose(clay);
-                left = left.saturating_sub(looked + 1);
-                if !self.balls.is_empty() || self.next < clay.page_count() {
-                    continue;
-                }
-                if self.coarse == 0 && (!self.changed_in_round || self.round == ROUNDS) {
-                    clay.forget_balls();
-                    return Some(self.changes);
-                }
-                match self.coarse {
-                    0 => self.round += 1,
-                    // Down to where there is something to split again.
-                    coarse => {
-                        let times = self.longest / (self.edge * (4.0 / 3.0));
-                        let power = (0..coarse).find(|p| times <= (1u32 << *p) as f32);
-                        self.coarse = power.map_or(coarse - 1, |p| p.saturating_sub(1));
-                    }
-                }
-                (self.next, self.changed_in_round, self.longest) = (0, false, 0.0);
+            let looked = self.choose(clay);
+            left = left.saturating_sub(looked + 1);
+            let more = self.next < clay.page_count();
+            if self.todo.is_empty() && !more && self.next_round(clay) {
+                return Some(self.changes);
+            }
+            if self.todo.is_empty() || (self.todo.len() < KNOWN && more) {
                 continue;
             }
             let seen = self.seen.as_ref();
+            let weight = 1 + (seen.map_or(0, RegionSeen::cost) / COSTLY) as usize;
+            let most = (left / (weight * LEAST_TOPOLOGY_BUDGET)).clamp(1, TOGETHER);
+            let apart = clay.pages_apart(self.todo.iter().copied(), most);
+            let mut wanted: Vec<_> = apart.iter().map(|&p| (p, self.ball(clay, p))).collect();
             // A region goes all the way through: where a place faces decides nothing.
             let holds = |p| seen.is_none_or(|s| s.holds(p, Vec3::ZERO));
             let within = seen.is_some().then_some(&holds as _);
-            let weight = 1 + (seen.map_or(0, RegionSeen::cost) / COSTLY) as usize;
-            let budget = (left / weight).max(LEAST_TOPOLOGY_BUDGET).min(self.pass_budget);
-            let done = clay.adapt_topology_within(&self.balls, within, budget, workers);
+            let budget = (left / (weight * apart.len())).max(LEAST_TOPOLOGY_BUDGET);
+            let budget = budget.min(self.page_budget);
+            let (done, unfinished) = clay.adapt_pages(&mut wanted, within, budget, workers);
             left = left.saturating_sub(done.work * weight + 1);
             self.changes = self.changes.saturating_add(done.changes() as u32);
-            self.changed_in_round |= done.changes() > 0;
-            self.passes += 1;
-            if done.tangled && self.pass_budget > LEAST_TOPOLOGY_BUDGET {
-                self.pass_budget = LEAST_TOPOLOGY_BUDGET;
-            } else if !done.unfinished || self.passes == PASSES {
-                self.balls.clear();
-                (self.passes, self.pass_budget) = (0, TICK_BUDGET);
+            if done.tangled && self.page_budget > LEAST_TOPOLOGY_BUDGET {
+                self.page_budget = LEAST_TOPOLOGY_BUDGET;
+                continue;
+            }
+            self.page_budget = TICK_BUDGET;
+            for (at, page) in apart.iter().enumerate() {
+                if done.tangled || unfinished >> at & 1 == 0 {
+                    self.todo.retain(|p| p != page);
+                }
             }
         }
         None
     }
 
-    /// The balls about the next pages that have something of the region and edges to be changed;
-    /// what looking for them counts.
+    /// Begins the next round; true where all is done.
+    fn next_round(&mut self, clay: &Clay) -> bool {
+        let changed = clay.revision() > self.revisions[0];
+        match self.coarse {
+            0 if !changed || self.round == ROUNDS => return true,
+            0 => self.round += 1,
+            // Down to where there is something to split again.
+            coarse => {
+                let times = self.longest / (self.edge * (4.0 / 3.0));
+                let power = (0..coarse).find(|p| times <= (1u32 << *p) as f32);
+                self.coarse = power.map_or(coarse - 1, |p| p.saturating_sub(1));
+            }
+        }
+        (self.next, self.longest) = (0, 0.0);
+        self.revisions = [clay.revision(), self.revisions[0]];
+        false
+    }
+
+    /// Whether a page is to be looked at in this round.
+    fn concerns(&self, clay: &Clay, page: u32) -> bool {
+        match self.round {
+            0 | 1 => self.region.get(page as usize).is_none_or(|r| *r),
+            _ => clay.page(page).revision() > self.revisions[1],
+        }
+    }
+
+    /// The ball about a page with all that its edges reach.
+    fn ball(&self, clay: &Clay, page: u32) -> Detail {
+        let rows = clay.page(page).point_rows().iter().map(|p| p.truncate());
+        let (lo, hi) =
+            rows.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+        let radius = (hi - lo).length() * 0.51;
+        let edge = self.edge * (1u32 << self.coarse) as f32;
+        let collapse = self.collapse && self.coarse == 0;
+        Detail { centre: (lo + hi) * 0.5, radius, edge, split: true, collapse }
+    }
+
+    /// Looks for pages that have something of the region and edges to be changed; what looking for
+    /// them counts.
     fn choose(&mut self, clay: &Clay) -> usize {
         let mut looked = 0;
         let edge = self.edge * (1u32 << self.coarse) as f32;
         let collapse = self.collapse && self.coarse == 0;
         while self.next < clay.page_count()
-            && self.balls.len() < TOGETHER
+            && self.todo.len() < KNOWN
             && looked / LOOKED < LEAST_TOPOLOGY_BUDGET as u64 / 2
         {
-            let page = clay.page(self.next as u32);
+            let number = self.next as u32;
+            let page = clay.page(number);
             self.next += 1;
-            let (lo, hi) = page
-                .point_rows()
-                .iter()
-                .fold(page.bounds(), |(lo, hi), p| (lo.min(p.truncate()), hi.max(p.truncate())));
-            looked += 1 + page.point_rows().len() as u64 / 10;
+            looked += 1;
+            if !self.concerns(clay, number) {
+                continue;
+            }
+            let (lo, hi) = page.bounds();
             if !self.seen.as_ref().is_none_or(|seen| seen.may_hold(lo, hi)) {
+                self.region.get_mut(number as usize).iter_mut().for_each(|r| **r = false);
                 continue;
             }
             looked += page.triangles().len() as u64 / 2;
@@ -204,15 +239,11 @@ impl RemeshWork {
                 looked += page.own() as u64 * seen.cost();
                 let rows = page.point_rows().iter();
                 if !rows.into_iter().any(|p| seen.holds(p.truncate(), Vec3::ZERO)) {
+                    self.region.get_mut(number as usize).iter_mut().for_each(|r| **r = false);
                     continue;
                 }
             }
-            // The halo too: edges to the next page lie in both balls, however long they are.
-            let radius = (hi - lo).length() * 0.51;
-            if radius > 0.0 && radius.is_finite() {
-                let centre = (lo + hi) * 0.5;
-                self.balls.push(Detail { centre, radius, edge, split: true, collapse });
-            }
+            self.todo.push(number);
         }
         (looked / LOOKED) as usize
     }

@@ -93,6 +93,7 @@ impl TopologyWork {
             sum.splits += done.splits;
             sum.collapses += done.collapses;
             sum.flips += done.flips;
+            sum.slides += done.slides;
             sum.work += done.work;
             if done.tangled && most > LEAST_TOPOLOGY_BUDGET {
                 most = LEAST_TOPOLOGY_BUDGET;

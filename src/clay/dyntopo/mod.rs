@@ -31,9 +31,7 @@ use crate::assembly::splice::remake;
 use crate::assembly::{Cut, Grafted};
 use crate::retopology::operations::Pass;
 use crate::retopology::scan::BALLS;
-use crate::retopology::{
-    Cuts, Detail, PAGE_SCAN, PAGE_WRITE, PageVisit, SCANNED, TopologyBuffers, Within,
-};
+use crate::retopology::{Cuts, Detail, PAGE_SCAN, PAGE_WRITE, PageVisit, SCANNED, TopologyBuffers};
 
 /// Numbers are not used beyond this: what is left is for the pages' own arithmetic.
 const LAST_NUMBER: u32 = u32::MAX - (1 << 24);
@@ -49,18 +47,6 @@ impl Clay {
     /// A budget of [`crate::LEAST_TOPOLOGY_BUDGET`] or more always gets on with at least one page.
     /// Nothing is done to clay that has layers, which are kept by vertex.
     pub fn adapt_topology(&mut self, balls: &[Detail], budget: usize, workers: &Workers) -> Cuts {
-        self.adapt_topology_within(balls, None, budget, workers)
-    }
-
-    /// The same, of what lies within the balls and `within` besides. Who asks with another `within`
-    /// than before says so first ([`Clay::forget_balls`]).
-    pub fn adapt_topology_within(
-        &mut self,
-        balls: &[Detail],
-        within: Within<'_>,
-        budget: usize,
-        workers: &Workers,
-    ) -> Cuts {
         let used = self.next_vertex.max(self.next_triangle);
         if used >= LAST_NUMBER || self.layer_count() > 0 || !balls.iter().all(Detail::is_sane) {
             return Cuts::default();
@@ -75,12 +61,13 @@ impl Clay {
         // Numbers for new triangles: four a split, two a flip, nine a collapse.
         let budget = budget.min(looked + ((LAST_NUMBER - used) / 16) as usize);
         let cuts = Cuts { work: looked, ..Cuts::default() };
-        let mut pass = Pass { edit, queues, pages, balls, within, cuts, budget };
+        let slides = true;
+        let mut pass = Pass { edit, queues, pages, balls, within: None, slides, cuts, budget };
         let mut tried = 0;
         for some in chosen.chunks_mut(SCANNED) {
             workers.each(some.len() >= PARALLEL, some, scans, |&mut (_, page), scan| {
                 scan.page = page;
-                scan.scan(&pass.pages[page as usize], balls, within);
+                scan.scan(&pass.pages[page as usize], balls, None);
             });
             pass.cuts.work += PAGE_SCAN * some.len();
             let done = scans[..some.len()].iter().take_while(|scan| pass.run(&scan.found)).count();
@@ -108,11 +95,6 @@ impl Clay {
         }
         cuts.unfinished = (more || clean < chosen.len()) && (clean > 0 || cuts.changes() > 0);
         cuts
-    }
-
-    /// Pages that were found to need nothing are looked through again, whatever balls ask for them.
-    pub fn forget_balls(&mut self) {
-        self.topology.balls.clear();
     }
 
     /// Chooses the pages to be looked through, those of the newest balls first; what choosing
@@ -259,5 +241,6 @@ fn empty_page(empty: &mut Vec<u32>, pages: &mut Vec<Arc<Page>>, pool: &Pool) -> 
     pages.len() as u32 - 1
 }
 
+mod apart;
 #[cfg(test)]
 mod tests;

@@ -288,3 +288,67 @@ fn a_small_budget_comes_to_the_same_detail_in_several_calls() {
     assert!(again.work > PAGE_SCAN, "{again:?}");
     assert_eq!((again.splits, again.collapses), (0, 0), "{again:?}");
 }
+
+#[test]
+fn pages_that_lie_apart_are_changed_by_several_threads_alone_and_to_the_same_bits() {
+    let start = shapes::sphere_of_about(20_000);
+    let run = |workers: usize| {
+        let mut clay = Clay::build(&start, &Job::default()).unwrap();
+        let workers = Workers::new(workers);
+        let old: Vec<u64> =
+            (0..clay.page_count() as u32).map(|p| clay.page(p).revision()).collect();
+        let apart = clay.pages_apart(0..clay.page_count() as u32, 3);
+        assert_eq!(apart.len(), 3);
+        let ball = |page: u32| {
+            let (lo, hi) = clay.page(page).bounds();
+            let (centre, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.6);
+            (page, Detail { centre, radius, edge: 0.012, split: true, collapse: true })
+        };
+        let mut wanted: Vec<_> = apart.iter().map(|&p| ball(p)).collect();
+        let (cuts, unfinished) = clay.adapt_pages(&mut wanted, None, 100_000, &workers);
+        assert!(cuts.splits > 2000 && unfinished == 0 && !cuts.tangled, "{cuts:?}");
+        // Nobody else was written: not even those two pages away.
+        for page in (0..old.len() as u32).filter(|p| clay.page(*p).revision() != old[*p as usize]) {
+            let beside = apart.iter().filter(|&&a| {
+                let near = clay.page(page).topology().neighbours.iter().any(|n| n.page == a);
+                a == page || near
+            });
+            let near_a_part = clay.page(page).topology().neighbours.iter();
+            assert!(beside.count() > 0 || near_a_part.clone().any(|n| n.page >= old.len() as u32));
+        }
+        clay.verify_invariants().unwrap();
+        assert_eq!(checked(&clay.to_tri()).0, 2);
+        (clay.hash(), clay.page_count())
+    };
+    let one = run(1);
+    for workers in [2, 3, 7, 16] {
+        let other = std::thread::scope(|s| s.spawn(|| run(workers)).join().unwrap());
+        assert_eq!(other, one, "with {workers} workers");
+    }
+}
+
+#[test]
+fn slivers_are_mended_though_their_edges_have_their_length() {
+    let mut ball = shapes::icosphere(1.0, 16);
+    let near = |p: &Vec3| (*p - Vec3::Z).length() < 0.3;
+    // Squeezed along x, as by a pinch.
+    for p in ball.positions.iter_mut().filter(|p| near(p)) {
+        p.x *= 0.02;
+    }
+    let mut clay = Clay::build(&ball, &Job::default()).unwrap();
+    let before = checked(&clay.to_tri()).1;
+    assert!(before < 1.0, "{before}");
+    let detail = Detail { centre: Vec3::Z, radius: 0.5, edge: 0.1, split: false, collapse: false };
+    let mut sum = 0;
+    loop {
+        let cuts = clay.adapt_topology(&[detail], 100_000, &Workers::new(1));
+        assert_eq!(cuts.splits, 0);
+        sum += cuts.changes();
+        if !cuts.unfinished {
+            break;
+        }
+    }
+    let (euler, least, _) = checked(&clay.to_tri());
+    assert!(sum > 10 && euler == 2 && least >= 3.0, "{sum} changes, an angle of {least}");
+    clay.verify_invariants().unwrap();
+}

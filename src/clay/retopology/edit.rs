@@ -49,11 +49,15 @@ pub(crate) struct EditPage {
     pub(crate) dirty: bool,
     /// It is too tangled to be changed.
     tangled: bool,
+    /// Its vertices may be changed.
+    open: bool,
 }
 
 /// Rings, places and homes of the vertices that take part.
 #[derive(Debug, Default)]
 pub(crate) struct Edit {
+    /// The pages whose vertices may be changed, ascending; none are given: all.
+    pub(crate) limit: Vec<u32>,
     /// For each page its slot plus one, or 0.
     slot_of: Vec<u32>,
     pub(crate) slots: Vec<EditPage>,
@@ -94,6 +98,7 @@ impl Edit {
         if self.slot_of.len() < pages {
             self.slot_of.resize(pages, 0);
         }
+        self.limit.clear();
         self.halo.clear();
         self.made.clear();
         self.created.clear();
@@ -113,7 +118,7 @@ impl Edit {
         self.count = 0;
     }
 
-    fn reserve(&mut self, more: usize) -> u32 {
+    pub(super) fn reserve(&mut self, more: usize) -> u32 {
         let base = self.count;
         self.count += more;
         if self.state.len() < self.count {
@@ -158,6 +163,7 @@ impl Edit {
             halo: NONE,
             dirty: false,
             tangled,
+            open: self.limit.is_empty() || self.limit.binary_search(&page).is_ok(),
         });
         self.slot_of[page as usize] = s + 1;
         s
@@ -170,7 +176,8 @@ impl Edit {
         }
         let s = self.slots.len() as u32;
         let base = self.count as u32;
-        self.slots.push(EditPage { page, base, own: 0, halo: 0, dirty: false, tangled: false });
+        let (dirty, tangled, open) = (false, false, true);
+        self.slots.push(EditPage { page, base, own: 0, halo: 0, dirty, tangled, open });
         self.slot_of[page as usize] = s + 1;
         self.mark_page(s);
         s
@@ -319,6 +326,12 @@ impl Edit {
     /// Whether position and colour are here.
     pub(crate) fn is_placed(&self, h: u32) -> bool {
         self.is(h, PLACED)
+    }
+
+    /// Whether all of these lie in pages whose vertices may be changed.
+    pub(super) fn are_open(&self, all: &[u32]) -> bool {
+        self.limit.is_empty()
+            || all.iter().all(|&h| self.slots[self.home[h as usize] as usize].open)
     }
 
     /// The ring of a vertex whose ring is here.

@@ -6,11 +6,14 @@
 //! * Memory is kept from call to call.
 //! * What runs on several threads writes one page from one task.
 
+mod absorb;
+mod collapse;
 pub(crate) mod edit;
 pub(crate) mod operations;
 pub(crate) mod rebuild;
 pub(crate) mod scan;
 mod shape;
+pub(crate) mod task;
 mod write_page;
 
 use glam::Vec3;
@@ -69,6 +72,8 @@ pub struct Cuts {
     pub collapses: usize,
     /// Edges that were flipped.
     pub flips: usize,
+    /// Corners of slivers that were moved along the surface.
+    pub slides: usize,
     /// Counted work: an operation that was looked at counts one, a page that was looked through
     /// [`PAGE_SCAN`], a page that was written [`PAGE_WRITE`].
     pub work: usize,
@@ -81,9 +86,9 @@ pub struct Cuts {
 }
 
 impl Cuts {
-    /// Edges that were changed.
+    /// Edges that were changed, and vertices that were moved.
     pub fn changes(&self) -> usize {
-        self.splits + self.collapses + self.flips
+        self.splits + self.collapses + self.flips + self.slides
     }
 }
 
@@ -129,6 +134,9 @@ pub(crate) struct TopologyBuffers {
     /// The balls of the last call and their numbers. A ball keeps its number from call to call.
     pub(crate) balls: Vec<(Detail, u32)>,
     next_ball: u32,
+    /// One for each page that is worked on apart from others, made when it is first needed.
+    pub(crate) tasks: Vec<task::TopologyTask>,
+    pub(crate) map: absorb::SlotMap,
 }
 
 /// Pages that one call writes, at most, without asking for memory.

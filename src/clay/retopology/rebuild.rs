@@ -225,10 +225,10 @@ impl PageRebuild {
     /// Which page is home to which triangle: new ones, and those of vertices that moved house.
     fn share_out(&mut self, edit: &mut Edit, pages: &[Arc<Page>], next_triangle: &mut u32) {
         let mut created = std::mem::take(&mut edit.created);
+        created.retain(|&t| edit.has_triangle(t));
         created.iter_mut().for_each(|t| *t = canonical(*t));
         created.sort_unstable();
         created.dedup();
-        created.retain(|&t| edit.has_triangle(t));
         edit.created = created;
         for &t in &edit.created {
             let id = *next_triangle;

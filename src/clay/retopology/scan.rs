@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::shape::{FLIP_BELOW, sine2};
+use super::shape::{FLIP_BELOW, LEAST, sine2};
 use super::{Detail, PROTECTED, Within};
 use crate::assembly::PAGE_VERTICES;
 use crate::page::Page;
@@ -16,6 +16,8 @@ pub(crate) enum EdgeTask {
     Split,
     Collapse,
     Flip,
+    /// The shortest edge of a sliver: its ends become one, however long it is.
+    Merge,
 }
 
 /// An edge to be changed. Ordered by task, then by how urgent it is, then by its ends.
@@ -48,6 +50,8 @@ impl PageScan {
 
     /// Finds each triangle's longest edge where it is too long, its shortest where it is too
     /// short, and its longest where the triangle is badly shaped; each once, the most urgent first.
+    /// A triangle with an angle below 3 degrees is found where one corner lies in a ball: brushes
+    /// squeeze triangles at their rim too.
     pub(crate) fn scan(&mut self, page: &Page, balls: &[Detail], within: Within<'_>) {
         self.found.clear();
         self.find(page, balls, within);
@@ -79,10 +83,11 @@ impl PageScan {
         for corners in &t.triangles {
             let rows = corners.map(usize::from);
             let inside = rows.map(|r| self.inside[r]);
-            let edge_inside = [inside[0] & inside[1], inside[1] & inside[2], inside[2] & inside[0]];
-            if edge_inside == [0; 3] {
+            let touched = inside[0] | inside[1] | inside[2];
+            if touched == 0 {
                 continue;
             }
+            let edge_inside = [inside[0] & inside[1], inside[1] & inside[2], inside[2] & inside[0]];
             let p: [Vec3; 3] = rows.map(|r| page.points[r].truncate());
             let lengths = [
                 (p[0] - p[1]).length_squared(),
@@ -98,7 +103,10 @@ impl PageScan {
                     short = k;
                 }
             }
-            let ball = |k: usize| edge_inside[k].trailing_zeros() as usize;
+            let ball = |k: usize| {
+                let bits = if edge_inside[k] != 0 { edge_inside[k] } else { touched };
+                bits.trailing_zeros() as usize
+            };
             let mut add = |task, rank, k: usize| {
                 let end = |v: u16| match usize::from(v).checked_sub(t.own) {
                     None => (self.page, v),
@@ -108,6 +116,11 @@ impl PageScan {
                 let ends = [a.min(b), a.max(b)];
                 self.found.push(Candidate { task, rank, ends, ball: ball(k) as u8 });
             };
+            let shape = sine2(p[0], p[1], p[2]);
+            if shape < LEAST {
+                add(EdgeTask::Flip, shape.to_bits(), long);
+                add(EdgeTask::Merge, shape.to_bits(), short);
+            }
             if edge_inside[long] != 0 {
                 let b = &balls[ball(long)];
                 if b.split && lengths[long] > b.longest() * b.longest() {
@@ -122,11 +135,8 @@ impl PageScan {
                     continue;
                 }
             }
-            if edge_inside[long] != 0 {
-                let shape = sine2(p[0], p[1], p[2]);
-                if shape < FLIP_BELOW * 0.75 {
-                    add(EdgeTask::Flip, shape.to_bits(), long);
-                }
+            if edge_inside[long] != 0 && (LEAST..FLIP_BELOW * 0.75).contains(&shape) {
+                add(EdgeTask::Flip, shape.to_bits(), long);
             }
         }
     }

@@ -36,3 +36,8 @@ pub(crate) fn sine2(a: Vec3, b: Vec3, c: Vec3) -> f32 {
 pub(crate) fn normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
+
+/// The normal of a triangle, as long as the triangle is large.
+pub(crate) fn by_area(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    (b - a).cross(c - a)
+}

@@ -161,7 +161,6 @@ impl World {
         self.tell_surface_edit(Err(SceneError::TakenBack));
         let event = HistoryEvent::Scene(self.surface.event());
         let World { surface, timeline, scene, garbage, options, .. } = self;
-        scene.active_mut().clay.forget_balls();
         surface.end(&scene.active().clay, garbage);
         if timeline.end_step(scene, options.undo_bytes, garbage) {
             if self.undo_step() {

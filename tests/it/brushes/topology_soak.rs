@@ -46,6 +46,9 @@ struct Outcome {
     least: f64,
 }
 
+/// The least angle of a triangle once a stroke's work is done, degrees: brushes squeeze triangles,
+/// and the few that cannot be brought to 3 degrees stay above this.
+const LEAST_ANGLE: f64 = 1.0;
 /// Strokes between two looks at the whole surface.
 const WINDOW: usize = 25;
 /// A window ends with fewer strokes where its undo steps weigh this much: all must be kept.
@@ -114,20 +117,16 @@ fn random_brushes_with_dynamic_topology_keep_the_surface_whole() {
         let one = run(&start, euler, dabs, 1, true);
         println!("{} dabs, {} balls dropped, least angle {}", one.dabs, one.dropped, one.least);
         assert_eq!(one.dropped, 0);
-        // Brushes that pinch draw triangles thinner than any that topology makes.
-        assert!(one.least > 0.0, "a triangle without area");
+        // Brushes squeeze triangles to nothing; below 3 degrees they are mended where that can be.
+        assert!(one.least >= LEAST_ANGLE, "an angle of {} degrees", one.least);
         for workers in [2, 3, 7, 16] {
             let start = &start;
             // The workers' pool belongs to the thread that uses it first: each run has its own.
-            // More workers than cores are slow, and a fifth of the dabs tells as much.
             let other = std::thread::scope(|s| {
-                s.spawn(|| run(start, euler, (dabs / 5).max(1_000), workers, false))
-                    .join()
-                    .expect("no panic")
+                s.spawn(|| run(start, euler, dabs, workers, false)).join().expect("no panic")
             });
             // Taking a window back and doing it again leaves no trace either.
-            let same = other.hashes == one.hashes[..other.hashes.len()];
-            assert!(same, "with {workers} workers");
+            assert_eq!(other.hashes, one.hashes, "with {workers} workers");
             println!("{} dabs: the same bits with {workers} workers", other.dabs);
         }
     }
