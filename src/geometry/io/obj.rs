@@ -3,10 +3,10 @@
 //!
 //! Read: `v` (with `w` ignored or colours after it), `f` with any number of corners, negative
 //! indices, a backslash that continues a line, and `g`, `usemtl`, `o` as groups. Normals, lines,
-//! points and smoothing groups are passed over in silence; texture coordinates, free-form curves
-//! and surfaces with a warning.
+//! points and smoothing groups are passed over in silence; texture coordinates, materials, free-form
+//! curves and surfaces with a warning.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -83,6 +83,7 @@ pub(super) fn parse(
     let mut colours = Vec::new();
     let mut groups = ObjGroups::default();
     let (mut short, mut free, mut texture) = (0, 0, 0);
+    let mut materials: BTreeSet<&str> = BTreeSet::new();
     for (part, &(start, end)) in parts.iter().zip(&spans) {
         job.check()?;
         let base = mesh.positions.len() as i64;
@@ -115,6 +116,8 @@ pub(super) fn parse(
         short += part.short_faces;
         free += part.free_form;
         texture += part.texture;
+        let named = part.names.iter().filter(|(_, kind, name)| *kind == b'u' && !name.is_empty());
+        materials.extend(named.map(|(_, _, name)| name.as_str()));
     }
     groups.fill(mesh.face_count());
     mesh.groups = groups.used.then_some(groups.of_face);
@@ -124,6 +127,12 @@ pub(super) fn parse(
     }
     if texture > 0 {
         warnings.push(format!("{texture} texture coordinates (vt) left out"));
+    }
+    if !materials.is_empty() {
+        warnings.push(format!(
+            "{} materials (usemtl) kept as groups of faces, without their names and colours",
+            materials.len()
+        ));
     }
     if free > 0 {
         warnings.push(format!("{free} free-form curves or surfaces left out"));
