@@ -180,6 +180,24 @@ impl Picture {
         }
     }
 
+    /// A line two pixels wide between two places.
+    pub fn line(&mut self, from: (f32, f32), to: (f32, f32), colour: [u8; 3]) {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        // What is far outside costs no more than what is seen.
+        let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, 1e5) as usize;
+        for i in 0..=steps {
+            let t = i as f32 / steps as f32;
+            let (x, y) = ((from.0 + dx * t).floor(), (from.1 + dy * t).floor());
+            for (px, py) in [(x, y), (x - 1.0, y), (x, y - 1.0), (x - 1.0, y - 1.0)] {
+                let inside = (0.0..self.width as f32).contains(&px)
+                    && (0.0..self.height as f32).contains(&py);
+                if inside {
+                    self.rgb[py as usize * self.width + px as usize] = colour;
+                }
+            }
+        }
+    }
+
     /// Draws a scale of colours in the lower left corner: a bar from `low` to `high` by `colour`,
     /// and the two numbers beneath it, in black. Pictures of less than 240 by 80 pixels have no
     /// room for it and stay as they are.
@@ -278,6 +296,17 @@ mod tests {
         assert_eq!(count(|c| c[0] > 50 && c[1] == 0), 32 * 32 - 16 * 16);
         assert_eq!(p.place(&camera, Vec3::new(0.5, 0.5, 3.0)), (48.0, 16.0));
         assert_eq!(&p.png().expect("encodes")[1..4], b"PNG");
+    }
+
+    #[test]
+    fn a_line_is_drawn_between_its_ends_and_nowhere_else() {
+        let mut p = Picture { width: 40, height: 30, rgb: vec![[255; 3]; 1200] };
+        p.line((5.0, 5.0), (25.0, 15.0), [9, 0, 0]);
+        p.line((30.0, -50.0), (30.0, 500.0), [0, 9, 0]);
+        let at = |p: &Picture, x: usize, y: usize| p.rgb[y * 40 + x];
+        assert_eq!([at(&p, 5, 5), at(&p, 15, 10), at(&p, 25, 15)], [[9, 0, 0]; 3]);
+        assert_eq!([at(&p, 15, 5), at(&p, 36, 15), at(&p, 3, 5)], [[255; 3]; 3]);
+        assert!((0..30).all(|y| at(&p, 30, y) == [0, 9, 0] && at(&p, 29, y) == [0, 9, 0]));
     }
 
     #[test]

@@ -117,13 +117,92 @@ impl Winding {
     }
 }
 
-/// The solid angle of a triangle seen from the origin, over 4 pi; positive where its front is
-/// turned away from it.
-pub fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
-    let (la, lb, lc) = (a.length(), b.length(), c.length());
-    let up = a.dot(b.cross(c));
-    let down = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    up.atan2(down) / (2.0 * PI)
+/// A sum of angles without an arc tangent for each: that of the complex number, whose real part is
+/// not negative, and so many half turns. Turns are counted where a product or a factor is folded
+/// over, so that the sum is never off by one, whichever angles it is made of.
+#[derive(Clone, Copy)]
+struct AngleSum {
+    re: f64,
+    im: f64,
+    half_turns: i32,
+}
+
+impl AngleSum {
+    const NONE: AngleSum = AngleSum { re: 1.0, im: 0.0, half_turns: 0 };
+
+    /// The angle of (x, y), in [-pi, pi].
+    #[inline(always)]
+    fn of(y: f64, x: f64) -> AngleSum {
+        let size = x.abs() + y.abs();
+        if !(size > 0.0) {
+            return AngleSum::NONE;
+        }
+        let fold = 1.0f64.copysign(x) / size;
+        let turn = if y.is_sign_negative() { -1 } else { 1 };
+        AngleSum { re: x * fold, im: y * fold, half_turns: if x < 0.0 { turn } else { 0 } }
+    }
+
+    #[inline(always)]
+    fn plus(self, o: AngleSum) -> AngleSum {
+        let (re, im) = (self.re * o.re - self.im * o.im, self.re * o.im + self.im * o.re);
+        // Only two angles of one sign are together more than a quarter turn.
+        let turn = if self.im < 0.0 { -1 } else { 1 };
+        let fold = if re < 0.0 { -1.0 } else { 1.0 };
+        let half_turns = self.half_turns + o.half_turns + if re < 0.0 { turn } else { 0 };
+        AngleSum { re: re * fold, im: im * fold, half_turns }
+    }
+
+    /// The same, of a length that stays away from zero however many are summed up.
+    #[inline(always)]
+    fn renewed(self) -> AngleSum {
+        let scale = 1.0 / (self.re + self.im.abs());
+        AngleSum { re: self.re * scale, im: self.im * scale, ..self }
+    }
+
+    fn turns(self) -> f64 {
+        self.im.atan2(self.re) / (2.0 * PI) + 0.5 * f64::from(self.half_turns)
+    }
+}
+
+/// Half the solid angles of a leaf's triangles seen from `p`, four at once (Van Oosterom and
+/// Strackee 1983); positive where a front is turned away.
+#[inline(always)]
+fn angles_of(pack: &Pack, p: DVec3) -> AngleSum {
+    let p = p.to_array();
+    let mut v = [[[0.0f64; 4]; 3]; 3];
+    for c in 0..3 {
+        for axis in 0..3 {
+            for i in 0..4 {
+                v[c][axis][i] = f64::from(pack.v[c][axis][i]) - p[axis];
+            }
+        }
+    }
+    let [a, b, c] = v;
+    let dot = |s: &[[f64; 4]; 3], t: &[[f64; 4]; 3]| {
+        let mut out = [0.0; 4];
+        for i in 0..4 {
+            out[i] = s[0][i] * t[0][i] + s[1][i] * t[1][i] + s[2][i] * t[2][i];
+        }
+        out
+    };
+    let mut normal = [[0.0; 4]; 3];
+    for k in 0..3 {
+        let (m, n) = ((k + 1) % 3, (k + 2) % 3);
+        for i in 0..4 {
+            normal[k][i] = b[m][i] * c[n][i] - b[n][i] * c[m][i];
+        }
+    }
+    let up = dot(&a, &normal);
+    let [la, lb, lc] = [&a, &b, &c].map(|s| dot(s, s).map(f64::sqrt));
+    let (ab, bc, ca) = (dot(&a, &b), dot(&b, &c), dot(&c, &a));
+    let mut down = [0.0; 4];
+    for i in 0..4 {
+        down[i] = la[i] * lb[i] * lc[i] + ab[i] * lc[i] + bc[i] * la[i] + ca[i] * lb[i];
+    }
+    let one = |i: usize| {
+        if pack.id[i] == NO_TRIANGLE { AngleSum::NONE } else { AngleSum::of(up[i], down[i]) }
+    };
+    one(0).plus(one(1)).plus(one(2).plus(one(3)))
 }
 
 struct WindingQuery<'a> {
@@ -144,7 +223,7 @@ impl WideWork for WindingQuery<'_> {
             if tree.stack_need() > 128 { vec![0u32; tree.stack_need()] } else { Vec::new() };
         let stack: &mut [u32] = if heap.is_empty() { &mut inline } else { &mut heap };
         let mut top = 1;
-        let (mut far_sum, mut near_sum) = (0.0f64, 0.0f64);
+        let (mut far_sum, mut near_sum) = (0.0f64, AngleSum::NONE);
         while top > 0 {
             top -= 1;
             let at = stack[top] as usize;
@@ -174,14 +253,38 @@ impl WideWork for WindingQuery<'_> {
                     top += 1;
                     continue;
                 }
-                let pack = &tree.packs()[(child & !LEAF) as usize];
-                for lane in 0..4 {
-                    if pack.id[lane] != NO_TRIANGLE {
-                        near_sum += solid_angle(corners(pack, lane).map(|c| c - exact));
-                    }
-                }
+                let own = angles_of(&tree.packs()[(child & !LEAF) as usize], exact);
+                near_sum = near_sum.plus(own).renewed();
             }
         }
-        far_sum / (4.0 * PI) + near_sum
+        far_sum / (4.0 * PI) + near_sum.turns()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_angles_have_all_their_turns() {
+        // Whole and half turns among them, where an arc tangent of the product would lose one.
+        let mut sum = AngleSum::NONE;
+        let mut known = 0.0;
+        for i in 0..4000 {
+            let angle = match i % 4 {
+                0 => PI,
+                1 => f64::from(i) * 0.37 % PI,
+                2 => -(f64::from(i) * 0.11 % PI),
+                _ => PI / 2.0,
+            };
+            let size = 10f64.powi(i % 9 - 4);
+            let (y, x) = if i % 4 == 0 { (0.0, -1.0) } else { (angle.sin(), angle.cos()) };
+            sum = sum.plus(AngleSum::of(y * size, x * size)).renewed();
+            known += angle;
+            assert!((sum.turns() - known / (2.0 * PI)).abs() < 1e-9, "{i}");
+        }
+        let none = [AngleSum::of(0.0, 0.0), AngleSum::of(0.0, 3.0), AngleSum::of(-0.0, 3.0)];
+        assert!(none.iter().all(|a| a.turns() == 0.0));
+        assert_eq!([0.0, -0.0].map(|y| AngleSum::of(y, -2.0).turns()), [0.5, -0.5]);
     }
 }

@@ -2,9 +2,9 @@
 //! Triangles are bisected across their longest edge (Rivara, "Algorithms for refining triangular
 //! grids suitable for adaptive and multigrid techniques", 1984).
 
-use std::collections::BTreeMap;
-
 use crate::TriMesh;
+use crate::job::Job;
+use crate::weld::weld_keys;
 
 /// Triangles that refinement stops at.
 const MOST: usize = 2_000_000;
@@ -44,52 +44,77 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> Refined {
     }
     let reach = mesh.positions.iter().fold(0.0f32, |r, p| r.max(p.abs().max_element()));
     let least = (LOW * spacing).max(ROUNDINGS * f32::EPSILON * reach);
+    // An edge no longer than the spacing is never cut, so a triangle of three such edges stays.
+    let most = spacing * spacing;
+    let mut settled = vec![false; out.triangles.len()];
     loop {
-        let slivers = edges_of_slivers(&out, least);
-        let mut cut: BTreeMap<(u32, u32), u32> = BTreeMap::new();
-        let mut next = Vec::with_capacity(out.triangles.len());
-        for t in &out.triangles {
+        let slivers = edges_of_slivers(&out, &settled, least);
+        // The edges of the others, each with a number.
+        let open: Vec<u32> = (0..settled.len() as u32).filter(|&t| !settled[t as usize]).collect();
+        let side = |i: usize| {
+            let t = out.triangles[open[i / 3] as usize];
+            let (a, b) = (t[i % 3], t[(i + 1) % 3]);
+            [a.min(b), a.max(b), 0]
+        };
+        let Ok((edges, edge_of)) = weld_keys(3 * open.len(), &Job::default(), side) else {
+            return Refined { mesh: out, of };
+        };
+        let length = |[a, b, _]: &[u32; 3]| {
+            out.positions[*a as usize].distance_squared(out.positions[*b as usize])
+        };
+        let lengths: Vec<f32> = edges.iter().map(length).collect();
+        let mut middle: Vec<Option<u32>> = vec![None; edges.len()];
+        let mut cut: Vec<[u32; 3]> = Vec::new();
+        for (&t, own) in open.iter().zip(edge_of.chunks_exact(3)) {
             // Only a triangle's longest edge is cut in one round: slivers become round before they
             // become many.
-            let length = |k: usize| {
-                let (a, b) = (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]));
-                (out.positions[a as usize].distance_squared(out.positions[b as usize]), a, b)
-            };
-            let longest = (0..3)
-                .map(length)
-                .filter(|&(_, a, b)| slivers.binary_search(&(a, b)).is_err())
-                .fold((0.0, 0, 0), |m, e| if e > m { e } else { m });
-            let [a, b, c] = t.map(|v| out.positions[v as usize]);
-            let wide = (b - a).cross(c - a).length() * 0.5 > spacing * spacing * SLIVER;
-            if longest.0 > spacing * spacing && wide {
-                let fresh = (out.positions.len() + cut.len()) as u32;
-                cut.entry((longest.1, longest.2)).or_insert(fresh);
+            settled[t as usize] = own.iter().all(|&e| lengths[e as usize] <= most);
+            let longest = own
+                .iter()
+                .map(|&e| (lengths[e as usize], edges[e as usize], e))
+                .filter(|(_, [a, b, _], _)| slivers.binary_search(&(*a, *b)).is_err())
+                .fold((0.0, [0; 3], 0), |m, e| if (e.0, e.1) > (m.0, m.1) { e } else { m });
+            let [a, b, c] = out.corners(t as usize);
+            let wide = (b - a).cross(c - a).length() * 0.5 > most * SLIVER;
+            let slot = &mut middle[longest.2 as usize];
+            if longest.0 > most && wide && slot.is_none() {
+                *slot = Some((out.positions.len() + cut.len()) as u32);
+                cut.push(longest.1);
             }
         }
         if cut.is_empty() || out.triangles.len() + 2 * cut.len() > MOST {
             return Refined { mesh: out, of };
         }
-        let mut middles = vec![glam::Vec3::ZERO; cut.len()];
-        for (&(a, b), &m) in &cut {
-            middles[m as usize - out.positions.len()] =
-                (out.positions[a as usize] + out.positions[b as usize]) * 0.5;
-        }
-        let mut next_of = Vec::with_capacity(of.len());
-        for (&[a, b, c], &whole) in out.triangles.iter().zip(&of) {
-            let mid = |x: u32, y: u32| cut.get(&(x.min(y), x.max(y))).copied();
-            split([a, b, c], [mid(a, b), mid(b, c), mid(c, a)], &mut next);
+        let room = out.triangles.len() + 2 * cut.len();
+        let (mut next, mut next_of) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        let mut next_settled = Vec::with_capacity(room);
+        let mut own = open.iter().zip(edge_of.chunks_exact(3)).peekable();
+        for (t, (corners, &whole)) in out.triangles.iter().zip(&of).enumerate() {
+            match own.next_if(|o| *o.0 as usize == t) {
+                Some((_, e)) => {
+                    split(*corners, [0, 1, 2].map(|k| middle[e[k] as usize]), &mut next);
+                }
+                None => next.push(*corners),
+            }
             next_of.resize(next.len(), whole);
+            next_settled.resize(next.len(), settled[t]);
         }
-        of = next_of;
+        let middles: Vec<glam::Vec3> = cut
+            .iter()
+            .map(|&[a, b, _]| (out.positions[a as usize] + out.positions[b as usize]) * 0.5)
+            .collect();
+        (of, settled) = (next_of, next_settled);
         out.positions.extend(middles);
         out.triangles = next;
     }
 }
 
-/// The edges, lower vertex first, of triangles whose least height is below `least`; sorted.
-fn edges_of_slivers(mesh: &TriMesh, least: f32) -> Vec<(u32, u32)> {
+/// The edges, lower vertex first, of triangles whose least height is below `least`; sorted. Without
+/// those of the settled ones, which are not cut in any case.
+fn edges_of_slivers(mesh: &TriMesh, settled: &[bool], least: f32) -> Vec<(u32, u32)> {
     let mut edges = Vec::new();
-    for (i, t) in mesh.triangles.iter().enumerate() {
+    let open = |i: &(usize, &[u32; 3])| !settled[i.0];
+    for (i, t) in mesh.triangles.iter().enumerate().filter(open) {
         let [a, b, c] = mesh.corners(i);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         if (b - a).cross(c - a).length() < least * longest {

@@ -5,14 +5,14 @@ mod batch;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::picture::{Camera, draw};
+use sculptd_geometry::picture::{Camera, Picture, draw};
 use sculptd_geometry::thickness::check::{
     CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
 };
@@ -36,7 +36,7 @@ pub struct ThicknessArgs {
     #[command(flatten)]
     pub limits: LimitArgs,
     /// Tell the thickness at the point of the surface nearest to this one, with its rays, instead
-    /// of the whole part's; in the file's coordinates, millimetres.
+    /// of the whole part's; in the file's coordinates, millimetres. `--png` draws both.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
@@ -291,9 +291,15 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
     let part = CentredMesh::new(&loaded.mesh, args.how.unit.scale());
     let found = probe(&part.mesh, &args.how.settings(), at - part.centre, job)
         .map_err(|e| Fail::Usage(e.to_string()))?;
-    let Some(Probe { position, normal, thickness, error, rays, .. }) = found else {
+    let Some(found) = found else {
         return Err(Fail::Input(format!("{}: no surface there to measure at", path.display())));
     };
+    if let Some(out) = &args.png {
+        let png = drawn(&part.mesh, &found).png();
+        let png = png.map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
+        write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
+    }
+    let Probe { position, normal, thickness, error, rays, .. } = found;
     let position = part.to_file(position.into()).to_array();
     let file = path.display().to_string();
     let out = AtAnswer { file, position, normal, thickness, error, rays };
@@ -310,10 +316,35 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
     Ok(())
 }
 
+/// The part seen along the surface at a probed place, a little from above, with the rays through
+/// it and a ring around the place.
+fn drawn(mesh: &TriMesh, found: &Probe) -> Picture {
+    let (place, normal) = (Vec3::from(found.position), Vec3::from(found.normal));
+    let (side, _) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
+    let camera = Camera::from_side(mesh, side + normal * 0.4, 4.0 / 3.0);
+    let mut picture = draw(mesh, None, &camera, 1200, 900);
+    let from = picture.place(&camera, place);
+    for ray in &found.rays {
+        let Some(length) = ray.length else { continue };
+        let to = picture.place(&camera, place + Vec3::from(ray.direction) * length);
+        picture.line(from, to, [200, 30, 30]);
+    }
+    picture.ring(from, 8.0);
+    picture
+}
+
 pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     let limits = args.limits.limits(presets)?;
     let job = Job::default();
     if let Some(at) = args.at {
+        let others = [&args.ply, &args.report, &args.junit, &args.out];
+        if others.iter().any(|o| o.is_some()) {
+            return Err(Fail::Usage(
+                "--at tells one place, and draws it with --png: --ply, --report, --junit and --out \
+                 are of the whole part"
+                    .into(),
+            ));
+        }
         return match &args.meshes[..] {
             [path] => tell_at(path, args, at, &job, json),
             _ => Err(Fail::Usage("--at: expected one mesh".into())),
