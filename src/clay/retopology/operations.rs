@@ -10,7 +10,7 @@
 //! Brushes squeeze triangles, so a triangle with an angle below 3 degrees is mended wherever one of
 //! its corners lies in a ball: its longest edge is flipped, else two of its corners are joined,
 //! else one is slid along the surface ([`super::collapse`]), which may then turn a triangle by 90
-//! degrees. A few cannot be mended: their angles stay above 1 degree in 100,000 random dabs.
+//! degrees. A few cannot be mended: their angles stayed above 1 degree in 50,000 random dabs.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
