@@ -135,7 +135,9 @@ def quads():
                 out.write(f"vt {i / 48} {j / 24}\n")
         for n, face in enumerate(faces):
             if n % 288 == 0:
-                out.write(f"g part{n // 288}\nusemtl metal{n // 576}\n")
+                out.write(f"g part{n // 288}\n")
+            if n % 576 == 0:
+                out.write(f"usemtl metal{n // 576}\n")
             i, j = divmod(n, 24)
             uv = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
             corners = [f"{v + 1}/{a * 25 + b + 1}" for v, (a, b) in zip(face, uv)]
