@@ -8,7 +8,6 @@ use sculptd_geometry::distance::{DistanceSolid, Sign};
 use sculptd_geometry::grid::DistanceGrid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes::{cuboid, icosphere, torus};
-use sculptd_geometry::winding::solid_angle;
 
 use super::{Random, bounds, long, meshes};
 
@@ -17,6 +16,15 @@ fn exhaustive(mesh: &TriMesh, p: DVec3) -> f64 {
     let each =
         |t| p.distance_squared(nearest_on_triangle(p, mesh.corners(t).map(Vec3::as_dvec3)).0);
     (0..mesh.triangles.len()).map(each).fold(f64::INFINITY, f64::min).sqrt()
+}
+
+/// The solid angle of a triangle seen from the origin, over 4 pi, each by an arc tangent of its own
+/// (Van Oosterom and Strackee 1983); positive where its front is turned away.
+fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let up = a.dot(b.cross(c));
+    let down = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    up.atan2(down) / std::f64::consts::TAU
 }
 
 /// The sum of all solid angles, in turns.
