@@ -25,7 +25,7 @@ const STAY: [(&str, &[&str]); 14] = [
     ("panels/fonts.rs", &[]),
     // Keys of a keypad that need no word; the other words of an installation have files of their
     // own (config/languages/CODE.toml).
-    ("panels/kiosk.rs", &["OK"]),
+    ("panels/kiosk.rs", &["OK", "door", "keypad"]),
     // A quantile, and what files are called.
     ("panels/timing.rs", &["p50", "p99", "max", "ms"]),
     ("panels/files.rs", &["stl, obj, ply, off, glb, 3mf"]),

@@ -1,18 +1,11 @@
 //! Keeps what lights the clay level with what the person chose: asks for files when the choice or
 //! the page changes, and takes what was read onto the card.
 
+use super::look_choice::LookChoice;
 use super::look_files::{LookFiles, LookFilesWanted};
 use super::state::WindowState;
 use crate::look::Light;
 use crate::panels::state::Tab;
-
-/// What was chosen when the pictures were asked for last.
-#[derive(Debug, Default)]
-pub(super) struct LookFollow {
-    asked: LookFilesWanted,
-    /// What lights the clay, and how dense the reference is behind it.
-    shown: (Light, u32),
-}
 
 impl WindowState {
     /// How dense the reference picture is behind the clay.
@@ -36,25 +29,25 @@ impl WindowState {
             reference: prefs.reference.file.clone(),
             list: self.ui_state.tab == Tab::Look && !self.ui_state.hidden,
         };
-        if wanted != self.look_follow.asked {
-            self.look_follow.asked = wanted.clone();
+        if wanted != self.look_choice.asked {
+            self.look_choice.asked = wanted.clone();
             self.tasks.look(wanted, folders.clone());
         }
         let shown = (look.light, self.backdrop().to_bits());
-        if self.look_follow.shown == shown {
+        if self.look_choice.shown == shown {
             return false;
         }
         if shown.0 == Light::Room {
             self.renderer.surroundings.set_room(&self.gpu);
         }
-        self.look_follow.shown = shown;
+        self.look_choice.shown = shown;
         self.map_changes += 1;
         true
     }
 
     /// Asks again: files came, or the renderer is new.
     pub(super) fn look_again(&mut self) {
-        self.look_follow = LookFollow::default();
+        self.look_choice = LookChoice::default();
     }
 
     /// Takes what was read.

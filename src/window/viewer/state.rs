@@ -11,8 +11,8 @@ use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPictureKey;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
+use super::look_choice::LookChoice;
 use super::look_files::LookFolders;
-use super::look_follow::LookFollow;
 use super::overlay;
 use super::overlay_mesh::Triangles;
 use super::pacing::{FrameSum, Pacing};
@@ -82,7 +82,7 @@ pub(super) struct WindowState {
     pub(super) preferences_file: PreferencesFile,
     /// Where a person's own pictures for the look lie; `None`: none are looked for.
     pub(super) look_folders: Option<LookFolders>,
-    pub(super) look_follow: LookFollow,
+    pub(super) look_choice: LookChoice,
     pub(super) values: Option<MapValues>,
     /// The revision and limit that a thickness map was last asked for.
     pub(super) asked_map: Option<(ClayState, f32, ObjectTransform)>,
@@ -250,7 +250,7 @@ impl WindowState {
             tasks: Tasks::default(),
             preferences_file,
             look_folders: wiring.kiosk.is_none().then(LookFolders::usual).flatten(),
-            look_follow: LookFollow::default(),
+            look_choice: LookChoice::default(),
             values: None,
             asked_map: None,
             devices: Vec::new(),

@@ -10,9 +10,8 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
-use super::folder_listing::list_folder;
 use super::latest_wins::LatestWins;
-use super::look_files::{LookFiles, LookFilesWanted, LookFolders};
+use super::look_files::LookFiles;
 use super::pages::MapValues;
 use super::preview::{self, Preview};
 use super::task_texts::{failed, operation_title, saved};
@@ -134,7 +133,7 @@ impl Default for Tasks {
 }
 
 /// Runs something on a thread that speaks the language of this one.
-fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
+pub(super) fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
     let language = current();
     let run = move || {
         set_current(&language);
@@ -546,35 +545,6 @@ impl Tasks {
                 None => return,
             };
             let _ = say.send(report);
-        });
-    }
-
-    /// Reads a folder for the window's own file chooser.
-    pub fn list(&self, folder: PathBuf) {
-        let say = self.say.clone();
-        thread("sculptd-folder", move || {
-            let listing = list_folder(&folder);
-            let _ = say.send(TaskReport::Listed(folder, listing));
-        });
-    }
-
-    /// Reads pictures for the look.
-    pub fn look(&self, wanted: LookFilesWanted, folders: LookFolders) {
-        let say = self.say.clone();
-        thread("sculptd-look", move || {
-            let found = LookFiles::read(&wanted, &folders);
-            let _ = say.send(TaskReport::Look(Box::new(found)));
-        });
-    }
-
-    /// Keeps a picture that was dropped on the window.
-    pub fn keep_picture(&self, path: PathBuf, folders: LookFolders) {
-        let say = self.say.clone();
-        thread("sculptd-look", move || {
-            let _ = say.send(match folders.keep(&path) {
-                Ok(kept) => TaskReport::KeptPicture(kept.display().to_string()),
-                Err(e) => TaskReport::Message(e, true),
-            });
         });
     }
 

@@ -50,11 +50,13 @@ fn the_first_layer_is_added_from_the_panel() {
 fn layers_are_listed_and_what_is_clicked_is_asked_for() {
     let mut h = two_layers();
     for name in ["wrinkles", "base", "Down", "Merge down", "Duplicate layer", "Clear layer"] {
-        h.get_by_role_and_label(Role::Button, name).click();
+        // Objects are moved by buttons of the same names above.
+        let all: Vec<_> = h.get_all_by_role_and_label(Role::Button, name).collect();
+        all.last().expect("a button").click_accesskit();
         h.run_steps(3);
     }
     for name in ["Remove layer", "Bake layers", "Add layer"] {
-        h.get_by_role_and_label(Role::Button, name).click();
+        h.get_by_role_and_label(Role::Button, name).click_accesskit();
         h.run_steps(3);
     }
     let (lower, upper) = (LayerId(0), LayerId(1));

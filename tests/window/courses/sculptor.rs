@@ -1,5 +1,5 @@
-//! A sculptor with a tablet: strokes with pressure, brushes, mirror, masks, views, layers of detail,
-//! a remesh, and the work again after the window was closed.
+//! A sculptor with a tablet: strokes with pressure, brushes, mirror, masks, views, levels of
+//! detail, a remesh, and the work again after the window was closed.
 
 use std::time::Instant;
 

@@ -1,4 +1,5 @@
-//! What a person's own pictures offer for the look of the clay: lit balls, surroundings, references.
+//! What a person's own pictures offer for the look of the clay: lit balls, surroundings,
+//! references.
 
 /// What was found in the person's folders when the page was opened last.
 #[derive(Default)]
