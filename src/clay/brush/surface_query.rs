@@ -59,6 +59,8 @@ impl Scratch {
 
 /// Pages below which one thread finds a plane alone.
 const PARALLEL: usize = 4;
+/// Pages of a plane that are added up together: room for more is never asked for.
+const AT_ONCE: usize = 64;
 /// Sums kept apart while a page is added up.
 const LANES: usize = 4;
 
@@ -175,27 +177,41 @@ impl SurfaceQuery<'_> {
         let radius = dab.radius * dab.settings.normal_radius;
         let mean = MeanPlane { centre: dab.centre, normal: dab.normal, radius };
         let reach = Reach::Sphere { centre: dab.centre, radius };
-        let (mesh, (pages, sums)) = (self.mesh, &mut self.scratch.plane);
+        let (mesh, workers) = (self.mesh, self.workers);
+        let (pages, sums) = &mut self.scratch.plane;
         pages.clear();
-        if before {
-            mesh.each_page_before(&reach, |number, _| pages.push(number));
-        } else {
-            mesh.each_page(&reach, |number, _| pages.push(number));
-        }
+        pages.reserve(AT_ONCE);
         sums.clear();
-        sums.resize(pages.len(), [[0.0; LANES]; 7]);
-        // The threads are awake for the dab that follows, too.
-        self.workers.each(pages.len() >= PARALLEL, pages, sums, |number, sums| {
-            let page = if before { mesh.before(*number) } else { mesh.page(*number) };
-            *sums = dispatch(false, AddPage { mean: &mean, page });
-        });
-        // In the order of the pages, whoever added them up.
+        sums.reserve(AT_ONCE);
         let mut all = [0.0; 7];
-        for page in sums.iter() {
-            for (sum, lanes) in all.iter_mut().zip(page) {
-                lanes.iter().for_each(|lane| *sum += lane);
+        let mut add = |pages: &mut Vec<u32>| {
+            sums.clear();
+            sums.resize(pages.len(), [[0.0; LANES]; 7]);
+            // The threads are awake for the dab that follows, too.
+            workers.each(pages.len() >= PARALLEL, pages, sums, |number, sums| {
+                let page = if before { mesh.before(*number) } else { mesh.page(*number) };
+                *sums = dispatch(false, AddPage { mean: &mean, page });
+            });
+            // In the order of the pages, whoever added them up.
+            for page in sums.iter() {
+                for (sum, lanes) in all.iter_mut().zip(page) {
+                    lanes.iter().for_each(|lane| *sum += lane);
+                }
             }
+            pages.clear();
+        };
+        let mut visit = |number: u32| {
+            pages.push(number);
+            if pages.len() == AT_ONCE {
+                add(pages);
+            }
+        };
+        if before {
+            mesh.each_page_before(&reach, |number, _| visit(number));
+        } else {
+            mesh.each_page(&reach, |number, _| visit(number));
         }
+        add(pages);
         let [x, y, z, nx, ny, nz, sum] = all;
         let normal = DVec3::new(nx, ny, nz).as_vec3().try_normalize().unwrap_or(dab.normal);
         let point = DVec3::new(x, y, z);
