@@ -183,9 +183,12 @@ fn layers_and_face_sets_are_worked_with_the_pointer() {
     s.seen("objects-layer");
     let bare = hash(&s);
     let (dabs, ball) = (s.figure("dabs"), pixel(&s, DVec3::new(0.0, 0.0, 1.0)));
+    let steps = s.figure("undo_steps");
     pull(&s, (ball.0 - 40, ball.1), (ball.0 + 40, ball.1 + 10));
     s.drive(&["mouseup", "1"]);
     s.until("a stroke goes to the layer", |s| s.figure("dabs") > dabs && hash(s) != bare);
+    // Its end brings the last dabs.
+    s.until("it has ended", |s| s.figure("undo_steps") == steps + 1);
     let with = hash(&s);
     s.seen("objects-layer-stroke");
     click(&s, EYE_OF_LAYER);

@@ -45,8 +45,6 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
-mod self_arrangement;
-mod self_cuts;
 mod simplify;
 mod solve;
 mod verify;
