@@ -73,13 +73,14 @@ fn layers_are_listed_and_what_is_clicked_is_asked_for() {
     ];
     assert_eq!(asked(&h), expected);
     // The highest layer cannot go up.
-    h.get_by_role_and_label(Role::Button, "Up").click();
+    let up: Vec<_> = h.get_all_by_role_and_label(Role::Button, "Up").collect();
+    up.last().expect("a button").click_accesskit();
     h.run_steps(3);
     assert_eq!(asked(&h).len(), expected.len());
     // The eyes: those of the object and of both layers, the upper one first.
     let eyes: Vec<_> = h.get_all_by_label("eye").collect();
     assert_eq!(eyes.len(), 3);
-    eyes[1].click();
+    eyes[1].click_accesskit();
     h.run_steps(3);
     let hide = LayerEdit::Set { id: upper, intensity: None, visible: Some(false), live: false };
     assert_eq!(asked(&h).last(), Some(&hide));

@@ -14,8 +14,11 @@ use crate::stage::{Stage, pause};
 /// The tablet, mm.
 const AREA: Vec2 = Vec2::new(200.0, 125.0);
 
+/// Where a stroke begins and ends, and its pressure.
+type DrawnLine = ((f32, f32), (f32, f32), f32);
+
 /// Every stroke of the course in turn: two places of the tablet, shares of it, and the pressure.
-const STROKES: [((f32, f32), (f32, f32), f32); 8] = [
+const STROKES: [DrawnLine; 8] = [
     ((0.40, 0.38), (0.60, 0.38), 0.15),
     ((0.40, 0.48), (0.60, 0.48), 0.5),
     ((0.40, 0.58), (0.60, 0.58), 1.0),
@@ -38,7 +41,7 @@ struct Tablet {
 impl Tablet {
     fn new() -> Tablet {
         let mm = |(x, y): (f32, f32)| Vec2::new(x, y) * AREA;
-        let stroke = |(i, (from, to, pressure)): (usize, ((f32, f32), (f32, f32), f32))| Stroke {
+        let stroke = |(i, (from, to, pressure)): (usize, DrawnLine)| Stroke {
             from_us: i as u64 * TURN_US + 300_000,
             to_us: i as u64 * TURN_US + 800_000,
             shape: Shape::Line(mm(from), mm(to)),
