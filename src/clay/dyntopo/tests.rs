@@ -333,11 +333,11 @@ fn slivers_are_mended_though_their_edges_have_their_length() {
     let near = |p: &Vec3| (*p - Vec3::Z).length() < 0.3;
     // Squeezed along x, as by a pinch.
     for p in ball.positions.iter_mut().filter(|p| near(p)) {
-        p.x *= 0.02;
+        p.x *= 0.005;
     }
     let mut clay = Clay::build(&ball, &Job::default()).unwrap();
     let before = checked(&clay.to_tri()).1;
-    assert!(before < 1.0, "{before}");
+    assert!(before < 2.0, "{before}");
     let detail = Detail { centre: Vec3::Z, radius: 0.5, edge: 0.1, split: false, collapse: false };
     let mut sum = 0;
     loop {
@@ -349,7 +349,6 @@ fn slivers_are_mended_though_their_edges_have_their_length() {
         }
     }
     let (euler, least, _) = checked(&clay.to_tri());
-    // Not every sliver can be brought to 3 degrees.
-    assert!(sum > 10 && euler == 2 && least >= 2.0, "{sum} changes, an angle of {least}");
+    assert!(sum > 10 && euler == 2 && least >= 3.0, "{sum} changes, an angle of {least}");
     clay.verify_invariants().unwrap();
 }
