@@ -82,7 +82,7 @@ impl VertexContext<'_> {
     }
 }
 
-/// Neighbouring vertices of a page that a brush looks at together, [`BLOCK`] at most; beyond the
+/// Neighbouring vertices of a page that a brush looks at together, 64 at most; beyond the
 /// last all is zero. Where the weight is 0 nothing is changed, whatever the brush says.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockContext<'a> {

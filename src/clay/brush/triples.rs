@@ -17,7 +17,7 @@ impl Triples {
     /// Zeros.
     pub const ZERO: Triples = Triples([[0.0; BLOCK]; 3]);
 
-    /// The first three lanes of each row, [`BLOCK`] at most; zeros beyond the last.
+    /// The first three lanes of each row, 64 at most; zeros beyond the last.
     #[inline(always)]
     pub fn of(rows: &[Vec4]) -> Triples {
         let mut out = Triples::ZERO;
@@ -25,7 +25,7 @@ impl Triples {
         out
     }
 
-    /// Takes the first three lanes of each row, [`BLOCK`] at most, measured from `origin`.
+    /// Takes the first three lanes of each row, 64 at most, measured from `origin`.
     #[inline(always)]
     pub fn fill(&mut self, rows: &[Vec4], origin: Vec3) {
         let [x, y, z] = &mut self.0;
@@ -89,7 +89,7 @@ impl Triples {
     }
 }
 
-/// The fourth lane of each row, [`BLOCK`] at most; zeros beyond the last.
+/// The fourth lane of each row, 64 at most; zeros beyond the last.
 #[inline(always)]
 pub(super) fn fourth_lanes(rows: &[Vec4]) -> [f32; BLOCK] {
     let mut out = [0.0; BLOCK];

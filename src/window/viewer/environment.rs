@@ -1,4 +1,4 @@
-//! Light from all around, for [`super::surroundings`]: a picture of what surrounds the clay, made
+//! Light from all around: a picture of what surrounds the clay, made
 //! ready for diffuse and for glossy light.
 //!
 //! The picture is equirectangular, as Radiance HDR files of surroundings are. For diffuse light it
