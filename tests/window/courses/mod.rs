@@ -1,4 +1,4 @@
-//! Three courses through the program as people go through it: a sculptor with a tablet, a newcomer
+//! Three courses through the program as people begin with it: a sculptor with a tablet, a newcomer
 //! with a mouse, an installer. Each step is done in a real window by pen, pointer and keys, and has
 //! come when the daemon or the screen says so. The list of steps is printed; with
 //! `SCULPTD_SHOTS=folder` each leaves a picture, and some are compared with those that are kept.

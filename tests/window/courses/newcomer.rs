@@ -5,7 +5,7 @@ use sculptd_geometry::shapes;
 use serde_json::json;
 
 use super::{Course, brush, drag_with, hash, key, press, steps};
-use crate::stage::{Stage, differs, pause};
+use crate::stage::{Stage, differs};
 
 #[test]
 fn a_newcomer_s_hour_with_a_mouse() {
@@ -143,18 +143,5 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |_| std::fs::read(&out).is_ok_and(|now| now == first),
     );
 
-    // A slip: everything is closed by mistake, and nothing is lost.
-    let last = hash(&c.s);
-    c.step(
-        "the window is closed without a word, and opened",
-        |s| s.restart(&[]),
-        |s| s.figure("vertices") > 1_000,
-    );
-    pause(500);
-    c.step(
-        "the last work comes back by a press",
-        |s| press(s, (330, 633)),
-        |s| s.soon(|s| hash(s) == last),
-    );
     println!("{} steps", c.steps);
 }
