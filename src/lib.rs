@@ -38,7 +38,8 @@
 //!    goes through pages in portions counted by what looking and writing cost, and strokes wait;
 //!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done, but for an
 //!    undo, which takes new triangles in place back at once.
-//!    Four more exceptions: an edit of face sets, and dynamic topology on an object that has some,
+//!    Five more exceptions: a local remesh allocates the lists of pages that it works on, and once
+//!    the memory of its tasks; an edit of face sets, and dynamic topology on an object that has some,
 //!    as a stroke that draws them, allocates two bytes a vertex that it writes; the end of a
 //!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface
 //!    while layers are still being summed up finishes them in its tick, and so do a hand's menu and
