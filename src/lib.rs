@@ -38,14 +38,14 @@
 //!    goes through pages in portions counted by what looking and writing cost, and strokes wait;
 //!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done, but for an
 //!    undo, which takes new triangles in place back at once.
-//!    Five more exceptions: a local remesh allocates the lists of pages that it works on, and once
-//!    the memory of its tasks; an edit of face sets, and dynamic topology on an object that has some,
-//!    as a stroke that draws them, allocates two bytes a vertex that it writes; the end of a
-//!    stroke on a layer allocates that layer's new offsets; a command that needs the whole surface
-//!    while layers are still being summed up finishes them in its tick, and so do a hand's menu and
-//!    commands of a shared sculpture with such an edit; and in a shared sculpture (feature
-//!    `network`) ticks allocate, and each replica builds a mesh that a command brings on this
-//!    thread.
+//!    Five more exceptions: a local remesh allocates the lists of pages that it works on, and
+//!    once the memory of its tasks; an edit of face sets, and dynamic topology on an object that
+//!    has some, as a stroke that draws them, allocates two bytes a vertex that it writes; the end
+//!    of a stroke on a layer allocates that layer's new offsets; a command that needs the whole
+//!    surface while layers are still being summed up finishes them in its tick, and so do a
+//!    hand's menu and commands of a shared sculpture with such an edit; and in a shared sculpture
+//!    (feature `network`) ticks allocate, and each replica builds a mesh that a command brings on
+//!    this thread.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.
