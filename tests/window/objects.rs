@@ -138,9 +138,9 @@ fn the_outliner_is_clicked_and_the_gizmo_dragged() {
     s.look("objects-dragged");
     s.drive(&["mouseup", "1"]);
     s.until("it is moved in one step", |s| s.figure("undo_steps") == steps + 1);
-    let moved = shift(&s, id) - before;
-    println!("moved by {moved}, asked 0.5 along x");
-    assert!((moved - DVec3::X * 0.5).length() < 0.02, "{moved}");
+    let moved = |s: &Stage| shift(s, id) - before;
+    s.until("it is moved by 0.5 along x", |s| (moved(s) - DVec3::X * 0.5).length() < 0.02);
+    println!("moved by {}, asked 0.5 along x", moved(&s));
 
     // About y, by 0.6 radians.
     let g = gizmo(&s, id);
@@ -150,9 +150,10 @@ fn the_outliner_is_clicked_and_the_gizmo_dragged() {
     pull(&s, pixel(&s, spoke(begin)), pixel(&s, spoke(begin + 0.6)));
     s.drive(&["mouseup", "1"]);
     s.until("it is turned in one step", |s| s.figure("undo_steps") == steps + 2);
-    let turned = turn(&s, id).to_scaled_axis();
-    println!("turned by {turned}, asked 0.6 about y");
-    assert!((turned - DVec3::Y * 0.6).length() < 0.1, "{turned}");
+    // The step is there from the drag's beginning: its last place comes with the release.
+    let turned = |s: &Stage| turn(s, id).to_scaled_axis();
+    s.until("it is turned by 0.6 about y", |s| (turned(s) - DVec3::Y * 0.6).length() < 0.05);
+    println!("turned by {}, asked 0.6 about y", turned(&s));
 
     // The corner, twice as far from the middle.
     let g = gizmo(&s, id);
@@ -160,9 +161,8 @@ fn the_outliner_is_clicked_and_the_gizmo_dragged() {
     pull(&s, pixel(&s, corner(1.0)), pixel(&s, corner(1.5)));
     s.drive(&["mouseup", "1"]);
     s.until("it is scaled in one step", |s| s.figure("undo_steps") == steps + 3);
-    let scaled = scale(&s, id);
-    println!("scaled by {scaled}, asked 1.5 as the corner is seen");
-    assert!((scaled - 1.5).abs() < 0.25, "{scaled}");
+    s.until("by 1.5 as the corner is seen", |s| (scale(s, id) - 1.5).abs() < 0.25);
+    println!("scaled by {}, asked 1.5", scale(&s, id));
     s.seen("objects-scaled");
     for left in (steps..steps + 3).rev() {
         s.drive(&["key", "ctrl+z"]);
