@@ -71,7 +71,7 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     };
     let catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     let then = move |summary: Summary| run::report(&summary, None, json);
-    live::run(options, &shown, &config, begun, catalogue, then)
+    live::run(options, &shown, &config, begun, catalogue, |_| Ok(()), then)
 }
 
 fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outcome {

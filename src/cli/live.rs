@@ -81,7 +81,8 @@ fn load(run: &LiveRun, path: &Path) -> Result<(), Fail> {
     run.live.commands.send(command).map_err(|e| Fail::Check(e.to_string()))
 }
 
-/// Runs until the end, then goes on with `then`: on the thread of the window, or where that is lost
+/// Runs until the end, then goes on with `then`; `begun_run` is told of the run once it has begun.
+/// All on the thread of the window, or where that is lost
 /// on another, which ends the process.
 pub fn run(
     options: LiveOptions,
@@ -89,6 +90,7 @@ pub fn run(
     config: &Config,
     begun: Begun,
     catalogue: Catalogue,
+    begun_run: impl FnOnce(&LiveRun) -> Outcome,
     then: impl FnOnce(Summary) -> Outcome + Send + 'static,
 ) -> Outcome {
     let link = options.window.clone();
@@ -99,6 +101,7 @@ pub fn run(
     });
     let run =
         LiveRun::start(options, config, begun, catalogue, stop_signal()).map_err(not_started)?;
+    begun_run(&run)?;
     for notice in &run.notices {
         eprintln!("sculptd: {notice}");
     }

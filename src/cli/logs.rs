@@ -26,6 +26,9 @@ pub fn begin(format: LogFormat) {
     };
     let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
     let log = tracing_subscriber::registry();
+    // What the staff of a fleet may ask for, however much is written here.
+    #[cfg(feature = "network")]
+    let log = log.with(super::log_ring::LogRing.with_filter(LevelFilter::INFO));
     // A second begin in one process (tests) keeps the first.
     let _ = match format {
         LogFormat::Text => log

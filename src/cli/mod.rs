@@ -20,8 +20,14 @@ pub mod devices;
 pub mod display;
 pub mod doctor;
 pub mod ending;
+#[cfg(feature = "network")]
+pub mod fleet;
+#[cfg(feature = "network")]
+pub mod fleet_part;
 pub mod library;
 mod live;
+#[cfg(feature = "network")]
+pub mod log_ring;
 pub mod logs;
 mod man;
 mod memory;
@@ -86,6 +92,10 @@ pub enum Command {
     /// A window of the running daemon on this screen, where it has none or has lost its own.
     #[cfg(unix)]
     Window,
+    /// Look after installations from a distance: list them, follow them, ask them for something,
+    /// roll settings out.
+    #[cfg(feature = "network")]
+    Fleet(fleet::FleetArgs),
     /// Whether this machine can sculpt, and what to type where it cannot.
     Doctor(doctor::DoctorArgs),
     /// The session files: list them, look at one, remove old ones, save a damaged one.
@@ -154,6 +164,8 @@ pub fn run() -> u8 {
         Some(Command::Brush { brushes, command }) => {
             brush::run(&command, brushes.as_deref(), cli.json)
         }
+        #[cfg(feature = "network")]
+        Some(Command::Fleet(args)) => fleet::run(&args, cli.json),
         #[cfg(unix)]
         Some(Command::Window) => window::run(cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),

@@ -16,7 +16,7 @@ use sculptd_daemon::Summary;
 use sculptd_daemon::brush_folder::{self, BrushFolder};
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
-use sculptd_daemon::live_run::LiveOptions;
+use sculptd_daemon::live_run::{LiveOptions, LiveRun};
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
 use sculptd_daemon::startup::{Area, BeginError, Begun, RecordingFeed};
@@ -28,6 +28,8 @@ use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
+#[cfg(feature = "network")]
+use sculptd_network::fleet::installation_thread::FleetPart;
 
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunArgs {
@@ -142,7 +144,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
     let players = open_players(args, &config, &catalogue)?;
+    #[cfg(not(feature = "network"))]
     let kiosk = kiosk(args)?;
+    #[cfg(feature = "network")]
+    let (kiosk, fleet) = kiosk(args)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
     if let Some(kiosk) = &kiosk {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
@@ -211,7 +216,23 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             open_next: open_next.clone(),
         };
         let (link, args) = (options.window.clone(), args.clone());
+        #[cfg(feature = "network")]
+        let again = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
+        #[cfg(feature = "network")]
+        let (begun_run, begins_again) = {
+            let raised = again.clone();
+            let attend = move |run: &LiveRun| {
+                fleet.map_or(Ok(()), |part| super::fleet_part::attend(part, run, &raised))
+            };
+            (attend, again)
+        };
+        #[cfg(not(feature = "network"))]
+        let begun_run = |_: &LiveRun| Ok(());
         let then = move |summary: Summary| {
+            #[cfg(feature = "network")]
+            if begins_again.load(std::sync::atomic::Ordering::Relaxed) {
+                return Err(super::fleet_part::begin_again());
+            }
             #[cfg(unix)]
             if let Some((screen, session)) = link.wanted().zip(link.session()) {
                 let next = next_arguments(&session, &args, json);
@@ -225,7 +246,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             }
             report(&summary, args.stats.as_deref(), json)
         };
-        return live::run(options, &shown, &config, begun, catalogue, then);
+        return live::run(options, &shown, &config, begun, catalogue, begun_run, then);
     }
     eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
     let summary = run_stepped(args, &config, begun, players)?;
@@ -301,6 +322,7 @@ fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
 
 /// The installation's settings, if it is one; what cannot be shown to visitors is said before any
 /// come.
+#[cfg(not(feature = "network"))]
 fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
     if !args.kiosk {
         return Ok(None);
@@ -309,9 +331,33 @@ fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
         Some(path) => KioskConfig::load(path).map_err(Fail::Config)?,
         None => KioskConfig::default(),
     };
-    config.words(LANGUAGES).map_err(Fail::Config)?;
-    display::check_screen(&config.screen).map_err(Fail::Config)?;
+    if !config.fleet.name.is_empty() {
+        let text = "[fleet]: this program was built without the feature `network`";
+        return Err(Fail::Config(text.into()));
+    }
+    can_be_shown(&config)?;
     Ok(Some(config))
+}
+
+/// The same, with its part in a fleet.
+#[cfg(feature = "network")]
+fn kiosk(args: &RunArgs) -> Result<Option<(KioskConfig, Option<FleetPart>)>, Fail> {
+    let both = match (&args.kiosk_config, args.kiosk) {
+        (_, false) => return Ok(None),
+        (None, true) => (KioskConfig::default(), None),
+        (Some(path), true) => {
+            let (config, files, trial) = super::fleet_part::settings(path)?;
+            let part = super::fleet_part::part(&config, (files, trial))?;
+            (config, part)
+        }
+    };
+    can_be_shown(&both.0)?;
+    Ok(Some(both))
+}
+
+fn can_be_shown(config: &KioskConfig) -> Result<(), Fail> {
+    config.words(LANGUAGES).map_err(Fail::Config)?;
+    display::check_screen(&config.screen).map_err(Fail::Config)
 }
 
 pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {

@@ -150,7 +150,8 @@ fn settings(config: &Config, name: &str) -> SharedSettings {
     SharedSettings { workers, dumps: data_folder("differences").join(name) }
 }
 
-fn data_folder(what: &str) -> PathBuf {
+/// A folder in the user's data folder.
+pub fn data_folder(what: &str) -> PathBuf {
     let own = directories::ProjectDirs::from("", "", "sculptd");
     own.map_or_else(std::env::temp_dir, |d| d.data_dir().to_path_buf()).join(what)
 }

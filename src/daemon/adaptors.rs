@@ -25,7 +25,31 @@ pub struct Adaptors {
     hid: Option<HidHandle>,
     serial: Vec<(String, serial::SerialHandle)>,
     leap: Option<leap::LeapHandle>,
-    failed: Vec<String>,
+    failed: Vec<DeviceStanding>,
+}
+
+/// The kinds of devices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StandingKind {
+    Tablet,
+    SerialPen,
+    Tracker,
+}
+
+/// How a device stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeviceStanding {
+    pub kind: StandingKind,
+    /// What it is, how it stands, what is wrong.
+    pub text: String,
+    /// Samples can come from it.
+    pub connected: bool,
+}
+
+impl DeviceStanding {
+    fn new(kind: StandingKind, connected: bool, text: String) -> Self {
+        DeviceStanding { kind, text, connected }
+    }
 }
 
 /// Starts the adaptors. One that cannot be started does not hold up the others: it is told by
@@ -37,6 +61,7 @@ pub fn start(
     factory: &SenderFactory,
 ) -> Adaptors {
     let mut all = Adaptors::default();
+    let failed = |kind, text| DeviceStanding::new(kind, false, text);
     if config.hid {
         let settings = HidConfig {
             models: config.models.clone(),
@@ -46,7 +71,9 @@ pub fn start(
         };
         match hid::start(settings, catalogue, clock.clone(), factory.clone()) {
             Ok(handle) => all.hid = Some(handle),
-            Err(e) => all.failed.push(format!("pen tablets: {e}")),
+            Err(e) => {
+                all.failed.push(failed(StandingKind::Tablet, format!("pen tablets: {e}")));
+            },
         }
     }
     for (i, port) in config.serial.iter().enumerate() {
@@ -59,7 +86,10 @@ pub fn start(
         };
         match serial::start(settings, clock.clone(), factory.sender()) {
             Ok(handle) => all.serial.push((port, handle)),
-            Err(e) => all.failed.push(format!("serial pen on {port}: {e}")),
+            Err(e) => {
+                let text = format!("serial pen on {port}: {e}");
+                all.failed.push(failed(StandingKind::SerialPen, text));
+            },
         }
     }
     if !config.leap.is_empty() {
@@ -67,7 +97,10 @@ pub fn start(
             leap::LeapConfig { url: config.leap.clone(), device: TRACKER_ID, ..Default::default() };
         match leap::start(settings, clock.clone(), factory.sender()) {
             Ok(handle) => all.leap = Some(handle),
-            Err(e) => all.failed.push(format!("hand tracking at {}: {e}", config.leap)),
+            Err(e) => {
+                let text = format!("hand tracking at {}: {e}", config.leap);
+                all.failed.push(failed(StandingKind::Tracker, text));
+            },
         }
     }
     all
@@ -86,7 +119,13 @@ impl Adaptors {
 
     /// One line a device: what it is, how it stands, what is wrong.
     pub fn describe(&self) -> Vec<String> {
-        let mut lines = self.failed.clone();
+        self.standing().into_iter().map(|device| device.text).collect()
+    }
+
+    /// How each device stands.
+    pub fn standing(&self) -> Vec<DeviceStanding> {
+        let mut all = self.failed.clone();
+        let mut put = |kind, connected, text| all.push(DeviceStanding::new(kind, connected, text));
         let tablets = self.hid.as_ref().map_or_else(Vec::new, HidHandle::status);
         for t in tablets.iter().filter(|t| t.usable || t.model.is_some()) {
             let name = t.model.as_ref().unwrap_or(&t.name);
@@ -95,7 +134,7 @@ impl Adaptors {
             } else {
                 "looking for it"
             });
-            lines.push(format!("{name} on {}: {state}", t.path));
+            put(StandingKind::Tablet, t.usable, format!("{name} on {}: {state}", t.path));
         }
         for (port, handle) in &self.serial {
             let s = handle.status();
@@ -104,7 +143,7 @@ impl Adaptors {
                 (None, true) => "connected".into(),
                 _ => s.last_error.unwrap_or_else(|| "looking for it".into()),
             };
-            lines.push(format!("serial pen on {port}: {state}"));
+            put(StandingKind::SerialPen, s.connected, format!("serial pen on {port}: {state}"));
         }
         if let Some(handle) = &self.leap {
             let s = handle.status();
@@ -113,8 +152,8 @@ impl Adaptors {
             } else {
                 s.last_error.unwrap_or_else(|| "looking for it".into())
             };
-            lines.push(format!("hand tracking: {state}"));
+            put(StandingKind::Tracker, s.connected, format!("hand tracking: {state}"));
         }
-        lines
+        all
     }
 }

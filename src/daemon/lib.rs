@@ -16,6 +16,7 @@ pub mod config;
 pub mod control;
 pub mod decimate_job;
 pub mod demo_devices;
+pub mod disk_space;
 pub mod doctor;
 pub mod face_set_jobs;
 pub mod garbage_thread;

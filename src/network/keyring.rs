@@ -58,11 +58,7 @@ impl Invitation {
     /// # Errors
     /// [`KeyError`]
     pub fn read(path: &Path) -> Result<Invitation, KeyError> {
-        let text = std::fs::read_to_string(path).map_err(|source| io(path, source))?;
-        let bad = |why: String| KeyError::Bad { path: path.display().to_string(), why };
-        let written: Written = toml::from_str(&text).map_err(|e| bad(e.message().into()))?;
-        let secret = from_hex(&written.key)
-            .ok_or_else(|| bad(format!("a key is {} hexadecimal digits", KEY * 2)))?;
+        let (written, secret) = read_key(path, |w: &Written| &w.key)?;
         Ok(Invitation { role: written.role, name: written.name, secret })
     }
 
@@ -71,17 +67,9 @@ impl Invitation {
     /// # Errors
     /// [`KeyError::Io`]
     pub fn write(&self, path: &Path) -> Result<(), KeyError> {
-        let key = self.secret.0.iter().map(|b| format!("{b:02x}")).collect();
-        let written = Written { role: self.role, name: self.name.clone(), key };
-        let text = toml::to_string(&written).unwrap_or_default();
-        let mut options = std::fs::OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let mut file = options.open(path).map_err(|source| io(path, source))?;
-        let what = "# Whoever holds this file may join. Give it over a channel that you trust.\n";
-        std::io::Write::write_all(&mut file, format!("{what}{text}").as_bytes())
-            .map_err(|source| io(path, source))
+        let (name, key) = (self.name.clone(), self.secret.to_hex());
+        let what = "Whoever holds this file may join. Give it over a channel that you trust.";
+        write_key(path, what, &Written { role: self.role, name, key })
     }
 
     /// Whether somebody of this name may be this.
@@ -105,6 +93,36 @@ impl Invitation {
 
 fn io(path: &Path, source: std::io::Error) -> KeyError {
     KeyError::Io { path: path.display().to_string(), source }
+}
+
+/// Why a file is no key.
+pub(crate) fn key_error(path: &Path, why: impl Into<String>) -> KeyError {
+    KeyError::Bad { path: path.display().to_string(), why: why.into() }
+}
+
+/// Reads a key's file: what it says, and the key in it.
+pub(crate) fn read_key<T: serde::de::DeserializeOwned>(
+    path: &Path,
+    key: impl Fn(&T) -> &str,
+) -> Result<(T, Secret), KeyError> {
+    let text = std::fs::read_to_string(path).map_err(|source| io(path, source))?;
+    let written: T = toml::from_str(&text).map_err(|e| key_error(path, e.message()))?;
+    let secret = from_hex(key(&written));
+    let what = || key_error(path, format!("a key is {} hexadecimal digits", KEY * 2));
+    Ok((written, secret.ok_or_else(what)?))
+}
+
+/// Writes a key's file, which only its owner may read; one that is there stays. `what` says in its
+/// first line what it is.
+pub(crate) fn write_key<T: Serialize>(path: &Path, what: &str, key: &T) -> Result<(), KeyError> {
+    let text = toml::to_string(key).unwrap_or_default();
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let mut file = options.open(path).map_err(|source| io(path, source))?;
+    std::io::Write::write_all(&mut file, format!("# {what}\n{text}").as_bytes())
+        .map_err(|source| io(path, source))
 }
 
 fn from_hex(text: &str) -> Option<Secret> {

@@ -6,6 +6,7 @@
 //! Read first: [`station`], the protocol as a state machine without clock, IO and threads;
 //! [`wire`], its messages; [`executor`], which steps a world by frames. With the feature
 //! `zenoh`, `live` runs a station beside the tick loop, and `zenoh_link` carries its datagrams.
+//! Apart from that, [`fleet`] looks after installations from a distance.
 //!
 //! ```text
 //! devices -> own batches -> host: frames -> every replica's world
@@ -24,6 +25,7 @@ pub mod checkpoint;
 pub mod comparison;
 pub mod core;
 pub mod executor;
+pub mod fleet;
 pub mod host;
 pub mod host_limits;
 pub mod host_members;

@@ -60,6 +60,16 @@ impl Secret {
         expected.iter().zip(proof).fold(0, |d, (a, b)| d | (a ^ b)) == 0
     }
 
+    /// A key that is made of this one for one purpose; nothing leads back from it.
+    pub(crate) fn derived(&self, what: &str, parts: &[&[u8]]) -> Secret {
+        Secret(code(self, what, parts))
+    }
+
+    /// As a key's file holds it.
+    pub(crate) fn to_hex(&self) -> String {
+        self.0.iter().map(|b| format!("{b:02x}")).collect()
+    }
+
     /// The seals of a greeting: from the member to the host, and back.
     pub fn seals(&self, member: &Nonce, host: &Nonce) -> (Seal, Seal) {
         let seal = |what| Seal::new(&Secret(code(self, what, &[member, host])));
@@ -92,7 +102,7 @@ fn once(counter: u64) -> Once {
 }
 
 impl Seal {
-    fn new(key: &Secret) -> Seal {
+    pub(crate) fn new(key: &Secret) -> Seal {
         let key = UnboundKey::new(&CHACHA20_POLY1305, &key.0);
         // A key of 32 bytes is a key of this cipher.
         let key = LessSafeKey::new(key.unwrap_or_else(|_| unreachable!("the length is right")));

@@ -61,32 +61,47 @@ pub fn sculpture_name(text: &str) -> Result<String, String> {
     }
 }
 
+/// Opens a session. `lease_ms`: a silent connection is given up after so long; `None`: as Zenoh has
+/// it, ten seconds.
+///
+/// # Errors
+/// Where an endpoint cannot be used, as a text.
+pub(crate) fn open_session(
+    endpoints: &Endpoints,
+    lease_ms: Option<u32>,
+) -> Result<zenoh::Session, String> {
+    let mut config = zenoh::Config::default();
+    let list = |all: &[String]| {
+        let quoted: Vec<String> = all.iter().map(|e| format!("{e:?}")).collect();
+        format!("[{}]", quoted.join(","))
+    };
+    let mut set = |key: &str, value: &str| {
+        config.insert_json5(key, value).map_err(|e| format!("{key} = {value}: {e}"))
+    };
+    set("mode", "\"peer\"")?;
+    set("scouting/multicast/enabled", if endpoints.multicast { "true" } else { "false" })?;
+    if !endpoints.listen.is_empty() {
+        set("listen/endpoints", &list(&endpoints.listen))?;
+    }
+    if !endpoints.connect.is_empty() {
+        set("connect/endpoints", &list(&endpoints.connect))?;
+        // Who is not there yet is tried again for ever, in the background.
+        set("connect/timeout_ms", "0")?;
+        set("connect/exit_on_failure", "false")?;
+    }
+    if let Some(lease_ms) = lease_ms {
+        set("transport/link/tx/lease", &lease_ms.to_string())?;
+    }
+    zenoh::open(config).wait().map_err(|e| e.to_string())
+}
+
 impl ZenohLink {
     /// Opens a session.
     ///
     /// # Errors
     /// Where an endpoint cannot be used, as a text.
     pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
-        let mut config = zenoh::Config::default();
-        let list = |all: &[String]| {
-            let quoted: Vec<String> = all.iter().map(|e| format!("{e:?}")).collect();
-            format!("[{}]", quoted.join(","))
-        };
-        let mut set = |key: &str, value: &str| {
-            config.insert_json5(key, value).map_err(|e| format!("{key} = {value}: {e}"))
-        };
-        set("mode", "\"peer\"")?;
-        set("scouting/multicast/enabled", if endpoints.multicast { "true" } else { "false" })?;
-        if !endpoints.listen.is_empty() {
-            set("listen/endpoints", &list(&endpoints.listen))?;
-        }
-        if !endpoints.connect.is_empty() {
-            set("connect/endpoints", &list(&endpoints.connect))?;
-            // Who is not there yet is tried again for ever, in the background.
-            set("connect/timeout_ms", "0")?;
-            set("connect/exit_on_failure", "false")?;
-        }
-        let session = zenoh::open(config).wait().map_err(|e| e.to_string())?;
+        let session = open_session(endpoints, None)?;
         let (sender, incoming) = cc::bounded(WAITING);
         Ok(ZenohLink {
             session,

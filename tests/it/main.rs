@@ -8,9 +8,13 @@ mod brushes;
 mod clay;
 #[cfg(unix)]
 mod control;
+#[cfg(all(unix, feature = "network"))]
+mod daemon_process;
 #[cfg(target_os = "linux")]
 mod faulty_disk;
 mod field;
+#[cfg(all(unix, feature = "network"))]
+mod fleet;
 #[cfg(unix)]
 mod gallery;
 mod golden;

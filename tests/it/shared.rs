@@ -1,61 +1,12 @@
 //! Processes that share a sculpture over Zenoh on the loopback: strokes of both, one hash; a
 //! viewer; a wrong key; the host killed.
 
-use std::io::{BufRead, BufReader};
-use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::sync::{Arc, Mutex};
 
+use crate::daemon_process::{Daemon, free_endpoint};
 use crate::waiting::{comes, until};
-use serde_json::Value;
-
-/// A daemon in a home of its own. It is killed when dropped.
-struct Daemon {
-    child: Child,
-    home: tempfile::TempDir,
-    told: Arc<Mutex<Vec<String>>>,
-}
-
-impl Drop for Daemon {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
 
 impl Daemon {
-    fn start(args: &[&str]) -> Daemon {
-        let home = tempfile::tempdir().expect("a folder");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
-        command.args(["run", "--headless"]).args(args);
-        for name in ["XDG_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_STATE_HOME", "HOME"] {
-            command.env(name, home.path());
-        }
-        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
-        let mut child = command.spawn().expect("runs");
-        let lines = BufReader::new(child.stderr.take().expect("piped"));
-        let told = Arc::new(Mutex::new(Vec::new()));
-        let all = told.clone();
-        std::thread::spawn(move || {
-            for line in lines.lines().map_while(Result::ok) {
-                all.lock().expect("no panic").push(line);
-            }
-        });
-        Daemon { child, home, told }
-    }
-
-    fn has_told(&self, what: &str) -> bool {
-        self.told.lock().expect("no panic").iter().any(|l| l.contains(what))
-    }
-
-    fn ctl(&self, method: &str, params: Option<&str>) -> Option<Value> {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
-        command.args(["--json", "ctl", method]).args(params);
-        let out = command.env("XDG_RUNTIME_DIR", self.home.path()).output().expect("runs");
-        serde_json::from_slice(&out.stdout).ok()
-    }
-
     fn hash(&self) -> Option<String> {
         self.ctl("hash", None)?["hash"].as_str().map(String::from)
     }
@@ -76,11 +27,6 @@ impl Daemon {
     }
 }
 
-fn free_endpoint() -> String {
-    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
-    format!("tcp/{}", listener.local_addr().expect("bound"))
-}
-
 fn join<'a>(name: &'a str, key: &'a str, at: &'a str, person: &'a str) -> Vec<&'a str> {
     vec!["--join", name, "--key", key, "--connect", at, "--as", person]
 }
@@ -97,11 +43,11 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     // Others on the network may run this test too.
     let dragon = format!("dragon-{}", std::process::id());
     let host = ["--host", &dragon, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
-    let mut ada = Daemon::start(&host);
+    let mut ada = Daemon::run(&host);
     until("the host answers", || ada.hash().is_some());
     ada.stroke(0.45);
     let sculptor = key(&keys, "sculptor");
-    let bob = Daemon::start(&join(&dragon, &sculptor, &at, "Bob"));
+    let bob = Daemon::run(&join(&dragon, &sculptor, &at, "Bob"));
     until("Bob is there", || bob.hash().is_some());
     bob.follows(&ada, "");
     let before = ada.hash().expect("a hash");
@@ -116,7 +62,7 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     let viewer = key(&keys, "viewer");
     let mut wall = join(&dragon, &viewer, &at, "Wall");
     wall.extend(["--role", "viewer"]);
-    let wall = Daemon::start(&wall);
+    let wall = Daemon::run(&wall);
     until("the wall is there", || wall.hash().is_some());
     wall.follows(&ada, "");
     let bad = folder.path().join("bad.key");
@@ -124,7 +70,7 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     sculptd_geometry::io::write_beside(&bad, |out| out.write_all(text.as_bytes()))
         .expect("written");
     let bad = bad.display().to_string();
-    let mut eve = Daemon::start(&join(&dragon, &bad, &at, "Eve"));
+    let mut eve = Daemon::run(&join(&dragon, &bad, &at, "Eve"));
     until("Eve is turned away", || eve.child.try_wait().expect("waited for").is_some());
     assert!(eve.has_told("the key is not one of this sculpture"));
     assert!(ada.has_told("was not let in: the key is not one of this sculpture"));

@@ -67,6 +67,8 @@ pub struct KioskDesk {
     pub finished: AtomicBool,
     /// What staff typed.
     pub typed: Mutex<Option<String>>,
+    /// What the fleet's staff tell those on the spot; until it is pressed away.
+    pub message: Mutex<Option<String>>,
     /// Where the last visitor's work can be fetched, until somebody else comes.
     #[cfg(unix)]
     pub link: Mutex<Option<share::Link>>,

@@ -22,4 +22,4 @@ mod speech;
 pub mod spool;
 
 pub use cycle::{Cycle, KioskAct, Stage, View};
-pub use settings::{KioskConfig, Language, ScreenSettings};
+pub use settings::{FleetSettings, KioskConfig, Language, ScreenSettings};

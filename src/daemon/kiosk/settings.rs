@@ -33,6 +33,24 @@ pub struct KioskConfig {
     pub screen: ScreenSettings,
     /// A program and its arguments that says what the screen says, given as its last argument.
     pub speak: Vec<String>,
+    /// Who looks after this installation from a distance.
+    pub fleet: FleetSettings,
+}
+
+/// The fleet that an installation belongs to (programs with the feature `network`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FleetSettings {
+    /// Its name; empty: the installation is in none.
+    pub name: String,
+    /// The key of this installation, which says its name.
+    pub key: PathBuf,
+    /// Where to listen for others, as `tcp/0.0.0.0:7447`; none: any port.
+    pub listen: Vec<String>,
+    /// Whom to connect to, as `tcp/staff.example:7447`.
+    pub connect: Vec<String>,
+    /// Others on the local network are looked for.
+    pub multicast: bool,
 }
 
 /// How the screen is shown to those who see, reach or press otherwise than most.
@@ -50,6 +68,13 @@ pub struct ScreenSettings {
     pub scan_s: f64,
     /// The clay's material by its name; empty: clay.
     pub material: String,
+}
+
+impl Default for FleetSettings {
+    fn default() -> Self {
+        let (name, key, listen, connect) = (String::new(), PathBuf::new(), vec![], vec![]);
+        FleetSettings { name, key, listen, connect, multicast: true }
+    }
 }
 
 impl Default for ScreenSettings {
@@ -80,6 +105,7 @@ impl Default for KioskConfig {
             radius: 0.0,
             screen: ScreenSettings::default(),
             speak: vec![],
+            fleet: FleetSettings::default(),
         }
     }
 }
@@ -89,8 +115,16 @@ impl KioskConfig {
     pub fn load(path: &Path) -> Result<Self, String> {
         let name = path.display();
         let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
-        let config: KioskConfig = toml::from_str(&text).map_err(|e| format!("{name}: {e}"))?;
-        config.check().map_err(|e| format!("{name}: {e}"))?;
+        KioskConfig::parse(&text).map_err(|e| format!("{name}: {e}"))
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// Names the line, or the key and its range.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let config: KioskConfig = toml::from_str(text).map_err(|e| e.to_string())?;
+        config.check()?;
         Ok(config)
     }
 
@@ -131,6 +165,9 @@ impl KioskConfig {
         }
         if !(0.0..=2.0).contains(&self.radius) {
             return Err(format!("radius = {}: expected a number from 0 to 2", self.radius));
+        }
+        if !self.fleet.name.is_empty() && self.fleet.key.as_os_str().is_empty() {
+            return Err("fleet.name needs fleet.key: `sculptd fleet key` makes one".into());
         }
         self.brush_kind()?;
         let digits = self.staff_pin.chars().all(|c| c.is_ascii_digit());

@@ -62,6 +62,7 @@ pub fn ui(
     if screen.staff {
         door(&ctx, free, words, now.locked, screen, pad, &mut scan);
     }
+    told_staff(&ctx, free, screen, &mut scan);
     match now.stage {
         Stage::Attract => {
             said(&ctx, free, &words.welcome, 44.0);
@@ -182,6 +183,23 @@ fn kept(
             ui.label(RichText::new(&link.url).size(13.0).monospace());
         });
     });
+}
+
+/// What the staff of the fleet tell those on the spot, until somebody presses it away.
+fn told_staff(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut Scan) {
+    let Ok(mut message) = screen.desk.message.lock() else { return };
+    let Some(text) = message.clone() else { return };
+    let mut close = false;
+    place(ctx, "told staff", free, Align2::CENTER_TOP, |ui| {
+        ui.horizontal(|ui| {
+            ui.set_max_width(free.width() * 0.5);
+            ui.label(RichText::new(text).size(22.0));
+            close = scan.button(ui, true, large("×", 24.0, TARGET + 8.0));
+        });
+    });
+    if close {
+        *message = None;
+    }
 }
 
 /// The languages, each by its own name.

@@ -112,6 +112,24 @@ fn a_visit_by_large_targets_in_any_language() {
 }
 
 #[test]
+fn a_message_of_the_fleet_s_staff_stays_until_it_is_pressed_away() {
+    let screen = screen();
+    at(&screen, Stage::Attract, 0);
+    *screen.desk.message.lock().expect("a desk") = Some("Please restart the lights".into());
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    h.get_by_label("Please restart the lights");
+    at(&screen, Stage::Working, 0);
+    h.run_steps(3);
+    h.get_by_label("Please restart the lights");
+    let close = h.get_by_label("×");
+    assert!(close.rect().width() >= kiosk::TARGET && close.rect().height() >= kiosk::TARGET);
+    close.click();
+    h.run_steps(3);
+    assert!(h.query_by_label("Please restart the lights").is_none());
+    assert_eq!(*screen.desk.message.lock().expect("a desk"), None);
+}
+
+#[test]
 fn staff_types_a_number_that_is_not_shown() {
     let screen = screen();
     at(&screen, Stage::Attract, 0);

@@ -4,5 +4,6 @@
 #![allow(clippy::print_stdout)] // Traffic and times are told on standard output.
 
 mod faults;
+mod fleet;
 mod keys;
 mod simulated;
