@@ -79,8 +79,9 @@
 //! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time,
 //!   sessions, control socket, kiosk, metrics.
 //! * `sculptd-network` (`src/network`) knows the daemon and what is below it: one sculpture shared
-//!   by several daemons. The protocol is a state machine without clock, IO and threads; Zenoh
-//!   carries its datagrams (feature `network`, not in the default set).
+//!   by several daemons, and a fleet of installations. Both protocols are state machines without
+//!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
+//!   set).
 //! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
 //!   (wgpu): they see snapshots and send commands.
 //! * `sculptd-mesh-commands` (`src/mesh_commands`) knows geometry, and the clock of the devices:
@@ -150,6 +151,8 @@
 //!   and the own input, orders or follows. Waits for: the network, the tick thread, time.
 //! * `sculptd-replica`, made by `network::live`: hashes, checkpoints, and worlds made of them, for
 //!   that station. Waits for: the station.
+//! * `sculptd-fleet`, made by `network::fleet::installation_thread`: publishes how an installation is
+//!   and does what staff ask. Waits for: the network, time, the published state.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
 //! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`,

@@ -16,19 +16,24 @@ pub enum LogFormat {
 /// `info,sculptd_daemon::session=trace`). Without it, and where it cannot be read, `info`.
 pub fn begin(format: LogFormat) {
     let wanted = std::env::var("SCULPTD_LOG").unwrap_or_default();
+    // What the network's library tells of its every session is nothing for a person.
+    let usual = || {
+        let all = Targets::new().with_default(LevelFilter::INFO);
+        all.with_target("zenoh", LevelFilter::ERROR)
+    };
     let parsed = match wanted.trim() {
-        "" => Ok(Targets::new().with_default(LevelFilter::INFO)),
+        "" => Ok(usual()),
         wanted => wanted.parse(),
     };
     let (filter, refused) = match parsed {
         Ok(filter) => (filter, None),
-        Err(e) => (Targets::new().with_default(LevelFilter::INFO), Some(e)),
+        Err(e) => (usual(), Some(e)),
     };
     let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
     let log = tracing_subscriber::registry();
     // What the staff of a fleet may ask for, however much is written here.
     #[cfg(feature = "network")]
-    let log = log.with(super::log_ring::LogRing.with_filter(LevelFilter::INFO));
+    let log = log.with(super::log_ring::LogRing.with_filter(usual()));
     // A second begin in one process (tests) keeps the first.
     let _ = match format {
         LogFormat::Text => log

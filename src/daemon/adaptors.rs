@@ -73,7 +73,7 @@ pub fn start(
             Ok(handle) => all.hid = Some(handle),
             Err(e) => {
                 all.failed.push(failed(StandingKind::Tablet, format!("pen tablets: {e}")));
-            },
+            }
         }
     }
     for (i, port) in config.serial.iter().enumerate() {
@@ -89,7 +89,7 @@ pub fn start(
             Err(e) => {
                 let text = format!("serial pen on {port}: {e}");
                 all.failed.push(failed(StandingKind::SerialPen, text));
-            },
+            }
         }
     }
     if !config.leap.is_empty() {
@@ -100,7 +100,7 @@ pub fn start(
             Err(e) => {
                 let text = format!("hand tracking at {}: {e}", config.leap);
                 all.failed.push(failed(StandingKind::Tracker, text));
-            },
+            }
         }
     }
     all

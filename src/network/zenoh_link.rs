@@ -86,7 +86,7 @@ pub(crate) fn open_session(
     if !endpoints.connect.is_empty() {
         set("connect/endpoints", &list(&endpoints.connect))?;
         // Who is not there yet is tried again for ever, in the background.
-        set("connect/timeout_ms", "0")?;
+        set("connect/timeout_ms", "-1")?;
         set("connect/exit_on_failure", "false")?;
     }
     if let Some(lease_ms) = lease_ms {

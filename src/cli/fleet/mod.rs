@@ -297,10 +297,7 @@ fn ask_all(args: &FleetArgs, to: &Recipients, action: FleetAction, json: bool) -
     }
     print::answers(&ends, json);
     let done = |end: &RequestEnd| {
-        matches!(
-            end,
-            RequestEnd::Answered(FleetOutcome::Done { .. } | FleetOutcome::Logs { .. })
-        )
+        matches!(end, RequestEnd::Answered(FleetOutcome::Done { .. } | FleetOutcome::Logs { .. }))
     };
     let failed: Vec<&str> =
         ends.iter().filter(|(_, end)| !done(end)).map(|(name, _)| name.as_str()).collect();

@@ -38,7 +38,8 @@ pub fn list(fleet: &str, registry: &FleetRegistry, json: bool) {
     let here = registry.all().filter(|(_, e)| e.is_here()).count();
     let shown = json!({ "fleet": fleet, "here": here, "installations": all });
     answer(json, &shown, |out| {
-        let head = ["installation", "state", "visits", "errors", "disk free", "devices", "tick p99"];
+        let head =
+            ["installation", "state", "visits", "errors", "disk free", "devices", "tick p99"];
         write!(out, "{:<20} {:<10}", head[0], head[1])?;
         head[2..].iter().try_for_each(|h| write!(out, " {h:>9}"))?;
         writeln!(out, " {:>8}  version  settings", "up")?;

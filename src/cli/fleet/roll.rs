@@ -13,13 +13,7 @@ use sculptd_network::fleet::settings_files::revision_of;
 /// An installation that does not answer a step of a roll-out by then does not answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-pub fn rollout(
-    args: &FleetArgs,
-    file: &Path,
-    canary: &str,
-    watch_s: f64,
-    json: bool,
-) -> Outcome {
+pub fn rollout(args: &FleetArgs, file: &Path, canary: &str, watch_s: f64, json: bool) -> Outcome {
     let text = std::fs::read_to_string(file).map_err(|e| Fail::io(file, &e))?;
     let named = |e: String| Fail::Config(format!("{}: {e}", file.display()));
     KioskConfig::parse(&text).map_err(named)?;
@@ -71,11 +65,9 @@ pub fn rollout(
             writeln!(out, "as before: {}", taken_back.join(", "))?;
             match silent.is_empty() {
                 true => Ok(()),
-                false => writeln!(
-                    out,
-                    "no answer: {}; their trial ends by itself",
-                    silent.join(", ")
-                ),
+                false => {
+                    writeln!(out, "no answer: {}; their trial ends by itself", silent.join(", "))
+                }
             }
         }
     });

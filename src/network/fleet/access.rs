@@ -102,8 +102,12 @@ impl FleetKey {
             }
         };
         let what = match self {
-            FleetKey::Staff(_) => "Whoever holds this file may ask every installation for anything.",
-            FleetKey::Installation { .. } => "Whoever holds this file can pose as this installation.",
+            FleetKey::Staff(_) => {
+                "Whoever holds this file may ask every installation for anything."
+            }
+            FleetKey::Installation { .. } => {
+                "Whoever holds this file can pose as this installation."
+            }
         };
         match self {
             FleetKey::Staff(secret) | FleetKey::Installation { secret, .. } => {

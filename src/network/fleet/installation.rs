@@ -136,11 +136,7 @@ impl Installation {
         Some(self.seal.seal(&to_json(&answer)))
     }
 
-    fn carry_out(
-        &mut self,
-        action: FleetAction,
-        port: &mut dyn InstallationPort,
-    ) -> FleetOutcome {
+    fn carry_out(&mut self, action: FleetAction, port: &mut dyn InstallationPort) -> FleetOutcome {
         let done = match action {
             FleetAction::Message { text } => port.show(&text),
             FleetAction::RestartVisit => port.restart_visit(),

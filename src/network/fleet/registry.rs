@@ -188,7 +188,10 @@ mod tests {
         assert_eq!(list.refused, 4);
         // Lost, it begins anew with a clock that was set back; an old run stays an old run.
         list.token_ended("hall", "a", 5);
-        assert!(list.get("hall").is_some_and(RegistryEntry::is_here), "the token of the run before");
+        assert!(
+            list.get("hall").is_some_and(RegistryEntry::is_here),
+            "the token of the run before"
+        );
         list.token_ended("hall", "b", 5);
         assert!(!list.observe(state("a", 100, 10), 6));
         assert!(list.observe(state("c", 50, 1), 6));

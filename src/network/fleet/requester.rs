@@ -40,8 +40,7 @@ impl Requester {
     /// Asks an installation for something. `id`: 16 hexadecimal digits, drawn for this request.
     pub fn ask(&mut self, id: String, installation: &str, action: FleetAction, until_us: u64) {
         let installation = installation.to_owned();
-        let pending =
-            PendingRequest { installation, action, named: None, next_us: 0, until_us };
+        let pending = PendingRequest { installation, action, named: None, next_us: 0, until_us };
         self.pending.insert(id, pending);
     }
 

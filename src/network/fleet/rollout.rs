@@ -207,7 +207,9 @@ impl Rollout {
                     let run = state.run.clone();
                     Ok(TargetStage::Watched { run, since_us: now_us })
                 }
-                TargetStage::Offered { run, .. } if !has && entry.is_here() && state.run != *run => {
+                TargetStage::Offered { run, .. }
+                    if !has && entry.is_here() && state.run != *run =>
+                {
                     Err("it has begun anew without the file".into())
                 }
                 TargetStage::Offered { until_us, .. } if now_us >= *until_us => {
@@ -292,7 +294,8 @@ impl Rollout {
     fn close(&mut self, action: impl Fn(&RolloutPlan) -> FleetAction) {
         // Who had it before this roll-out keeps it.
         let back = self.failed.is_some();
-        self.targets.retain(|_, s| !back || !matches!(s, TargetStage::Closed | TargetStage::Missed));
+        self.targets
+            .retain(|_, s| !back || !matches!(s, TargetStage::Closed | TargetStage::Missed));
         let action = action(&self.plan);
         for (name, stage) in &mut self.targets {
             if !matches!(stage, TargetStage::Closed | TargetStage::Missed) {

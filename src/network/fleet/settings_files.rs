@@ -150,7 +150,9 @@ impl SettingsFiles {
     pub fn try_settings(&self, text: &str, trial_s: u32) -> Result<bool, String> {
         let table: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
         if table.contains_key(OWN_TABLE) {
-            return Err(format!("the table [{OWN_TABLE}] is each installation's own: leave it out"));
+            return Err(format!(
+                "the table [{OWN_TABLE}] is each installation's own: leave it out"
+            ));
         }
         let revision = revision_of(text)?;
         let old = read(&self.path).ok_or_else(|| format!("{}: not read", self.path.display()))?;
@@ -161,8 +163,7 @@ impl SettingsFiles {
             return Err("other settings are on trial".into());
         }
         let table: toml::Table = toml::from_str(&old).map_err(|e| e.to_string())?;
-        let own: toml::Table =
-            table.into_iter().filter(|(name, _)| name == OWN_TABLE).collect();
+        let own: toml::Table = table.into_iter().filter(|(name, _)| name == OWN_TABLE).collect();
         let own = toml::to_string(&own).map_err(|e| e.to_string())?;
         let new = format!("{}\n\n{own}", text.trim_end());
         write(&self.beside(".before"), &old)?;

@@ -9,9 +9,7 @@ use std::sync::Arc;
 
 use crate::simulated::Random;
 use sculptd_network::fleet::access::{FleetKey, FleetSeal, FleetWay, open_sealed};
-use sculptd_network::fleet::installation::{
-    Installation, InstallationIdentity, InstallationPort,
-};
+use sculptd_network::fleet::installation::{Installation, InstallationIdentity, InstallationPort};
 use sculptd_network::fleet::registry::{FleetChange, FleetRegistry};
 use sculptd_network::fleet::request::{FleetAction, from_json, to_json};
 use sculptd_network::fleet::requester::{RequestEnd, Requester};
