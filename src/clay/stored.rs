@@ -208,6 +208,17 @@ impl Clay {
         twin
     }
 
+    /// Clay of its own as this one is now, in the middle of a step too: what is done to it is a try
+    /// that this one knows nothing of. It has no steps to take back but the open one. Its revisions
+    /// go on after `revision`, so that no state of it is taken for one of this clay. Costs as much
+    /// as there are pages, not vertices.
+    pub fn fork(&self, revision: u64) -> Clay {
+        let mut twin = self.duplicate(self.object_id);
+        twin.history.go_on_as(&self.history);
+        twin.revision = twin.revision.max(revision);
+        twin
+    }
+
     /// Which empty pages are used first, as [`Clay::rest`] told it.
     pub fn set_empty(&mut self, empty: Vec<u32>) {
         let count = self.pages.len() as u32;

@@ -51,6 +51,14 @@ impl History {
         }
     }
 
+    /// Takes the open step of another history, as it is: without the steps before it.
+    pub(super) fn go_on_as(&mut self, other: &History) {
+        self.open.clone_from(&other.open);
+        self.open_bytes = other.open_bytes;
+        self.touched.clone_from(&other.touched);
+        self.stamp = other.stamp;
+    }
+
     /// Makes room for so many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.touched.reserve(pages.saturating_sub(self.touched.len()));

@@ -11,7 +11,7 @@ use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::LiveRun;
 use sculptd_network::fleet::access::FleetKey;
 use sculptd_network::fleet::installation_thread::{FleetPart, RunInSight, start};
-use sculptd_network::fleet::settings_files::{OWN_TABLE, SettingsFiles, TrialStart};
+use sculptd_network::fleet::settings_files::{SettingsFiles, TrialStart};
 use sculptd_network::fleet::state::fleet_name;
 use sculptd_network::random::system_entropy;
 use sculptd_network::zenoh_link::Endpoints;
@@ -56,7 +56,7 @@ pub fn part(
     let check = |text: &str| {
         let config = KioskConfig::parse(text)?;
         super::display::check_screen(&config.screen)?;
-        config.words(LANGUAGES).map(drop).map_err(|e| format!("{e}; [{OWN_TABLE}] is left out"))
+        config.words(LANGUAGES).map(drop)
     };
     Ok(Some(FleetPart {
         fleet: name,

@@ -276,7 +276,11 @@ impl Ticking {
             let mut shown = published_figures(&now.figures, &self.receiver, now.stepped);
             shown.garbage_overflows = self.garbage.overflowed();
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = now.newest;
-            self.publisher.publish(Published::of(&mut self.world, shown), &garbage);
+            let mut state = Published::of(&mut self.world, shown);
+            if let Some(ahead) = self.shared.as_mut().and_then(|s| s.ahead(&self.world)) {
+                state.show_ahead(ahead);
+            }
+            self.publisher.publish(state, &garbage);
             // After the state that they are about is to be seen.
             for request in now.asked.drain(..) {
                 if !self.joiner.as_ref().is_some_and(|j| j.ask(request)) {
@@ -339,7 +343,9 @@ impl Ticking {
         // Commands of the tablets' keys have nobody who waits for a result.
         let told = now.commands.len().min(now.waiting.len());
         (told..now.commands.len()).for_each(|_| now.waiting.push_back((None, None)));
-        shared.submit(&mut now.samples, &mut now.commands);
+        let own_us = now.samples.last().map(|s| s.t_us);
+        shared.submit(&self.world, &mut now.samples, &mut now.commands);
+        let newest = now.newest;
         let until = self.clock.now_us() + 3_000_000 / u64::from(self.rate_hz.max(1));
         loop {
             match shared.next(&self.world) {
@@ -367,6 +373,14 @@ impl Ticking {
             if self.clock.now_us() >= until {
                 break;
             }
+        }
+        // Samples of frames have the times of their ticks. The own are seen by now, ahead of them.
+        now.newest = newest;
+        if let Some(own_us) = own_us
+            && shared.ahead(&self.world).is_some()
+        {
+            let took_us = self.clock.now_us().saturating_sub(own_us);
+            now.newest = (own_us, self.world.tick(), took_us as f64 / 1e3);
         }
     }
 }

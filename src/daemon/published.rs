@@ -99,20 +99,31 @@ pub struct PublishedFigures {
     pub input_to_snapshot_ms: f64,
 }
 
+/// The pens in range, their last dabs, and where they are on their tablets.
+type ShownPens = (
+    [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    [Option<(DeviceId, [Vec3; 2])>; SHOWN_PENS],
+    [Option<(DeviceId, glam::Vec2)>; SHOWN_PENS],
+);
+
+fn shown_pens(world: &World) -> ShownPens {
+    let (mut pens, mut last_dabs, mut tablets) =
+        ([None; SHOWN_PENS], [None; SHOWN_PENS], [None; SHOWN_PENS]);
+    for (slot, pen) in pens.iter_mut().zip(world.pens()) {
+        *slot = Some(pen);
+    }
+    for (slot, dab) in last_dabs.iter_mut().zip(world.last_dabs()) {
+        *slot = Some(dab);
+    }
+    for (slot, tablet) in tablets.iter_mut().zip(world.tablets()) {
+        *slot = Some(tablet);
+    }
+    (pens, last_dabs, tablets)
+}
+
 impl Published {
     pub fn of(world: &mut World, figures: PublishedFigures) -> Self {
-        let mut pens = [None; SHOWN_PENS];
-        for (slot, pen) in pens.iter_mut().zip(world.pens()) {
-            *slot = Some(pen);
-        }
-        let mut last_dabs = [None; SHOWN_PENS];
-        for (slot, dab) in last_dabs.iter_mut().zip(world.last_dabs()) {
-            *slot = Some(dab);
-        }
-        let mut tablets = [None; SHOWN_PENS];
-        for (slot, tablet) in tablets.iter_mut().zip(world.tablets()) {
-            *slot = Some(tablet);
-        }
+        let (pens, last_dabs, tablets) = shown_pens(world);
         let mut poses = [None; MAX_HANDS];
         let mut hand_devices = [None; MAX_HANDS];
         for ((pose, by), (device, _, now)) in
@@ -152,6 +163,16 @@ impl Published {
             redo_steps: world.redo_steps(),
             figures,
         }
+    }
+
+    /// Shows what a world that runs ahead has of its own: the active clay, pens, brush and view.
+    pub fn show_ahead(&mut self, ahead: &mut World) {
+        self.mesh = ahead.snapshot();
+        (self.camera, self.brush) = (*ahead.camera(), *ahead.brush());
+        self.kept_brushes = ahead.kept_brushes().clone();
+        self.brush_radius = ahead.brush_radius();
+        self.draft = ahead.curve_stroke().cloned().unwrap_or_default();
+        (self.pens, self.last_dabs, self.tablets) = shown_pens(ahead);
     }
 
     /// Where the active object stands.

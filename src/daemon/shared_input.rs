@@ -34,12 +34,15 @@ pub enum NextTick {
 pub trait SharedInput: Send + std::fmt::Debug {
     /// Whether a command of this daemon cannot be shared; it is told, and goes no further.
     fn refuses(&mut self, command: &QueuedCommand) -> bool;
-    /// The own input of one tick; both lists are taken.
-    fn submit(&mut self, samples: &mut Vec<Sample>, commands: &mut Vec<Command>);
+    /// The own input of one tick, once a tick; both lists are taken. `world`: the loop's.
+    fn submit(&mut self, world: &World, samples: &mut Vec<Sample>, commands: &mut Vec<Command>);
     /// What is next.
     fn next(&mut self, world: &World) -> NextTick;
     /// The tick of [`NextTick::Step`] was stepped.
     fn after_step(&mut self, world: &mut World);
+    /// The world that is shown in the place of the loop's, as it has the own input that is still on
+    /// its way; once a tick, after all of its steps.
+    fn ahead(&mut self, world: &World) -> Option<&mut World>;
     /// Whether this daemon orders the input. It alone starts what a step asks for once.
     fn hosts(&self) -> bool;
 }

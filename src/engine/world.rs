@@ -8,6 +8,7 @@
 //!   topology, whose budget is what dabs leave. Edits of layers, of the whole mask, of face sets
 //!   and of triangles in place go through the pages in portions.
 
+mod fork;
 mod hands;
 mod held;
 mod images;
@@ -92,7 +93,7 @@ pub struct WorldOptions {
 }
 
 /// One pen at work.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct PenSlot {
     device: DeviceId,
     track: PenTrack,

@@ -80,6 +80,16 @@ impl Executor {
         (self.person, self.rate_hz) = (person, rate_hz);
     }
 
+    /// Ticks a second.
+    pub fn rate_hz(&self) -> u32 {
+        self.rate_hz
+    }
+
+    /// The replica's person.
+    pub fn person(&self) -> PersonId {
+        self.person
+    }
+
     /// The ticks without input before the one of a frame: those that are to be stepped. While
     /// nothing goes on by itself they change nothing, and none is.
     pub fn empty_ticks(&self, world: &World, frame: &Frame) -> std::ops::Range<u64> {

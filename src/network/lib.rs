@@ -32,6 +32,7 @@ pub mod host_members;
 pub mod keyring;
 #[cfg(feature = "zenoh")]
 pub mod live;
+pub mod local_echo;
 pub mod member;
 pub mod outbox;
 pub mod policy;

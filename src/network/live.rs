@@ -16,6 +16,7 @@ use crossbeam_channel as cc;
 use crate::checkpoint::Captured;
 use crate::core::Event;
 use crate::executor::{Asked, Executor, HashView};
+use crate::local_echo::LocalEcho;
 use crate::policy;
 use crate::station::Station;
 use crate::transport::Transport;
@@ -90,12 +91,15 @@ pub struct SharedLink {
     to: cc::Sender<FromLoop>,
     from: cc::Receiver<ToLoop>,
     executor: Executor,
+    echo: LocalEcho,
     /// The own devices, by their number on the wire.
     devices: Vec<DeviceId>,
     frames: VecDeque<Arc<Frame>>,
     /// The frame whose own tick is being stepped.
     stepping: Option<Arc<Frame>>,
     hosting: Arc<AtomicBool>,
+    /// Frames come here: a device is sent none, and its world stands still.
+    sees: bool,
     lost: u64,
     _thread: SharedThread,
 }
@@ -204,10 +208,12 @@ impl Shared {
             to,
             from,
             executor: Executor::new(1, 0),
+            echo: LocalEcho::new(1, 0),
             devices: Vec::new(),
             frames: VecDeque::new(),
             stepping: None,
             hosting,
+            sees: true,
             lost: 0,
             _thread: SharedThread { stop, thread: Some(thread) },
         };
@@ -239,6 +245,8 @@ impl Shared {
             match self.link.from.recv_timeout(Duration::from_millis(50)) {
                 Ok(ToLoop::Entered(person, rate_hz)) => {
                     self.link.executor = Executor::new(rate_hz, person);
+                    self.link.echo.reset(rate_hz, person);
+                    self.link.sees = sees;
                     rate = rate_hz;
                     if !sees {
                         return Ok((None, rate));
@@ -270,7 +278,7 @@ impl SharedInput for SharedLink {
         why.is_some()
     }
 
-    fn submit(&mut self, samples: &mut Vec<Sample>, commands: &mut Vec<Command>) {
+    fn submit(&mut self, world: &World, samples: &mut Vec<Sample>, commands: &mut Vec<Command>) {
         let mut own = Vec::new();
         for mut sample in samples.drain(..).filter_map(|s| rounded(&s)) {
             let known = self.devices.iter().position(|d| *d == sample.device);
@@ -292,6 +300,9 @@ impl SharedInput for SharedLink {
                 let device = entry.and_then(|(d, _)| self.devices.iter().position(|o| *o == d));
                 *entry = entry.zip(device).map(|((_, at), n)| (DeviceId(n as u16), at));
             }
+        }
+        if self.sees {
+            self.echo.take(world, &own, commands);
         }
         if own.is_empty() && commands.is_empty() {
             return;
@@ -322,10 +333,12 @@ impl SharedInput for SharedLink {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
                 Ok(ToLoop::World(world, executor)) => {
                     self.executor = executor;
+                    self.echo.reset(self.executor.rate_hz(), self.executor.person());
                     return NextTick::World(world);
                 }
                 Ok(ToLoop::Entered(person, rate_hz)) => {
                     self.executor.set_person(person, rate_hz);
+                    self.echo.reset(rate_hz, person);
                 }
                 Err(_) => return NextTick::Wait,
             }
@@ -336,10 +349,16 @@ impl SharedInput for SharedLink {
         let frame = self.stepping.take();
         let asked = Box::new(self.executor.after_step(world, frame.as_deref()));
         if let Some(frame) = frame {
+            self.echo.stepped(&frame);
             let at_rest = world.is_at_rest();
             // Where the station is so far behind, it misses a comparison.
             let _ = self.to.try_send(FromLoop::Stepped { frame, asked, at_rest });
         }
+    }
+
+    fn ahead(&mut self, world: &World) -> Option<&mut World> {
+        self.echo.advance(world);
+        self.echo.ahead()
     }
 
     fn hosts(&self) -> bool {

@@ -13,7 +13,7 @@ const MOST: usize = 256;
 /// Rounds of fitting and of mending parameters.
 const ROUNDS: usize = 6;
 /// A path while it is drawn, and the curve afterwards.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Curve {
     path: Vec<PenPoint>,
     /// Where on the curve each point lies, 0 to 1.

@@ -10,7 +10,7 @@ use sculptd_clay::brush::PathSettings;
 const MOST: usize = 64;
 
 /// What lies between the pen and the brush.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Stabilizer {
     /// The newest reports, in a ring.
     #[serde(with = "sculptd_devices::long_array")]

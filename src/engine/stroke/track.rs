@@ -34,7 +34,7 @@ pub enum PenEvent {
 }
 
 /// A pen's stroke between its samples and its dabs.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct PenTrack {
     waiting: VecDeque<PenEvent>,
     steady: Stabilizer,

@@ -16,8 +16,9 @@ use sculptd_network::checkpoint::Captured;
 use sculptd_network::core::{Event, To};
 use sculptd_network::executor::Executor;
 use sculptd_network::keyring::{Entropy, Invitation, Keyring, fresh};
+use sculptd_network::local_echo::LocalEcho;
 use sculptd_network::station::{Identity, Station};
-use sculptd_network::wire::frame::{Mark, Role};
+use sculptd_network::wire::frame::{Batch, Frame, Mark, Role};
 use sculptd_network::wire::samples::rounded;
 
 pub const RATE: u32 = 120;
@@ -67,6 +68,12 @@ pub struct Replica {
     pub station: Station,
     pub world: Option<World>,
     pub executor: Executor,
+    /// Shows the own strokes before they are ordered; `None`: without.
+    pub echo: Option<LocalEcho>,
+    /// Ticks with a tip down in which the world that was shown moved, and in which it did not.
+    pub shown: (u64, u64),
+    /// A world that nobody shares, which takes the same strokes, and the same count of it.
+    pub alone: (World, (u64, u64)),
     pub alive: bool,
     /// Nothing comes to it or from it.
     pub cut_off: bool,
@@ -140,6 +147,9 @@ impl Simulation {
             station,
             world,
             executor: Executor::new(RATE, 0),
+            echo: None,
+            shown: (0, 0),
+            alone: (ball(), (0, 0)),
             alive: true,
             cut_off: false,
             notes: Vec::new(),
@@ -194,7 +204,30 @@ impl Simulation {
         if replica.station.person() != 0 && tip != replica.tip {
             (replica.tip, replica.transitions_given) = (tip, replica.transitions_given + 1);
         }
-        replica.station.submit(rounded(&sample).into_iter().collect(), Vec::new(), self.now_us);
+        let samples: Vec<Sample> = rounded(&sample).into_iter().collect();
+        if let (Some(echo), Some(world)) = (&mut replica.echo, &mut replica.world) {
+            let hash = |echo: &mut LocalEcho, world: &World| {
+                echo.ahead().map_or_else(|| world.hash(), |ahead| ahead.hash())
+            };
+            let before = hash(echo, world);
+            echo.take(world, &samples, &[]);
+            let after = hash(echo, world);
+            let (alone, counts) = &mut replica.alone;
+            let before_alone = alone.hash();
+            let (person, number, commands) = (replica.station.person(), 0, Vec::new());
+            let batches = vec![Batch { person, number, samples: samples.clone(), commands }];
+            let frame = Frame { tick: alone.tick() + 1, batches, ..Frame::default() };
+            Executor::new(RATE, person).execute(alone, &frame);
+            if tip {
+                let count = |counts: &mut (u64, u64), moved| match moved {
+                    true => counts.0 += 1,
+                    false => counts.1 += 1,
+                };
+                count(&mut replica.shown, after != before);
+                count(counts, alone.hash() != before_alone);
+            }
+        }
+        replica.station.submit(samples, Vec::new(), self.now_us);
     }
 
     /// Passes time; everybody of `sculpts` sculpts.
@@ -220,6 +253,10 @@ impl Simulation {
                 }
                 self.replicas[i].station.advance(self.now_us);
                 self.events(i);
+                let replica = &mut self.replicas[i];
+                if let (true, Some(echo), Some(world)) = (tick, &mut replica.echo, &replica.world) {
+                    echo.advance(world);
+                }
                 while let Some((to, bytes)) = self.replicas[i].station.take_outgoing() {
                     self.send(i, to, &bytes);
                 }
@@ -249,17 +286,26 @@ impl Simulation {
                         }
                     }
                     replica.station.after_step(world.is_at_rest());
+                    if let Some(echo) = &mut replica.echo {
+                        echo.stepped(&frame);
+                    }
                 }
                 Event::Restore { checkpoint, .. } => {
                     let world = Captured::restore(&checkpoint, Workers::new(1)).expect("whole");
                     world.verify_invariants().expect("sound");
                     replica.world = Some(world);
                     replica.executor = Executor::new(RATE, replica.station.person());
+                    if let Some(echo) = &mut replica.echo {
+                        echo.reset(RATE, replica.station.person());
+                    }
                     replica.hashes.clear();
                     replica.restored += 1;
                 }
                 Event::Entered { person, rate_hz } => {
                     replica.executor.set_person(person, rate_hz);
+                    if let Some(echo) = &mut replica.echo {
+                        echo.reset(rate_hz, person);
+                    }
                 }
                 // A host's own turn may be given up: its frames are nobody else's.
                 Event::Hosting(_) => replica.hashes.clear(),
