@@ -13,11 +13,10 @@ use crate::acknowledgement::Acknowledgements;
 use crate::comparison::HashComparison;
 use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
 use crate::host_limits::{
-    ALONE_US, BUSY_US, BYTES, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE,
-    REST_US,
+    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, bounded, fitting,
+    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, SenderLimits, bounded, fitting,
 };
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
@@ -166,7 +165,7 @@ impl Host {
             self.forged += 1;
             return;
         };
-        if !member.limit.take(plain.len() as f64, now_us) {
+        if !member.limits.bytes.take(plain.len() as f64, now_us) {
             return self.violation(core, from, "sends more than is allowed", now_us);
         }
         match FromMember::from_bytes(&plain) {
@@ -252,7 +251,7 @@ impl Host {
             progress_us: now_us,
             next_us: now_us,
             trip: RoundTrip::default(),
-            limit: RateLimit::new(BYTES.0, BYTES.1, now_us),
+            limits: SenderLimits::new(now_us),
             violations: 0,
             told_us: 0,
         };
@@ -363,7 +362,7 @@ impl Host {
     }
 
     fn take_batches(&mut self, core: &mut Core, from: Address, batches: Vec<Batch>, now_us: u64) {
-        let Some(member) = self.members.get(&from) else { return };
+        let Some(member) = self.members.get_mut(&from) else { return };
         if !batches.is_empty() && member.role == Role::Viewer {
             return self.violation(core, from, "is a viewer, and sends input", now_us);
         }
@@ -380,8 +379,8 @@ impl Host {
             batch.person = person;
             let (number, early) = (batch.number, waiting.early.len() + waiting.ready.len());
             if number > waiting.received && number <= waiting.received + MAX_WAITING as u64 {
-                if early >= MAX_WAITING {
-                    fault = Some("sends more batches than there are ticks");
+                if let Some(what) = member.limits.excess(&batch, early, now_us) {
+                    fault = Some(what);
                     break;
                 }
                 waiting.early.insert(number, batch);

@@ -4,6 +4,9 @@
 pub const MAX_MEMBERS: usize = 64;
 /// Bytes that a member may send at once, and a second: a command with a mesh, then strokes.
 pub const BYTES: (f64, f64) = (24e6, 48e3);
+/// Samples, commands and batches of a member that are taken at once, and a second: what was given
+/// while the network was gone for a while, then a person with several devices.
+pub const ENTRIES: (f64, f64) = (20e3, 2e3);
 /// Greetings that are answered at once, and a second, of all strangers together.
 pub const GREETINGS: (f64, f64) = (64.0, 20.0);
 /// Batches of one person that wait for their ticks.

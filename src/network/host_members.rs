@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use crate::core::RoundTrip;
+use crate::host_limits::{BYTES, ENTRIES, MAX_WAITING};
 use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
@@ -32,6 +33,33 @@ pub struct Greeted {
     pub at_us: u64,
 }
 
+/// What a member may send.
+#[derive(Debug)]
+pub struct SenderLimits {
+    pub bytes: RateLimit,
+    entries: RateLimit,
+}
+
+impl SenderLimits {
+    /// Of one who joins now.
+    pub fn new(now_us: u64) -> SenderLimits {
+        SenderLimits {
+            bytes: RateLimit::new(BYTES.0, BYTES.1, now_us),
+            entries: RateLimit::new(ENTRIES.0, ENTRIES.1, now_us),
+        }
+    }
+
+    /// Why a batch is not taken now, where so many of the member's wait; `None`: it is.
+    pub fn excess(&mut self, batch: &Batch, waiting: usize, now_us: u64) -> Option<&'static str> {
+        let entries = batch.samples.len() + batch.commands.len() + 1;
+        match waiting >= MAX_WAITING {
+            true => Some("sends more batches than there are ticks"),
+            false if self.entries.take(entries as f64, now_us) => None,
+            false => Some("sends more input than is allowed"),
+        }
+    }
+}
+
 /// Who joined.
 #[derive(Debug)]
 pub struct JoinedMember {
@@ -52,7 +80,7 @@ pub struct JoinedMember {
     pub progress_us: u64,
     pub next_us: u64,
     pub trip: RoundTrip,
-    pub limit: RateLimit,
+    pub limits: SenderLimits,
     pub violations: u32,
     pub told_us: u64,
 }

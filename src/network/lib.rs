@@ -15,6 +15,8 @@
 //!
 //! Laws kept here:
 //! * A sample is rounded before it is sent, and everybody steps what was sent, its sender too.
+//! * What is shown of the own strokes before they are ordered ([`local_echo`]) is a try on a copy,
+//!   and no part of what is stepped.
 //! * Input is acknowledged when a replica has it too; what is not is sent again, to the next host
 //!   where the first is gone. Nothing is stepped twice: batches are numbered.
 //! * Nobody without a key is listened to; what a member sends is bounded. Reading never panics.

@@ -349,7 +349,7 @@ impl SharedInput for SharedLink {
         let frame = self.stepping.take();
         let asked = Box::new(self.executor.after_step(world, frame.as_deref()));
         if let Some(frame) = frame {
-            self.echo.stepped(&frame);
+            self.echo.ordered(&frame);
             let at_rest = world.is_at_rest();
             // Where the station is so far behind, it misses a comparison.
             let _ = self.to.try_send(FromLoop::Stepped { frame, asked, at_rest });

@@ -1,11 +1,11 @@
-//! The own strokes before they are ordered: a world that runs ahead of the replica's, for the picture
-//! alone. What is sculpted depends on frames and on nothing of this.
+//! The own strokes before they are ordered: a world that runs ahead of the replica's, for the
+//! picture alone. What is sculpted depends on frames and on nothing of this.
 //!
 //! Own input goes into the world ahead in the tick in which it was given. When it comes back in a
-//! frame, the replica's world has it too; where frames bring nothing but that, the world ahead stays
-//! right. Where they bring what others did, another fork of the replica's world is made and catches
-//! up with the own input that is still on its way, some batches a tick, while the first one is shown
-//! on. When nothing is on its way the replica's world itself is shown.
+//! frame, the replica's world has it too; where frames bring nothing but that, the world ahead
+//! stays right. Where they bring what others did, another fork of the replica's world is made and
+//! catches up with the own input that is still on its way, some batches a tick, while the first
+//! one is shown on. When nothing is on its way the replica's world itself is shown.
 
 use std::collections::VecDeque;
 
@@ -82,8 +82,8 @@ impl LocalEcho {
         self.forks
     }
 
-    /// Takes the own input of a tick as it is sent, nothing where there is none; once a tick, before
-    /// the frames that have come. `world`: the replica's.
+    /// Takes the own input of a tick as it is sent, nothing where there is none; once a tick,
+    /// before the frames that have come. `world`: the replica's.
     pub fn take(&mut self, world: &World, samples: &[Sample], commands: &[Command]) {
         self.since = self.since.saturating_add(1);
         if samples.is_empty() && commands.is_empty() {
@@ -112,7 +112,7 @@ impl LocalEcho {
     }
 
     /// The replica's world has stepped a frame.
-    pub fn stepped(&mut self, frame: &Frame) {
+    pub fn ordered(&mut self, frame: &Frame) {
         let mut gone = 0;
         for batch in &frame.batches {
             if batch.person != self.person {

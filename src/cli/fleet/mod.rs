@@ -202,17 +202,17 @@ pub fn run(args: &FleetArgs, json: bool) -> Outcome {
         }
         FleetCommand::Follow { limit_s } => follow(args, *limit_s, json),
         FleetCommand::Message { text, to } => {
-            ask_all(args, to, FleetAction::Message { text: text.clone() }, json)
+            ask_all(args, to, &FleetAction::Message { text: text.clone() }, json)
         }
-        FleetCommand::RestartVisit { to } => ask_all(args, to, FleetAction::RestartVisit, json),
+        FleetCommand::RestartVisit { to } => ask_all(args, to, &FleetAction::RestartVisit, json),
         FleetCommand::Logs { to, lines } => {
-            ask_all(args, to, FleetAction::Logs { lines: *lines }, json)
+            ask_all(args, to, &FleetAction::Logs { lines: *lines }, json)
         }
         FleetCommand::Rollout { file, canary, watch } => {
             roll::rollout(args, file, canary, *watch, json)
         }
         FleetCommand::Rollback { to } => {
-            ask_all(args, to, FleetAction::TakeBackSettings { revision: None }, json)
+            ask_all(args, to, &FleetAction::TakeBackSettings { revision: None }, json)
         }
     }
 }
@@ -268,7 +268,7 @@ fn follow(args: &FleetArgs, limit_s: Option<f64>, json: bool) -> Outcome {
 }
 
 /// Asks installations for the same, and waits for all of them.
-fn ask_all(args: &FleetArgs, to: &Recipients, action: FleetAction, json: bool) -> Outcome {
+fn ask_all(args: &FleetArgs, to: &Recipients, action: &FleetAction, json: bool) -> Outcome {
     action.check().map_err(Fail::Usage)?;
     let (fleet, mut console) = args.console()?;
     remember(&fleet, &console);

@@ -1,6 +1,6 @@
-//! A world that runs ahead of another: it shares the pages, and what is stepped in it is a try that
-//! the other knows nothing of. So a person sees the own stroke before those who share the world have
-//! ordered it.
+//! A world that runs ahead of another: it shares the pages, and what is stepped in it is a try
+//! that the other knows nothing of. So a person sees the own stroke before those who share the
+//! world have ordered it.
 
 use super::World;
 use crate::scene::{Object, Scene};

@@ -79,8 +79,8 @@ pub struct FleetPart {
 
 impl std::fmt::Debug for FleetPart {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let named = f.debug_struct("FleetPart").field("fleet", &self.fleet).finish_non_exhaustive();
-        named
+        let mut part = f.debug_struct("FleetPart");
+        part.field("fleet", &self.fleet).field("name", &self.name).finish_non_exhaustive()
     }
 }
 
@@ -182,7 +182,7 @@ impl DaemonPort {
         let slow = self.slow.take().filter(|(at, ..)| now_us < at + SLOW_US);
         let (at, disk_free_bytes, devices) = slow.unwrap_or_else(|| {
             let lines = self.run.adaptors.standing().into_iter().take(MAX_DEVICES);
-            (now_us, free_bytes(&self.part.gallery), lines.map(device_line).collect())
+            (now_us, free_bytes(&self.part.gallery), lines.map(|d| device_line(&d)).collect())
         });
         self.slow = Some((at, disk_free_bytes, devices.clone()));
         let (errors, warnings, last) = self.part.log.counts();
@@ -213,7 +213,7 @@ impl DaemonPort {
     }
 }
 
-fn device_line(device: DeviceStanding) -> DeviceLine {
+fn device_line(device: &DeviceStanding) -> DeviceLine {
     let kind = match device.kind {
         StandingKind::Tablet => DeviceKind::Tablet,
         StandingKind::SerialPen => DeviceKind::SerialPen,

@@ -4,7 +4,8 @@
 //! Read first: [`state`] (what an installation publishes, a documented schema), [`request`] (what
 //! staff may ask for), [`registry`] (the list), [`rollout`]. All of them are state machines or data
 //! without clock, IO and threads; with the feature `zenoh`, `fleet_link` carries their messages,
-//! `installation_thread` runs an installation's end beside its daemon, `fleet_console` the staff's.
+//! `installation_thread` runs an installation's end beside its daemon, `fleet_console` the
+//! staff's.
 //!
 //! ```text
 //! sculptd/fleet/1/FLEET/state/INSTALLATION     state, JSON, in the clear; its tag is the attachment

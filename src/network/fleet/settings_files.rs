@@ -1,8 +1,8 @@
 //! The settings file of an installation on its disk, the one before it, and a file on trial.
 //!
 //! Each file is written beside and renamed, in an order in which a cut at any place leaves either
-//! the old settings or the new ones on trial. A trial that ends in the death of the program is taken
-//! back by its next start.
+//! the old settings or the new ones on trial. A trial that ends in the death of the program is
+//! taken back by its next start.
 //!
 //! ```text
 //! kiosk.toml             in place
@@ -189,8 +189,8 @@ impl SettingsFiles {
     }
 
     /// Brings the settings back that were in place before: those before the trial, or those before
-    /// the last that were kept. `revision`: only where this one is in place; where it is not, nothing
-    /// is done. Says whether anything was.
+    /// the last that were kept. `revision`: only where this one is in place; where it is not,
+    /// nothing is done. Says whether anything was.
     ///
     /// # Errors
     /// Where there are none before, or a file cannot be renamed.

@@ -4,8 +4,11 @@
 use crate::simulated::{BAD, Faults, GOOD, Simulation};
 use sculptd_network::local_echo::LocalEcho;
 
+/// Ticks of strokes in which the picture moved, and in which it did not.
+type Moved = (u64, u64);
+
 /// Three people over a network, with an echo or without; the hash of all in the end.
-fn sculpted(faults: Faults, seed: u64, echo: bool) -> (u64, Vec<[(u64, u64); 2]>, Vec<u64>) {
+fn sculpted(faults: Faults, seed: u64, echo: bool) -> (u64, Vec<[Moved; 2]>, Vec<u64>) {
     let mut s = Simulation::new(seed, faults);
     s.run(0.5, |_| false);
     s.join_sculptor();

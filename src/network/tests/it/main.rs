@@ -6,5 +6,6 @@
 mod echo;
 mod faults;
 mod fleet;
+mod fleet_simulated;
 mod keys;
 mod simulated;

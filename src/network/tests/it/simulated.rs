@@ -287,7 +287,7 @@ impl Simulation {
                     }
                     replica.station.after_step(world.is_at_rest());
                     if let Some(echo) = &mut replica.echo {
-                        echo.stepped(&frame);
+                        echo.ordered(&frame);
                     }
                 }
                 Event::Restore { checkpoint, .. } => {
