@@ -8,7 +8,7 @@
 //! staff's.
 //!
 //! ```text
-//! sculptd/fleet/1/FLEET/state/INSTALLATION     state, JSON, in the clear; its tag is the attachment
+//! sculptd/fleet/1/FLEET/state/INSTALLATION     state, JSON, in the clear; attached: its tag
 //! sculptd/fleet/1/FLEET/alive/INSTALLATION/RUN liveliness token
 //! sculptd/fleet/1/FLEET/request/INSTALLATION   requests of staff, sealed
 //! sculptd/fleet/1/FLEET/answer/INSTALLATION    answers to them, sealed

@@ -8,7 +8,7 @@ use sculptd_network::fleet::request::{FleetAction, to_json};
 use sculptd_network::fleet::requester::RequestEnd;
 use sculptd_network::fleet::rollout::RolloutEnd;
 
-/// Hours that are simulated: a month by `SCULPTD_LONG`, which takes an hour, or as many as
+/// Hours that are simulated: a month by `SCULPTD_LONG`, which takes half an hour, or as many as
 /// `SCULPTD_FLEET_HOURS` says.
 fn hours() -> u64 {
     let said = std::env::var("SCULPTD_FLEET_HOURS").ok().and_then(|t| t.parse().ok());
