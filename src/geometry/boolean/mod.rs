@@ -45,6 +45,8 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
+mod self_arrangement;
+mod self_cuts;
 mod simplify;
 mod solve;
 mod verify;
