@@ -52,8 +52,13 @@ struct SelfArrangement {
 }
 
 /// The solid that the closed `mesh` goes around, in triangles with the colours and groups of their
-/// faces. Places nearer than `eps` are one. The inner error says why the cells do not fit.
-pub fn solid(mesh: &PolyMesh, eps: f64, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
+/// faces, and the face that each came from. Places nearer than `eps` are one. The inner error says
+/// why the cells do not fit.
+pub fn solid(
+    mesh: &PolyMesh,
+    eps: f64,
+    job: &Job,
+) -> Result<Result<(PolyMesh, Vec<FaceOrigin>), String>, Cancelled> {
     let Some(a) = SelfArrangement::new(mesh, eps, job)? else {
         return Ok(Err("many faces lie in one plane".into()));
     };
@@ -83,7 +88,7 @@ pub fn solid(mesh: &PolyMesh, eps: f64, job: &Job) -> Result<Result<PolyMesh, St
         return Ok(Err("the solved surface is not closed".into()));
     }
     attributes::carry(&mut out, &origins, [mesh, mesh]);
-    Ok(Ok(out))
+    Ok(Ok((out, origins)))
 }
 
 impl SelfArrangement {

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::box_tree::Span;
 use super::broad_phase::SurfaceView;
 use super::classify::{WindingOracle, probe};
+use super::emit::FaceOrigin;
 use super::{
     BooleanError, BooleanOptions, Operation, ResultFaces, compute, global, reach, self_arrangement,
     shells,
@@ -50,7 +51,7 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
     {
         return Ok(sum);
     }
-    if let Some(made) = arranged(mesh, job)? {
+    if let Some((made, _)) = arranged(mesh, job)? {
         return Ok(made);
     }
     let first = match global::solve(mesh, job)? {
@@ -70,15 +71,18 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
 }
 
 /// The solid by an arrangement of the surface with itself, decided by what rounding alone does.
-/// None where that does not fit together, crosses itself, or is another solid.
-fn arranged(mesh: &PolyMesh, job: &Job) -> Result<Option<PolyMesh>, Cancelled> {
+/// None where that does not fit together, crosses itself, or is another solid. With the face that
+/// each of its faces came from.
+pub(super) fn arranged(
+    mesh: &PolyMesh,
+    job: &Job,
+) -> Result<Option<(PolyMesh, Vec<FaceOrigin>)>, Cancelled> {
     let eps = reach(&mesh.positions) * 2f64.powi(-49);
-    let Ok(made) = self_arrangement::solid(mesh, eps.max(f64::MIN_POSITIVE), job)? else {
-        return Ok(None);
-    };
+    let made = self_arrangement::solid(mesh, eps.max(f64::MIN_POSITIVE), job)?;
+    let Ok((made, origins)) = made else { return Ok(None) };
     let crossed = self_intersection::pairs(&made.positions, &made.triangles().0, job)?;
     let good = crossed.is_empty() && differs(mesh, &made, job)?.is_none();
-    Ok(good.then_some(made))
+    Ok(good.then_some((made, origins)))
 }
 
 /// The union of shells, two and two: none where two of them give no result, or where `strictly` and
@@ -211,13 +215,32 @@ mod tests {
             }
             balls.groups = Some(groups);
         }
-        for mesh in [crate::shapes::torus(1.0, 1.3, 24, 17), balls] {
-            let made = arranged(&mesh, &Job::default()).expect("not cancelled").expect("a solid");
+        let united = {
+            let parts = shells(&balls);
+            super::super::emit::measure(
+                &united(&parts, true, &Job::default()).expect("runs").expect("so"),
+            )
+        };
+        for (mesh, volume) in
+            [(crate::shapes::torus(1.0, 1.3, 24, 17), None), (balls, Some(united.0))]
+        {
+            let (made, origins) = arranged(&mesh, &Job::default()).expect("runs").expect("a solid");
             let facts = crate::check::report(&made, true, &Job::default()).expect("a report");
             assert!(facts.closed && facts.manifold && facts.self_intersections == Some(0));
-            let exact = global::solve(&mesh, &Job::default()).expect("not cancelled").expect("so");
-            let [own, other] = [&made, &exact].map(|m| super::super::emit::measure(m).0);
-            assert!((own - other).abs() < 1e-12 * other, "{own} instead of {other}");
+            // Nothing moved: each face lies in the plane of the face that it came from. That the
+            // solid is the right one, its winding number was compared for.
+            assert_eq!(origins.len(), made.face_count());
+            for (face, origin) in made.faces().zip(&origins) {
+                let from = mesh.face(origin.face as usize);
+                let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[from[k] as usize]);
+                let normal = (b - a).cross(c - a).normalize();
+                let off = face.iter().map(|&v| (made.positions[v as usize] - a).dot(normal).abs());
+                assert!(off.fold(0.0, f64::max) < 1e-14);
+            }
+            if let Some(volume) = volume {
+                let own = super::super::emit::measure(&made).0;
+                assert!((own - volume).abs() < 1e-12 * volume, "{own} instead of {volume}");
+            }
             let groups = made.groups.as_ref().map(Vec::len);
             assert_eq!(groups, mesh.groups.as_ref().map(|_| made.face_count()));
         }
