@@ -1,6 +1,7 @@
 //! Rows of a panel that hold in every language: a label that does not fit beside its widget stands
 //! above it.
 
+use crate::language::tr;
 use egui::{ComboBox, Response, Slider, TextStyle, Ui, WidgetText};
 
 /// Points beside the bar of a slider: its number and the gaps.
@@ -59,4 +60,9 @@ pub fn flow(ui: &mut Ui, what: impl FnOnce(&mut Ui)) {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         what(ui);
     });
+}
+
+/// A part that is folded at first, by the message of its title.
+pub fn folded(title: &'static str) -> egui::CollapsingHeader {
+    egui::CollapsingHeader::new(tr!(title)).id_salt(title).default_open(false)
 }
