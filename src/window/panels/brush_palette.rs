@@ -131,7 +131,11 @@ fn favourites(
     ui.label(tr!("brush-favourites"));
     ui.push_id(egui::Id::unique("favourites"), |ui| {
         palette(ui, view, brush, &kinds);
-        ui.horizontal_wrapped(|ui| own.iter().for_each(|one| own_brush(ui, view, brush, one, out)));
+        if !own.is_empty() {
+            ui.horizontal_wrapped(|ui| {
+                own.iter().for_each(|one| own_brush(ui, view, brush, one, out));
+            });
+        }
     });
     ui.separator();
 }

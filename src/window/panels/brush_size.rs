@@ -8,6 +8,9 @@ use sculptd_clay::brush::BrushSettings;
 /// The least and the greatest radius of the slider, as [`BrushSettings::radius`] counts them.
 const RANGE: [f32; 2] = [0.005, 1.0];
 
+/// Points beside the bar of the slider: a number with its unit, and the gaps.
+const NUMBER: f32 = 88.0;
+
 /// World units of one pixel where the view turns about; 0 where that is not known.
 fn unit_a_pixel(view: &View<'_>, ui_state: &UiState) -> f32 {
     let pixels = ui_state.brush_panel.view_pixels;
@@ -59,7 +62,7 @@ pub fn radius(
     let slider = slider.max_decimals(if in_pixels { 0 } else { 3 }).suffix(format!(" {name}"));
     let keys = view.both(Action::Smaller, Action::Larger);
     let drag = view.keys.text(Action::DragRadius);
-    let response = rows::slider(ui, slider, &tr!("brush-radius"));
+    let response = rows::slider_beside(ui, slider, &tr!("brush-radius"), NUMBER);
     if response.changed() {
         brush.radius = value * unit / one;
         ui_state.brush_panel.screen.set(value * unit, unit, time);

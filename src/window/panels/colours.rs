@@ -27,6 +27,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, brush: &mu
             likes.keep(brush.colour);
         }
     });
+    if likes.colours.is_empty() {
+        return;
+    }
     let mut forgotten = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 4.0);

@@ -19,8 +19,13 @@ fn width(ui: &Ui, text: &str) -> f32 {
 
 /// A slider with its name.
 pub fn slider(ui: &mut Ui, slider: Slider<'_>, name: &str) -> Response {
+    slider_beside(ui, slider, name, NUMBER)
+}
+
+/// A slider with its name, whose number and the gaps take so many points beside the bar.
+pub fn slider_beside(ui: &mut Ui, slider: Slider<'_>, name: &str, number: f32) -> Response {
     let usual = ui.spacing().slider_width;
-    let bar = (ui.available_width() - NUMBER - width(ui, name)).min(usual);
+    let bar = (ui.available_width() - number - width(ui, name)).min(usual);
     // A bar that is a little shorter is better than two kinds of rows on one page.
     if bar >= SHORTEST * usual {
         let add = |ui: &mut Ui| {
