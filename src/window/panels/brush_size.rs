@@ -1,5 +1,7 @@
 //! The radius of the brush, in the scene's unit or in pixels of the screen.
 
+use glam::Vec2;
+
 use super::rows;
 use super::state::{Action, UiState, View};
 use crate::language::tr;
@@ -11,10 +13,22 @@ const RANGE: [f32; 2] = [0.005, 1.0];
 /// Points beside the bar of the slider: a number with its unit, and the gaps.
 const NUMBER: f32 = 88.0;
 
-/// World units of one pixel where the view turns about; 0 where that is not known.
-fn unit_a_pixel(view: &View<'_>, ui_state: &UiState) -> f32 {
-    let pixels = ui_state.brush_panel.view_pixels;
-    if pixels > 0.0 { view.camera.world_per_view(view.camera.distance) / pixels } else { 0.0 }
+/// World units of one pixel on the surface under the pointer, or else in the middle of the view, or
+/// else where the view turns about; 0 where that is not known. Measured while the view moves: a
+/// pointer that goes to what is further away leaves the brush as large as it is.
+fn unit_a_pixel(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> f32 {
+    let panel = &mut ui_state.brush_panel;
+    let Some(free) = panel.free.filter(|free| free.is_positive()) else { return 0.0 };
+    let (camera, pixels) = (&view.camera, free.height() * ctx.pixels_per_point());
+    panel.screen.scale(camera, pixels, || {
+        let pointer = ctx.input(|i| i.pointer.latest_pos()).filter(|at| free.contains(*at));
+        let depth = [pointer, Some(free.center())].into_iter().flatten().find_map(|at| {
+            let share = (at - free.min) / free.size();
+            let hit = view.state.pick(camera.ray(Vec2::new(share.x, share.y)))?;
+            Some((camera.eye() - hit.position).dot(camera.backward()))
+        });
+        camera.world_per_view(depth.unwrap_or(camera.distance)) / pixels
+    })
 }
 
 /// World units of a radius of 1, as [`BrushSettings::radius`] counts them.
@@ -24,9 +38,9 @@ fn unit_of_setting(view: &View<'_>) -> f32 {
 }
 
 /// A radius as it is told, with its unit.
-pub fn told(view: &View<'_>, ui_state: &UiState, setting: f32) -> String {
+pub fn told(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, setting: f32) -> String {
     let world = setting * unit_of_setting(view);
-    let pixel = unit_a_pixel(view, ui_state);
+    let pixel = unit_a_pixel(ctx, view, ui_state);
     match ui_state.prefs.brushes.radius_in_pixels && pixel > 0.0 {
         true => format!("{:.0} {}", world / pixel, tr!("unit-pixel")),
         false => format!("{world:.3} {}", tr!("unit-mm")),
@@ -40,7 +54,7 @@ pub fn radius(
     ui_state: &mut UiState,
     brush: &mut BrushSettings,
 ) {
-    let (one, pixel) = (unit_of_setting(view), unit_a_pixel(view, ui_state));
+    let (one, pixel) = (unit_of_setting(view), unit_a_pixel(ui.ctx(), view, ui_state));
     let in_pixels = ui_state.prefs.brushes.radius_in_pixels && pixel > 0.0;
     let time = ui.input(|i| i.time);
     if in_pixels && ui_state.modal.is_none() {

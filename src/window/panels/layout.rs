@@ -58,7 +58,7 @@ pub fn all(
         }
     }
     let free = ui.available_rect_before_wrap();
-    ui_state.brush_panel.view_pixels = free.height() * ctx.pixels_per_point();
+    ui_state.brush_panel.free = Some(free);
     colours::sampler(&ctx, ui_state, free, out);
     region::ui(&ctx, ui_state, free, out);
     curve_stroke::ui(&ctx, view, ui_state, free, out);

@@ -174,16 +174,28 @@ fn a_radius_in_pixels_stays_on_the_screen_and_one_in_units_on_the_object() {
     h.run_steps(3);
     assert!(h.state().ui_state.prefs.brushes.radius_in_pixels);
     assert!(brushes(&h).is_empty());
-    let before = h.state().published.brush.radius;
+    // How far apart the middle and the rim of the brush are seen, where the view's middle looks.
+    let seen = |h: &Harness<'_, State>, setting: f32| {
+        let shown = &h.state().published;
+        let (camera, world) = (&shown.camera, setting * shown.brush_radius / shown.brush.radius);
+        let hit = shown.pick(camera.ray(Vec2::splat(0.5))).expect("the ball");
+        let depth = (camera.eye() - hit.position).dot(camera.backward());
+        world / camera.world_per_view(depth)
+    };
+    let first = h.state().published.brush.radius;
+    let before = seen(&h, first);
     zoom(&mut h);
     let now = brushes(&h).last().expect("asked for").radius;
-    assert!((now / before - 0.5).abs() < 1e-3, "{before} became {now}");
+    assert!(now < 0.6 * first, "{first} became {now}");
+    let after = seen(&h, now);
+    assert!((after / before - 1.0).abs() < 1e-3, "{before} became {after}");
     answer(&mut h);
     assert!(brushes(&h).is_empty(), "what was asked for has come");
     h.state_mut().published.camera.zoom(0.25);
     h.run_steps(2);
     let back = brushes(&h).last().expect("asked for").radius;
-    assert!((back / before - 2.0).abs() < 1e-2, "{before} became {back}");
+    let after = seen(&h, back);
+    assert!((after / before - 1.0).abs() < 1e-3, "{before} became {after}");
 }
 
 #[test]

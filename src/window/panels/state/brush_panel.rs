@@ -13,6 +13,6 @@ pub struct BrushPanel {
     pub samples: bool,
     /// The radius while it is told in pixels.
     pub screen: ScreenRadius,
-    /// Pixels that the view is high; 0 before the first frame.
-    pub view_pixels: f32,
+    /// The part of the window that shows the clay, points; `None` before the first frame.
+    pub free: Option<egui::Rect>,
 }

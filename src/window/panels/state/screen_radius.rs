@@ -1,5 +1,7 @@
 //! A brush that keeps its size on the screen while the view is zoomed.
 
+use sculptd_engine::camera::Camera;
+
 /// Seconds after a radius was asked for in which another one is an earlier answer, and not a
 /// person's own wish.
 const PATIENCE_S: f64 = 0.5;
@@ -9,8 +11,10 @@ const SAME: f32 = 1e-4;
 /// The radius on the screen, and when it was last asked for.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ScreenRadius {
-    /// World units a pixel, in the distance of what the view turns about; 0: not known yet.
+    /// World units a pixel where the surface is seen; 0: not known yet.
     scale: f32,
+    /// What that was measured with last: the camera, and how many pixels the view is high.
+    measured: Option<(Camera, f32, f32)>,
     /// The radius that is kept, pixels.
     pixels: f32,
     /// When a radius was asked for, seconds of the context's time.
@@ -18,6 +22,19 @@ pub struct ScreenRadius {
 }
 
 impl ScreenRadius {
+    /// World units a pixel: as they were measured last, or anew where the camera or the height of
+    /// the view, pixels, has changed.
+    pub fn scale(&mut self, camera: &Camera, pixels: f32, measure: impl FnOnce() -> f32) -> f32 {
+        match self.measured {
+            Some((of, high, scale)) if of == *camera && high == pixels => scale,
+            _ => {
+                let scale = measure();
+                self.measured = Some((*camera, pixels, scale));
+                scale
+            }
+        }
+    }
+
     /// Looks at the radius, in world units, at a scale and a time. The radius that keeps the
     /// brush's size on the screen, where the scale has changed.
     pub fn follow(&mut self, radius: f32, scale: f32, time: f64) -> Option<f32> {
@@ -28,14 +45,14 @@ impl ScreenRadius {
             return Some(self.pixels * scale);
         }
         if !known || self.asked.is_none_or(|since| time - since > PATIENCE_S) {
-            *self = ScreenRadius { scale, pixels: radius / scale, asked: None };
+            (self.scale, self.pixels, self.asked) = (scale, radius / scale, None);
         }
         None
     }
 
     /// A person asks for another radius, in world units.
     pub fn set(&mut self, radius: f32, scale: f32, time: f64) {
-        *self = ScreenRadius { scale, pixels: radius / scale, asked: Some(time) };
+        (self.scale, self.pixels, self.asked) = (scale, radius / scale, Some(time));
     }
 }
 
