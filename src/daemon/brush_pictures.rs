@@ -36,10 +36,13 @@ pub fn read_picture(path: &Path) -> Result<Picture, String> {
     picture.map_err(|e| format!("picture {}: {e}", path.display()))
 }
 
+/// A file as it was read: which version of it, and the picture, or what is wrong with it.
+type PictureFile = (Option<Stamp>, Result<Arc<Picture>, String>);
+
 /// The pictures as they were read last.
 #[derive(Debug, Default)]
 pub struct BrushPictures {
-    files: BTreeMap<PathBuf, (Option<Stamp>, Result<Arc<Picture>, String>)>,
+    files: BTreeMap<PathBuf, PictureFile>,
 }
 
 impl BrushPictures {

@@ -321,7 +321,7 @@ mod tests {
         let cover: Vec<u16> = (0..64u32).map(|i| (i * 1040 % 65_536) as u16).collect();
         // What is transparent is low.
         let heights = opaque.heights.iter().zip(&cover).map(|(&h, &c)| h.min(c)).collect();
-        let clear = Picture { heights, cover, ..opaque.clone() };
+        let clear = Picture { heights, cover, ..opaque };
         for picture in [opaque, clear] {
             let read = Picture::decode(&picture.encode().expect("written")).expect("read");
             assert_eq!(read, picture);
