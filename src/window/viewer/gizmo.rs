@@ -79,7 +79,7 @@ const CORNER: f64 = 0.45;
 const REACH: f32 = 0.018;
 const CORNERS: usize = 48;
 /// What lies before the gizmo dims it to this share: also inside of a larger object it can be held.
-const THROUGH: f32 = 0.35;
+const THROUGH: f32 = 0.55;
 
 impl Gizmo {
     /// That of an object that stands at `transform`.
