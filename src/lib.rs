@@ -158,6 +158,8 @@
 //! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`,
 //!   `sculptd-mask`, made by `window::viewer::tasks`: changes of the whole object that the window
 //!   asked for, sent as commands. Waits for: the loop's answer.
+//! * `sculptd-brush`, made by `window::viewer::brush_requests`: writes the brush in hand into the
+//!   folder of a person's own. Waits for: the disk.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
 //! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's own file

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::boxtree::BoxTree;
+use super::boxtree::{BoxRay, BoxTree};
 use super::dab_buffers::{DabBuffers, PhaseTimes};
 use super::garbage::GarbageSink;
 use super::page::Page;
@@ -244,6 +244,18 @@ impl Clay {
     /// between two triangles that share an edge or a vertex.
     pub fn pick(&self, ray: Ray) -> Option<Hit> {
         pick::everywhere(&self.top, &self.pages, ray)
+    }
+
+    /// The nearest point on the ray of the surface as it was when the open step began, among the
+    /// pages that `near` touches or touched then.
+    pub fn pick_before(&self, ray: Ray, near: &Reach) -> Option<Hit> {
+        let (lo, hi) = self.bounds();
+        let boxes = BoxRay::new(ray.origin, ray.dir, lo.abs().max(hi.abs()).max_element());
+        let mut best = None;
+        self.each_page_before(near, |number, page| {
+            pick::in_page(&boxes, page, number, &mut best);
+        });
+        Some(pick::finish(best?, ray, |i| self.before(i)))
     }
 
     /// Calls `visit` with each page that the reach may touch, in ascending order.

@@ -148,6 +148,19 @@ impl Snapshot {
         self.spine.iter().fold(none, |(lo, hi), c| (lo.min(c.lo), hi.max(c.hi)))
     }
 
+    /// The colour of the surface at a hit on it, RGBA, sRGB: between those of the triangle's
+    /// corners.
+    pub fn colour_at(&self, hit: &Hit) -> [u8; 4] {
+        let page = self.page(hit.page);
+        let corners = page.triangles()[hit.triangle as usize];
+        let corners = corners.map(|v| page.colour(usize::from(v)));
+        std::array::from_fn(|channel| {
+            let parts = corners.iter().zip(hit.barycentric);
+            let sum: f32 = parts.map(|(colour, share)| f32::from(colour[channel]) * share).sum();
+            sum.round() as u8
+        })
+    }
+
     /// The nearest point of the surface on the ray, seen from either side. As exact as
     /// [`super::Clay::pick`].
     pub fn pick(&self, ray: Ray) -> Option<Hit> {

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{Fail, Outcome, answer};
 use sculptd_clay::brush::{Alpha, BrushKind, OwnBrush, Picture, own_brush};
-use sculptd_daemon::brush_folder::{self, BrushFolder};
+use sculptd_daemon::brush_folder::{self, BrushFolder, SavedBrush};
 use sculptd_geometry::io::read_regular;
 
 #[derive(Debug, clap::Subcommand)]
@@ -141,19 +141,16 @@ pub fn run(command: &BrushCommand, named: Option<&Path>, json: bool) -> Outcome 
                 return Err(Fail::Usage(text.into()));
             }
             let bytes = picture.as_deref().map(picture_bytes).transpose()?;
-            let ending = |p: &PathBuf| {
-                let ending = p.extension().unwrap_or_default().to_string_lossy().into_owned();
-                format!("{name}.{ending}")
-            };
-            let brush = OwnBrush {
-                name: name.clone(),
-                about: about.clone(),
+            let ending = picture.as_deref().and_then(Path::extension).unwrap_or_default();
+            let ending = ending.to_string_lossy();
+            let saved = SavedBrush {
+                name,
+                about,
                 order: *order,
-                settings,
-                picture_file: picture.as_ref().map(ending),
-                picture: None,
+                picture: bytes.as_deref().map(|bytes| (&*ending, bytes)),
+                replace: *replace,
             };
-            let path = brush_folder::write(&folder, &brush, bytes.as_deref(), *replace);
+            let path = brush_folder::save(&folder, &settings, &saved);
             written(&[path.map_err(Fail::Input)?], json)
         }
         BrushCommand::Export { name, folder: to, replace } => {

@@ -37,6 +37,8 @@ pub struct Shown {
     /// Whether there is a window.
     pub window: bool,
     pub full_screen: bool,
+    /// Where a person's own brushes are kept; `None`: nowhere.
+    pub brushes: Option<PathBuf>,
     /// A large mesh that the window loads, in the place of the ball that the run begins with.
     pub open_first: Option<PathBuf>,
     /// The sculpture begins with this run.
@@ -67,6 +69,7 @@ pub fn window(
         pointer_id: sculptd_daemon::adaptors::POINTER_ID,
         translations: translations(),
         presets: crate::presets().clone(),
+        brushes: shown.brushes.clone(),
         clock: run.clock.clone(),
         stop: run.stop.clone(),
         devices: Box::new(move || adaptors.describe()),

@@ -211,6 +211,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             open_first: later,
             fresh,
             export: args.export.clone(),
+            brushes: options.brushes.as_ref().map(|folder| folder.path().to_path_buf()),
             session: session.cloned(),
             recent: library::recent(session.map(PathBuf::as_path)),
             open_next: open_next.clone(),

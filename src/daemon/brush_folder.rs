@@ -10,28 +10,20 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
-use sculptd_clay::brush::{OwnBrush, Picture, Presets};
+use crate::brush_pictures::{BrushPictures, Stamp, read_picture, stamp};
+use sculptd_clay::brush::{Alpha, BrushSettings, OwnBrush, Presets, own_brush};
 use sculptd_geometry::io::{read_regular, write_beside};
 
 /// Brushes in a folder at most.
 const MOST: usize = 1000;
-/// Longest file of a brush, and of a picture, bytes.
+/// Longest file of a brush, bytes.
 const MAX_FILE: u64 = 1 << 20;
-const MAX_PICTURE_FILE: u64 = 64 << 20;
 /// Bytes of all pictures together, as they are kept.
 const MAX_PICTURES: usize = 512 << 20;
 /// How often a running program looks whether a file has changed.
 const LOOK: Duration = Duration::from_secs(1);
-
-/// What tells one version of a file from another: its length, and when it was written.
-type Stamp = (u64, Option<SystemTime>);
-
-fn stamp(path: &Path) -> Option<Stamp> {
-    let meta = std::fs::metadata(path).ok()?;
-    Some((meta.len(), meta.modified().ok()))
-}
 
 /// One file as it was read.
 #[derive(Debug)]
@@ -54,6 +46,7 @@ pub struct BrushFolder {
     path: PathBuf,
     presets: Presets,
     files: BTreeMap<PathBuf, ReadFile>,
+    pictures: BrushPictures,
 }
 
 /// The user's own folder of brushes: `brushes` in the data folder.
@@ -87,17 +80,52 @@ fn read_both(path: &Path, presets: &Presets) -> (Option<PathBuf>, Result<OwnBrus
     };
     let Some(file) = &brush.picture_file else { return (None, Ok(brush)) };
     let picture = path.with_file_name(file);
-    let decoded = read_regular(&picture, MAX_PICTURE_FILE)
-        .map_err(|e| e.to_string())
-        .and_then(|bytes| Picture::decode(&bytes))
-        .map_err(|e| named(format!("picture {}: {e}", picture.display())));
-    match decoded {
+    match read_picture(&picture).map_err(named) {
         Ok(decoded) => {
             brush.picture = Some(Arc::new(decoded));
             (Some(picture), Ok(brush))
         }
         Err(e) => (Some(picture), Err(e)),
     }
+}
+
+/// What a brush in hand is saved as.
+#[derive(Debug, Clone, Default)]
+pub struct SavedBrush<'a> {
+    /// Its name, one that [`own_brush::check_name`] allows.
+    pub name: &'a str,
+    /// One line on what it is for; may be empty.
+    pub about: &'a str,
+    /// Lower comes first in lists.
+    pub order: i32,
+    /// The ending and the bytes of its picture's file, where it has one.
+    pub picture: Option<(&'a str, &'a [u8])>,
+    /// In the place of a brush that has this name.
+    pub replace: bool,
+}
+
+/// Keeps the settings of a brush in hand as a brush of its own in `folder`.
+///
+/// # Errors
+/// As [`write`]; and for a brush that presses a picture and is given none.
+pub fn save(
+    folder: &Path,
+    settings: &BrushSettings,
+    saved: &SavedBrush<'_>,
+) -> Result<PathBuf, String> {
+    own_brush::check_name(saved.name)?;
+    if settings.alpha == Alpha::Picture && saved.picture.is_none() {
+        return Err("the brush presses a picture, and there is none".into());
+    }
+    let brush = OwnBrush {
+        name: saved.name.into(),
+        about: saved.about.into(),
+        order: saved.order,
+        settings: *settings,
+        picture_file: saved.picture.map(|(ending, _)| format!("{}.{ending}", saved.name)),
+        picture: None,
+    };
+    write(folder, &brush, saved.picture.map(|p| p.1), saved.replace)
 }
 
 /// Writes a brush into `folder` as `NAME.toml`, and the bytes of its picture, if it has one,
@@ -130,7 +158,7 @@ impl BrushFolder {
     /// The folder, not read yet. It need not exist. The brushes that are read go to `presets` and
     /// all its clones.
     pub fn new(path: PathBuf, presets: Presets) -> Self {
-        BrushFolder { path, presets, files: BTreeMap::new() }
+        BrushFolder { path, presets, files: BTreeMap::new(), pictures: BrushPictures::default() }
     }
 
     /// Where it is.
@@ -143,6 +171,8 @@ impl BrushFolder {
         let mut found: Vec<PathBuf> = std::fs::read_dir(&self.path)
             .map(|all| all.filter_map(|e| e.ok().map(|e| e.path())).collect())
             .unwrap_or_default();
+        let mut pictures = found.clone();
+        pictures.retain(|p| BrushPictures::is_one(p));
         found.retain(|p| p.extension().is_some_and(|e| e == "toml"));
         found.sort();
         found.truncate(MOST);
@@ -165,7 +195,10 @@ impl BrushFolder {
             let brushes = self.files.values().filter_map(|f| f.brush.as_ref().ok());
             self.presets.set_own(brushes.cloned().collect());
         }
-        changed
+        // Those that a brush brings along are the brush's.
+        let of_brushes = self.files.values().filter_map(|f| f.picture.as_deref());
+        pictures.retain(|p| of_brushes.clone().all(|of_brush| of_brush != p));
+        self.pictures.refresh(pictures, &self.presets) || changed
     }
 
     /// Brushes whose pictures are beyond what may be kept are left out, in the order of names.
@@ -185,7 +218,8 @@ impl BrushFolder {
 
     /// What is wrong with files that cannot be used, each with its name.
     pub fn problems(&self) -> Vec<String> {
-        self.files.values().filter_map(|f| f.brush.as_ref().err().cloned()).collect()
+        let of_brushes = self.files.values().filter_map(|f| f.brush.as_ref().err());
+        of_brushes.chain(self.pictures.problems()).cloned().collect()
     }
 
     /// Looks after the folder on a thread of its own until `stop` is raised: what changes is read,
@@ -217,7 +251,7 @@ impl BrushFolder {
 mod tests {
     use super::*;
     use sculptd_clay::brush::own_brush::preset_number;
-    use sculptd_clay::brush::{Alpha, BrushKind, BrushSettings};
+    use sculptd_clay::brush::{BrushKind, Picture};
 
     fn folder() -> (tempfile::TempDir, BrushFolder, Presets) {
         let dir = tempfile::tempdir().expect("a folder");
@@ -263,6 +297,41 @@ mod tests {
         std::fs::remove_file(dir.path().join("a.toml")).expect("there");
         assert!(folder.refresh());
         assert_eq!(names(&presets), ["bark of oak"]);
+        // A picture that no brush has is for all of them; that of a brush is not told twice.
+        let told = || presets.pictures().iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+        assert!(told().is_empty());
+        std::fs::write(dir.path().join("rough.PNG"), png).expect("written");
+        std::fs::write(dir.path().join("torn.png"), &png[..100]).expect("written");
+        assert!(folder.refresh() && !folder.refresh());
+        assert_eq!(told(), ["rough"]);
+        assert_eq!(*presets.pictures()[0].picture, picture);
+        let problems = folder.problems();
+        assert!(problems.len() == 1 && problems[0].contains("torn.png"), "{problems:?}");
+        std::fs::remove_file(dir.path().join("rough.PNG")).expect("there");
+        assert!(folder.refresh() && told().is_empty());
+    }
+
+    #[test]
+    fn a_brush_in_hand_is_saved_under_a_name_once_and_with_its_picture() {
+        let (dir, mut folder, presets) = folder();
+        folder.path = dir.path().into();
+        let mut settings = BrushSettings::new(BrushKind::Texture);
+        (settings.alpha, settings.strength) = (Alpha::Picture, 0.31);
+        let picture =
+            Picture { width: 2, height: 1, heights: vec![9_000, 65_535], cover: Vec::new() };
+        let png = picture.encode().expect("a PNG");
+        let mut saved = SavedBrush { name: "oak", ..SavedBrush::default() };
+        assert!(save(dir.path(), &settings, &saved).is_err_and(|e| e.contains("picture")));
+        saved.picture = Some(("png", &png));
+        save(dir.path(), &settings, &saved).expect("saved");
+        assert!(save(dir.path(), &settings, &saved).is_err_and(|e| e.contains("of this name")));
+        saved.replace = true;
+        save(dir.path(), &settings, &saved).expect("replaced");
+        let bad = SavedBrush { name: "../oak", ..saved };
+        assert!(save(dir.path(), &settings, &bad).is_err());
+        assert!(folder.refresh());
+        let read = presets.own_of("oak").expect("there");
+        assert_eq!((read.settings.strength, read.picture.as_deref()), (0.31, Some(&picture)));
     }
 
     #[test]

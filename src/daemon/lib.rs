@@ -9,6 +9,7 @@
 pub mod adaptors;
 pub mod boolean_jobs;
 pub mod brush_folder;
+mod brush_pictures;
 pub mod carry_over;
 pub mod command_queue;
 pub mod config;

@@ -2,6 +2,7 @@
 //! AccessKit, and the law that a viewer that stalls costs the sculpture nothing.
 
 mod beside;
+mod brush_panel;
 mod kiosk;
 mod languages;
 mod layers;

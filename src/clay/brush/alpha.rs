@@ -6,7 +6,9 @@
 
 use std::f32::consts::{PI, TAU};
 
-use sculptd_geometry::io::height_picture::{HeightPicture, read_height_picture};
+use sculptd_geometry::io::height_picture::{
+    HeightPicture, read_height_picture, write_height_picture,
+};
 use sculptd_geometry::portable::PortableMath;
 use serde::{Deserialize, Serialize};
 
@@ -79,6 +81,21 @@ impl Picture {
         let cover = if opaque { Vec::new() } else { pixels.iter().map(|p| p[1]).collect() };
         let picture = Picture { width, height: rows, heights, cover };
         if picture.is_sane() { Ok(picture) } else { Err("an empty picture".into()) }
+    }
+
+    /// The bytes of a PNG of 16 bits; [`Picture::decode`] reads the same picture from them.
+    ///
+    /// # Errors
+    /// A picture whose sizes and heights disagree.
+    pub fn encode(&self) -> Result<Vec<u8>, String> {
+        // The brightness that is as high as this through so much of it.
+        let luma = |height: u16, alpha: u16| {
+            let (height, alpha) = (u32::from(height), u32::from(alpha));
+            ((height * 65_535 + alpha / 2).checked_div(alpha).unwrap_or(0)).min(65_535) as u16
+        };
+        let covers = self.cover.iter().copied().chain(std::iter::repeat(u16::MAX));
+        let pixels = self.heights.iter().zip(covers).map(|(&h, a)| [luma(h, a), a]).collect();
+        write_height_picture(&HeightPicture { width: self.width, height: self.height, pixels })
     }
 
     /// Height at `s`, `t`, between four pixels; repeats along `s`, ends at the edges of `t`.
@@ -295,6 +312,22 @@ mod tests {
         assert_eq!((read.heights, read.cover), (vec![200 * 257, 0], vec![65_535, 0]));
         assert!(Picture::decode(b"not a picture").is_err());
         assert!(Picture::decode(&png[..png.len() / 2]).is_err());
+    }
+
+    #[test]
+    fn a_picture_is_the_same_once_it_is_written_and_read_again() {
+        let heights: Vec<u16> = (0..64u32).map(|i| (i * i * 16 % 65_536) as u16).collect();
+        let opaque = Picture { width: 16, height: 4, heights, cover: Vec::new() };
+        let cover: Vec<u16> = (0..64u32).map(|i| (i * 1040 % 65_536) as u16).collect();
+        // What is transparent is low.
+        let heights = opaque.heights.iter().zip(&cover).map(|(&h, &c)| h.min(c)).collect();
+        let clear = Picture { heights, cover, ..opaque };
+        for picture in [opaque, clear] {
+            let read = Picture::decode(&picture.encode().expect("written")).expect("read");
+            assert_eq!(read, picture);
+        }
+        let odd = Picture { width: 3, height: 3, heights: vec![0; 4], cover: Vec::new() };
+        assert!(odd.encode().is_err());
     }
 
     #[cfg(feature = "pictures")]

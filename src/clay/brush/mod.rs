@@ -15,6 +15,7 @@ pub mod dab;
 mod drag;
 pub mod falloff;
 pub mod footprint;
+mod found_path;
 pub mod geodesic;
 pub mod level;
 pub mod mask_all;

@@ -40,6 +40,15 @@ pub struct OwnBrush {
     pub picture: Option<Arc<Picture>>,
 }
 
+/// A picture of heights in the folder of a person's own brushes, for any of them to press.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AlphaPicture {
+    /// The name of its file, without the ending.
+    pub name: String,
+    /// The picture.
+    pub picture: Arc<Picture>,
+}
+
 /// What is wrong with the text of a brush.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {text}")]

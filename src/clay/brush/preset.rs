@@ -10,7 +10,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use serde::{Deserialize, Serialize};
 
-use super::own_brush::OwnBrush;
+use super::own_brush::{AlphaPicture, OwnBrush};
 use super::{BrushKind, BrushSettings};
 
 /// One of the numbers that only one brush has, as the brush's code declares it: this one
@@ -107,6 +107,8 @@ pub struct Presets {
     all: Arc<[Preset]>,
     /// In the order in which they are listed. Never read within a tick.
     own: Arc<RwLock<Arc<[OwnBrush]>>>,
+    /// Of a person, beside the own brushes. Never read within a tick.
+    pictures: Arc<RwLock<Arc<[AlphaPicture]>>>,
 }
 
 impl PartialEq for Presets {
@@ -125,7 +127,8 @@ impl Default for Presets {
 
 impl Presets {
     fn of_all(all: Arc<[Preset]>) -> Presets {
-        Presets { all, own: Arc::new(RwLock::new(Vec::new().into())) }
+        let (own, pictures) = (RwLock::new(Vec::new().into()), RwLock::new(Vec::new().into()));
+        Presets { all, own: Arc::new(own), pictures: Arc::new(pictures) }
     }
 
     /// The same presets, and own brushes that no clone of `self` sees.
@@ -149,6 +152,16 @@ impl Presets {
     pub fn set_own(&self, mut own: Vec<OwnBrush>) {
         own.sort_by(|a, b| (a.order, &a.name).cmp(&(b.order, &b.name)));
         *self.own.write().unwrap_or_else(PoisonError::into_inner) = own.into();
+    }
+
+    /// A person's own pictures of heights that belong to no brush, in the order of their names.
+    pub fn pictures(&self) -> Arc<[AlphaPicture]> {
+        self.pictures.read().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Replaces the own pictures, here and in all clones.
+    pub fn set_pictures(&self, pictures: Vec<AlphaPicture>) {
+        *self.pictures.write().unwrap_or_else(PoisonError::into_inner) = pictures.into();
     }
 
     /// Reads presets from texts of TOML, each with the name of its brush. A brush without a text

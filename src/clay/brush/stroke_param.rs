@@ -71,6 +71,8 @@ pub struct StrokeParameters {
     /// Where the stroke stands, the normal there, and its length up to there.
     end: Option<(Vec3, Vec3)>,
     length: f32,
+    /// Where the pen touched the clay last, and before that.
+    touches: [Option<Vec3>; 2],
     /// Where along the stroke the next sample lies.
     next: f32,
     /// Samples so far; a vertex remembers which one it belongs to.
@@ -95,6 +97,18 @@ impl StrokeParameters {
         self.count
     }
 
+    /// Where the pen touched the clay last, and before that, as [`StrokeParameters::touch`] was
+    /// told in this stroke and on this clay.
+    pub fn touched(&self, mesh: &Clay, stroke: u32) -> [Option<Vec3>; 2] {
+        let same = self.stroke == stroke && !self.walk.is_stale(mesh);
+        if same { self.touches } else { [None; 2] }
+    }
+
+    /// Keeps where the pen touches the clay, and where it did before.
+    pub fn touch(&mut self, touches: [Option<Vec3>; 2]) {
+        self.touches = touches;
+    }
+
     /// Goes on to a place on the surface; coordinates are carried as far as `radius`,
     /// which should be a little more than the brush's, so that what lies beside the stroke between
     /// two samples is reached from one of them. Returns whether vertices have coordinates: a
@@ -104,6 +118,7 @@ impl StrokeParameters {
             self.walk.begin(mesh);
             (self.stroke, self.last, self.before) = (stroke, None, None);
             (self.end, self.length, self.next, self.count) = (None, 0.0, 0.0, 0);
+            self.touches = [None; 2];
         }
         let found = match to {
             StrokePlace::Found(point, normal) => Some((point, normal)),

@@ -8,6 +8,7 @@ use super::alpha::Picture;
 use super::dab::{Dab, IMAGES};
 use super::triples::Triples;
 use super::weights::BLOCK;
+use crate::brush::found_path::FoundPath;
 use crate::brush::geodesic::{Geodesic, WalkedSurface};
 use crate::brush::stroke_param::{StrokeParameters, StrokePlace};
 use crate::{Clay, Page, Reach, Workers};
@@ -269,12 +270,12 @@ impl SurfaceQuery<'_> {
         let one = &mut all[image];
         // What is a radius off the axis halfway between two dabs is further from both.
         let radius = dab.radius * 1.05;
-        let place = if dab.found {
-            StrokePlace::Found(under_the_eye(dab), dab.normal)
-        } else {
-            StrokePlace::Now(dab.centre, dab.normal)
-        };
-        if one.step(self.mesh, dab.stroke, place, radius) { one.count() } else { 0 }
+        if !dab.found {
+            let place = StrokePlace::Now(dab.centre, dab.normal);
+            return if one.step(self.mesh, dab.stroke, place, radius) { one.count() } else { 0 };
+        }
+        let path = FoundPath { mesh: self.mesh, dab };
+        if path.follow(one, radius) { one.count() } else { 0 }
     }
 }
 
@@ -307,16 +308,4 @@ impl WideWork for FoldedPage<'_> {
                 && rows.iter().zip(normals).map(|pair| u32::from(both(pair))).sum::<u32>() > 0
         })
     }
-}
-
-/// Where the line of sight to a dab's touch meets the surface as the stroke found it: its tangent
-/// plane at the dab's centre. The centre itself lies where the clay that is touched was before it
-/// was raised, and so swerves with the relief that a stroke has laid down.
-fn under_the_eye(dab: &Dab<'_>) -> Vec3 {
-    let slant = dab.eye.dot(dab.normal);
-    let along = (dab.centre - dab.touch).dot(dab.normal) / slant;
-    let place = dab.touch + dab.eye * along;
-    // Aslant the plane tells little of the surface.
-    let near = place.distance(dab.centre) < 0.25 * dab.radius;
-    if slant > 0.2 && near { place } else { dab.centre }
 }

@@ -14,6 +14,7 @@ use crate::stroke::curve_stroke::CurveStroke;
 use crate::stroke::stabilizer::Stabilizer;
 use sculptd_clay::brush::PathSettings;
 use sculptd_devices::{Pen, Tool};
+use sculptd_geometry::portable::PortableMath;
 
 /// Path points waiting to be walked, a pen. At 1,000 reports a second two seconds of arrears;
 /// beyond that the newest motion replaces the one before it (the path is cut short between two
@@ -317,8 +318,9 @@ impl PenTrack {
                 if to.pressure > self.firmest.pressure {
                     self.firmest = to;
                 }
+                let pen = to;
                 let to = match on.way() {
-                    StrokeMethod::Spaced => self.pull(&to, aspect),
+                    StrokeMethod::Spaced => self.pull(&pen, aspect),
                     _ => to,
                 };
                 let flow = match on.way() {
@@ -328,6 +330,7 @@ impl PenTrack {
                             walked.paused = true;
                             return Some(walked);
                         }
+                        self.pen = (self.string > 0.0).then_some(pen);
                         Flow::Go
                     }
                     StrokeMethod::Each => self.spacer.begin(&to, on),
@@ -376,19 +379,15 @@ impl PenTrack {
         Some(walked)
     }
 
-    /// Where a pen at `to` pulls the brush by its string (a string pulled by a trembling hand is
-    /// drawn out straight, and a loose one moves nothing).
-    fn pull(&mut self, to: &PenPoint, aspect: f32) -> PenPoint {
-        let d = (to.view - self.from.view) * Vec2::new(aspect, 1.0);
-        let length = d.length();
+    /// Where a pen that comes to `to` pulls the brush by its string.
+    fn pull(&self, to: &PenPoint, aspect: f32) -> PenPoint {
         if self.string <= 0.0 {
             return *to;
         }
-        self.pen = Some(*to);
-        if length <= self.string {
-            return PenPoint { view: self.from.view, ..*to };
-        }
-        PenPoint { view: self.from.view.lerp(to.view, 1.0 - self.string / length), ..*to }
+        let scale = Vec2::new(aspect, 1.0);
+        let (pen, brush) = (self.pen.unwrap_or(self.from).view * scale, self.from.view * scale);
+        let place = towed(brush, pen, to.view * scale, self.string);
+        PenPoint { view: if place == brush { self.from.view } else { place / scale }, ..*to }
     }
 
     /// Draws the line that waited for the pen to lift, as firmly as the pen was pressed at most: a
@@ -431,5 +430,66 @@ impl PenTrack {
     pub fn rest(&mut self, on: &mut dyn Surface) {
         let at = self.from;
         self.spacer.rest(&at, on);
+    }
+}
+
+/// Where a brush on a string of this length comes to while the pen goes straight from `pen` to
+/// `to`. A loose string moves nothing; one that is taut draws the brush along a tractrix, so that
+/// the number of reports that a way is told in does not matter: with the angle `a` between string
+/// and way, `tan(a / 2)` falls by `e` over the string's length. A string pulled by a trembling hand
+/// is drawn out straight.
+fn towed(brush: Vec2, pen: Vec2, to: Vec2, string: f32) -> Vec2 {
+    let length = pen.distance(to);
+    let hangs = pen - brush;
+    if !(length > 0.0) {
+        return brush;
+    }
+    let way = (to - pen) / length;
+    let ahead = hangs.dot(way);
+    let loose = (ahead * ahead + string * string - hangs.length_squared()).max(0.0).sqrt() - ahead;
+    let drawn = length - loose.max(0.0);
+    if drawn <= 0.0 {
+        return brush;
+    }
+    let taut = hangs + way * loose.max(0.0);
+    let (along, aside) = (taut.dot(way).max(0.0), way.perp_dot(taut));
+    let half = aside / (string + along) * (-drawn / string).portable_exp();
+    let (cosine, sine) = (1.0 - half * half, 2.0 * half);
+    to - (way * cosine + way.perp() * sine) * (string / (1.0 + half * half))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_string_draws_the_brush_alike_in_many_reports_and_in_few() {
+        let string = 0.1;
+        let corners = [Vec2::ZERO, Vec2::new(0.05, 0.0), Vec2::new(0.3, 0.1), Vec2::new(0.2, 0.4)];
+        let walk = |cut: usize| -> Vec<Vec2> {
+            let mut brush = Vec2::ZERO;
+            corners
+                .windows(2)
+                .map(|leg| {
+                    for i in 0..cut {
+                        let at = |k: usize| leg[0].lerp(leg[1], k as f32 / cut as f32);
+                        brush = towed(brush, at(i), at(i + 1), string);
+                    }
+                    brush
+                })
+                .collect()
+        };
+        let few = walk(1);
+        for cut in [2, 7, 100] {
+            for (a, b) in few.iter().zip(walk(cut)) {
+                assert!(a.distance(b) < 1e-5, "{a} in one report, {b} in {cut}");
+            }
+        }
+        // Loose at first, then as far behind the pen as the string is long.
+        assert_eq!(few[0], Vec2::ZERO);
+        assert!((few[2].distance(corners[3]) - string).abs() < 1e-5);
+        // Drawn out all but straight: `atan` of the half angle has fallen to a twentieth.
+        let straight = corners[3] - (corners[3] - corners[2]).normalize() * string;
+        assert!(few[2].distance(straight) < 0.01, "{} from {straight}", few[2]);
     }
 }

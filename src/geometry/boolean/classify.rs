@@ -40,7 +40,7 @@ impl Classification {
 }
 
 /// One name for a piece's borders, whichever way they run, and whether it was turned.
-fn key(loops: &[&[u32]], reverse: bool) -> Vec<u32> {
+pub(super) fn key(loops: &[&[u32]], reverse: bool) -> Vec<u32> {
     let mut rings: Vec<Vec<u32>> = loops
         .iter()
         .map(|l| {

@@ -52,6 +52,8 @@ pub fn c3(p: DVec3) -> Coord3D<f64> {
 struct Finder<'a> {
     points: &'a mut PointSet,
     eps: f64,
+    /// Whose marks the triangles of a pair have: their own operand's, or both the first's.
+    sides: [usize; 2],
     m: Intersections,
     crossings: Map<(u32, u32), Option<u32>>,
     piercings: Map<(u32, u32, u32), Option<u32>>,
@@ -76,9 +78,41 @@ pub fn intersect(
     };
     pairs = pairs.into_par_iter().filter(near).collect();
     job.check()?;
+    met(triangles, &pairs, [0, 1], points, eps, job)
+}
+
+/// Intersects the triangles of one surface with each other; the lower triangle of a pair comes
+/// first. All marks are those of the first side. Cuts may go through each other.
+pub fn intersect_itself(
+    triangles: &[[u32; 3]],
+    mut pairs: Vec<(u32, u32)>,
+    points: &mut PointSet,
+    eps: f64,
+    job: &Job,
+) -> Result<Intersections, Cancelled> {
+    let at = &points.at;
+    let near = |&(i, j): &(u32, u32)| {
+        let (s, t) = (triangles[i as usize], triangles[j as usize]);
+        let apart = |s, t| beyond_shared(at, s, t, eps) || beside(at, s, t, eps);
+        near_plane(at, s, t, eps) && near_plane(at, t, s, eps) && !apart(s, t) && !apart(t, s)
+    };
+    pairs = pairs.into_par_iter().filter(near).collect();
+    job.check()?;
+    met([triangles, triangles], &pairs, [0, 0], points, eps, job)
+}
+
+fn met(
+    [a, b]: [&[[u32; 3]]; 2],
+    pairs: &[(u32, u32)],
+    sides: [usize; 2],
+    points: &mut PointSet,
+    eps: f64,
+    job: &Job,
+) -> Result<Intersections, Cancelled> {
     let mut f = Finder {
         points,
         eps,
+        sides,
         m: Intersections::default(),
         crossings: Map::default(),
         piercings: Map::default(),
@@ -103,7 +137,7 @@ pub fn intersect(
         if n % 1024 == 0 {
             job.check()?;
         }
-        m.segments(&points.at, [i, j], [a[i as usize], b[j as usize]], eps);
+        m.segments(&points.at, sides, [i, j], [a[i as usize], b[j as usize]], eps);
     }
     Ok(m)
 }
@@ -114,6 +148,30 @@ fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     let n = (b - a).cross(c - a).normalize_or_zero();
     let d = t.map(|i| (at[i as usize] - a).dot(n));
     d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
+}
+
+/// Whether triangles that share corners have nothing else in common: the other corners of `t` are
+/// beyond the plane of `s`, all on one side, or in it and beyond the edge that both have.
+fn beyond_shared(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
+    if !t.iter().any(|v| s.contains(v)) {
+        return false;
+    }
+    let [a, b, c] = s.map(|i| at[i as usize]);
+    let n = (b - a).cross(c - a).normalize_or_zero();
+    let mut heights = t.iter().filter(|v| !s.contains(v)).map(|&v| (at[v as usize] - a).dot(n));
+    let first = heights.next().unwrap_or(0.0);
+    if heights.chain([first]).all(|h| h * first > 0.0 && h.abs() > 2.0 * eps) {
+        return true;
+    }
+    (0..3).any(|k| {
+        let (i, j, other) = (s[k], s[(k + 1) % 3], s[(k + 2) % 3]);
+        let third = t.iter().find(|v| !s.contains(v));
+        let (Some(&third), true) = (third, t.contains(&i) && t.contains(&j)) else { return false };
+        let (o, d) = (at[i as usize], at[j as usize] - at[i as usize]);
+        let side = d.cross(n).normalize_or_zero();
+        let far = |v: u32| (at[v as usize] - o).dot(side);
+        far(third) * far(other) < 0.0 && far(third).abs() > 2.0 * eps
+    })
 }
 
 /// Whether `t` is beyond an edge of `s`, seen along the normal of `s`, by more than is ever
@@ -133,7 +191,7 @@ fn beside(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
 
 /// `p`, with the coordinates that all of `of` have in common exactly: what is computed on a face or
 /// an edge along the axes stays on it.
-fn kept(mut p: DVec3, of: &[DVec3]) -> DVec3 {
+pub(super) fn kept(mut p: DVec3, of: &[DVec3]) -> DVec3 {
     for axis in 0..3 {
         if of.iter().all(|q| q[axis] == of[0][axis]) {
             p[axis] = of[0][axis];
@@ -173,7 +231,7 @@ impl Finder<'_> {
         let mut touch = [[[false; 3]; 3]; 2];
         let mut lies = [[false; 3]; 2];
         for s in 0..2 {
-            self.m.marks[s].entry(ids[s]).or_default();
+            self.m.marks[self.sides[s]].entry(ids[s]).or_default();
             let o = 1 - s;
             for v in 0..3 {
                 let p = tris[s][v];
@@ -190,7 +248,7 @@ impl Finder<'_> {
                 }
                 lies[s][v] = any || self.in_face(p, tris[o]);
                 if lies[s][v] && !any {
-                    self.m.marks[o].entry(ids[o]).or_default().inner.push(p);
+                    self.m.marks[self.sides[o]].entry(ids[o]).or_default().inner.push(p);
                 }
             }
         }
@@ -267,7 +325,7 @@ impl Finder<'_> {
         if t.contains(&ends[0]) || t.contains(&ends[1]) {
             return;
         }
-        let key = (s as u32, e, id);
+        let key = (self.sides[s] as u32, e, id);
         let found = match self.piercings.get(&key) {
             Some(&k) => k,
             None => {
@@ -293,7 +351,7 @@ impl Finder<'_> {
         };
         if let Some(p) = found {
             self.m.edges[e as usize].inner.push(p);
-            self.m.marks[1 - s].entry(id).or_default().inner.push(p);
+            self.m.marks[self.sides[1 - s]].entry(id).or_default().inner.push(p);
         }
     }
 
@@ -337,10 +395,17 @@ impl Intersections {
         })
     }
 
-    fn segments(&mut self, at: &[DVec3], ids: [u32; 2], tris: [[u32; 3]; 2], eps: f64) {
+    fn segments(
+        &mut self,
+        at: &[DVec3],
+        sides: [usize; 2],
+        ids: [u32; 2],
+        tris: [[u32; 3]; 2],
+        eps: f64,
+    ) {
         let (mut x, mut y) = (Vec::new(), Vec::new());
-        self.closure(0, ids[0], tris[0], &mut x);
-        self.closure(1, ids[1], tris[1], &mut y);
+        self.closure(sides[0], ids[0], tris[0], &mut x);
+        self.closure(sides[1], ids[1], tris[1], &mut y);
         x.retain(|i| y.binary_search(i).is_ok());
         for &i in &x {
             self.shared[i as usize] = true;
@@ -377,7 +442,7 @@ impl Intersections {
         } else {
             for s in 0..2 {
                 let t = tris[1 - s];
-                self.marks[s].entry(ids[s]).or_default().flat = true;
+                self.marks[sides[s]].entry(ids[s]).or_default().flat = true;
                 for k in 0..3 {
                     let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) else { continue };
                     let e = &self.edges[e as usize];
@@ -395,7 +460,8 @@ impl Intersections {
             for (p, q) in std::mem::take(&mut found[s]) {
                 self.curve.insert((p.min(q), p.max(q)), ());
                 if !self.on_one_edge(tris[s], p, q) {
-                    self.marks[s].entry(ids[s]).or_default().segments.push((p.min(q), p.max(q)));
+                    let own = self.marks[sides[s]].entry(ids[s]).or_default();
+                    own.segments.push((p.min(q), p.max(q)));
                 }
             }
         }

@@ -18,9 +18,11 @@
 //! number of the other operand, and volumes that add up (union and intersection give A and B,
 //! difference and intersection give A). Where a check fails, other tolerances are tried, then the
 //! exact engine of the crate `manifold-rust` (`global`); where that fails too, the answer is an
-//! error. Where the answer depends on the tolerance, [`BooleanReport`] says so.
+//! error. An operand that crosses itself, where that engine fails, is taken as the solid of all
+//! places that it goes around, as [`solve`] makes it. Where the answer depends on the tolerance, or
+//! on such a solid, [`BooleanReport`] says so.
 //!
-//! Not promised: a meaning for operands that cross themselves ([`solve`] makes them solids);
+//! Not promised: a meaning for operands that cross themselves where a tolerance does help;
 //! features smaller than the tolerance.
 
 /// Both surfaces cut at each other, and the result of each operation from that.
@@ -45,16 +47,17 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
+mod self_arrangement;
+mod self_cuts;
 mod simplify;
 mod solve;
+mod task;
 mod verify;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use arrange::{Arrangement, FaceState};
 pub use attributes::mixed;
-use box_tree::Span;
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use operand::check;
 use operand::crosses_itself;
@@ -66,6 +69,7 @@ pub use precision::{
 };
 pub use refine::{CutRefinement, refine_cut};
 pub use solve::solve;
+use task::BooleanTask;
 
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
@@ -256,69 +260,37 @@ pub fn compute(
     let default = default_tolerance(operands);
     report.precision = Some(default.precision);
     let wanted = options.tolerance.unwrap_or(default.tolerance).max(floor).max(f64::MIN_POSITIVE);
-    let mut why = String::new();
+    let now = &now;
+    let task = BooleanTask { operands, volumes, operations, options, wanted, floor, job, now };
+    let why = match task.within(&[1.0], default.precision, &mut report)? {
+        Ok(solids) => return Ok((solids, report)),
+        Err(why) => why,
+    };
+    // Operands that cross themselves are hardly ever one tolerance away from a result.
+    let crossing = crosses_itself(operands, job)?;
     let mut tried = None;
-    // Where the first tolerance falls between what is and is not in contact, another does not.
-    for factor in [1.0, 0.125, 16.0, 1.0 / 64.0] {
-        let eps = (wanted * factor).max(floor);
-        match attempt(operands, volumes, operations, options, eps, floor, job, &now, &mut report)? {
-            Ok(solids) => {
-                report.tolerance = eps;
-                let contact = report.contact;
-                report.depends_on_tolerance =
-                    contact.farthest > 8.0 * floor || contact.near_misses > 0;
-                if contact.farthest > 8.0 * floor {
-                    report.warnings.push(format!(
-                        "{} places up to {:.1e} apart were taken as in contact (tolerance \
-                            {eps:.1e}, \
-                         coordinates in {}); a smaller tolerance may give another result",
-                        contact.places,
-                        contact.farthest,
-                        default.precision.name()
-                    ));
-                }
-                if contact.near_misses > 0 {
-                    report.warnings.push(format!(
-                        "{} places are apart by one to four times the tolerance of {eps:.1e}; a \
-                         larger tolerance may give another result",
-                        contact.near_misses
-                    ));
-                }
-                if factor != 1.0 {
-                    report
-                        .warnings
-                        .push(format!("tolerance {eps:.3e} taken instead of {wanted:.3e}: {why}"));
-                }
-                return Ok((solids, report));
-            }
-            Err(reason) if why.is_empty() => {
-                why = reason;
-                // Operands that cross themselves are hardly ever one tolerance away from a result.
-                if crosses_itself(operands, job)? {
-                    let made = globally(
-                        operands,
-                        volumes,
-                        operations,
-                        options,
-                        floor,
-                        job,
-                        &now,
-                        &mut report,
-                    );
-                    match made {
-                        Ok(solids) => return Ok((solids, told(report, &why, floor))),
-                        Err(BooleanError::Inconsistent(failed)) => tried = Some(failed),
-                        Err(other) => return Err(other),
-                    }
-                }
-            }
-            Err(_) => {}
+    if crossing.contains(&true) {
+        match task.globally(&mut report) {
+            Ok(solids) => return Ok((solids, told(report, &why, floor))),
+            Err(BooleanError::Inconsistent(failed)) => tried = Some(failed),
+            Err(other) => return Err(other),
         }
+        if let Some(solids) = task.as_solids(crossing, default.precision, &mut report)? {
+            return Ok((solids, report));
+        }
+    }
+    // Where the first tolerance falls between what is and is not in contact, another does not.
+    if let Ok(solids) = task.within(&[0.125, 16.0, 1.0 / 64.0], default.precision, &mut report)? {
+        report.warnings.push(format!(
+            "tolerance {:.3e} taken instead of {wanted:.3e}: {why}",
+            report.tolerance
+        ));
+        return Ok((solids, report));
     }
     if let Some(failed) = tried {
         return Err(BooleanError::Inconsistent(failed));
     }
-    let solids = globally(operands, volumes, operations, options, floor, job, &now, &mut report)?;
+    let solids = task.globally(&mut report)?;
     Ok((solids, told(report, &why, floor)))
 }
 
@@ -337,197 +309,4 @@ fn told(mut report: BooleanReport, why: &str, floor: f64) -> BooleanReport {
 fn reach(at: &[DVec3]) -> f64 {
     let part = |c: &[DVec3]| c.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
     at.par_chunks(1 << 15).map(part).reduce(|| 0.0, f64::max)
-}
-
-/// The four results by the global engine, held against each other as the others are.
-fn globally(
-    operands: [&PolyMesh; 2],
-    volumes: [f64; 2],
-    operations: &[Operation],
-    options: &BooleanOptions,
-    eps: f64,
-    job: &Job,
-    now: &impl Fn() -> f64,
-    report: &mut BooleanReport,
-) -> Result<Vec<BooleanSolid>, BooleanError> {
-    let start = now();
-    let engine =
-        global::GlobalEngine::new(operands, eps, job)?.map_err(BooleanError::Inconsistent)?;
-    let mut solids = Vec::new();
-    // Union and intersection too where they were not asked for: the volumes are to add up.
-    let needed = |o: &Operation| {
-        operations.contains(o) || matches!(o, Operation::Union | Operation::Intersection)
-    };
-    for operation in Operation::ALL.into_iter().filter(needed) {
-        let triangles = options.faces.triangles(operands);
-        let (mut mesh, origins, facts) =
-            engine.run(operation, triangles, job)?.map_err(BooleanError::Inconsistent)?;
-        if !facts.closed {
-            return Err(BooleanError::Inconsistent(format!(
-                "the {} is not closed",
-                operation.name()
-            )));
-        }
-        attributes::carry(&mut mesh, &origins, operands);
-        solids.push(BooleanSolid { operation, mesh, origins, facts });
-    }
-    report.phases.push(("global", now() - start));
-    let start = now();
-    let wrong = match doubt(&solids, volumes, 8.0 * eps, &operands[0].positions, report) {
-        // That engine takes places nearer than its own precision of 1e-12 as one.
-        None => verify::results(operands, &solids, 512.0 * eps, job)?,
-        why => why,
-    };
-    report.phases.push(("verify", now() - start));
-    if let Some(why) = wrong {
-        return Err(BooleanError::Inconsistent(why));
-    }
-    let asked = |o: &Operation| solids.iter().position(|s| s.operation == *o);
-    let order: Vec<usize> = operations.iter().filter_map(asked).collect();
-    Ok(order.into_iter().map(|i| solids[i].clone()).collect())
-}
-
-/// With one tolerance. The inner error says why the arrangement is not consistent.
-fn attempt(
-    operands: [&PolyMesh; 2],
-    volumes: [f64; 2],
-    operations: &[Operation],
-    options: &BooleanOptions,
-    eps: f64,
-    floor: f64,
-    job: &Job,
-    now: &impl Fn() -> f64,
-    report: &mut BooleanReport,
-) -> Result<Result<Vec<BooleanSolid>, String>, BooleanError> {
-    let mut clock = now();
-    let mut lap = |name| {
-        let t = now();
-        report.phases.push((name, t - clock));
-        clock = t;
-    };
-    let mut common = common::common(operands, eps, job, &mut lap)?;
-    if common.same_surface {
-        let solids =
-            one_surface::results(operands[0], operations, options.faces.triangles(operands), job)?;
-        if let Some(solids) = solids {
-            lap("emit");
-            report.contact = common.points.contact;
-            let slack = floor.max(8.0 * report.contact.farthest);
-            let why = doubt(&solids, volumes, slack, &common.points.at, report);
-            return Ok(why.map_or(Ok(solids), Err));
-        }
-        common.pair_again(job)?;
-    }
-    let a = Arrangement::of(common, eps, floor, None, job, &mut lap)?;
-    if let Some(why) = &a.doubt {
-        return Ok(Err(why.clone()));
-    }
-    let (mut solids, mut thin) = (Vec::new(), Vec::new());
-    for &operation in operations {
-        job.check()?;
-        let faces = operands.iter().map(|m| m.face_count()).sum();
-        let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
-        mesh.face_starts.reserve(faces);
-        mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
-        let mut cut: Vec<simplify::CutFace> = Vec::new();
-        let triangles = options.faces.triangles(operands);
-        a.faces(operation, options.keep_contact, job, |origin, corners, state| {
-            match options.faces {
-                _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
-                    mesh.push_face(corners);
-                    origins.push(origin);
-                }
-                ResultFaces::ConvexPolygons => {
-                    for ring in simplify::convex(corners, &a.points.at) {
-                        mesh.push_face(&ring);
-                        origins.push(origin);
-                    }
-                }
-                _ if triangles => cut.push(simplify::CutFace { origin, corners: corners.to_vec() }),
-                _ => {
-                    mesh.push_face(corners);
-                    origins.push(origin);
-                }
-            }
-        });
-        job.check()?;
-        let flat = 4.0 * floor.max(a.points.contact.farthest);
-        let group = |o| simplify::group_of(operands, o);
-        for (origin, t) in simplify::retriangulated(&cut, a.own, &a.points.at, flat, group) {
-            mesh.push_face(&t);
-            origins.push(origin);
-        }
-        job.check()?;
-        let at_the_cut = a.on_both();
-        // Kept contact is such a sheet, and wanted.
-        if !options.keep_contact {
-            emit::drop_folded_faces(&mut mesh, &mut origins, at_the_cut);
-        }
-        let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
-        let contact = a.points.contact.farthest;
-        let sheets = options.keep_contact && operation == Operation::Intersection;
-        if !sheets && facts.closed && facts.components > 1 && contact > 8.0 * floor {
-            let gone = emit::drop_thin_shells(&mut mesh, &mut origins, 2.0 * contact);
-            if gone > 0 {
-                facts = emit::facts(&mesh, job)?;
-                thin.push(format!(
-                    "{gone} shells of the {} that are thinner than the contact were left out",
-                    operation.name()
-                ));
-            }
-        }
-        if !facts.closed {
-            return Ok(Err(format!("the {} is not closed", operation.name())));
-        }
-        attributes::carry(&mut mesh, &origins, operands);
-        solids.push(BooleanSolid { operation, mesh, origins, facts });
-    }
-    lap("emit");
-    // Surfaces moved by rounding, and by as much as places in contact were apart.
-    let slack = floor.max(8.0 * a.points.contact.farthest);
-    if let Some(why) = doubt(&solids, volumes, slack, &a.points.at, report) {
-        return Ok(Err(why));
-    }
-    report.contact = a.points.contact;
-    report.warnings.extend(thin);
-    report.cut = a.curve();
-    job.progress(1.0);
-    Ok(Ok(solids))
-}
-
-/// What the volumes say against the results; `eps`: how far a surface may have moved.
-fn doubt(
-    solids: &[BooleanSolid],
-    [a, b]: [f64; 2],
-    eps: f64,
-    at: &[DVec3],
-    report: &mut BooleanReport,
-) -> Option<String> {
-    let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
-    let area: f64 = solids.iter().map(|s| s.facts.area).sum();
-    let size = at
-        .par_chunks(1 << 15)
-        .map(|c| Span::of(c.iter().copied()))
-        .reduce(|| Span::EMPTY, Span::join);
-    let slack = (a + b) * 5e-13 + area * eps + (size.hi - size.lo).length().powi(3) * 1e-16;
-    report.volume_bound = slack;
-    let (u, i) = (of(Operation::Union), of(Operation::Intersection));
-    let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
-    let sums = [
-        (u.zip(i).map(|(u, i)| u + i - a - b), "union and intersection"),
-        (d.zip(i).map(|(d, i)| d + i - a), "difference and intersection"),
-        (r.zip(i).map(|(r, i)| r + i - b), "reverse difference and intersection"),
-    ];
-    for (off, what) in sums {
-        if off.is_some_and(|x| x.abs() > slack) {
-            return Some(format!(
-                "the volumes of {what} do not add up, by {:.3e}",
-                off.unwrap_or(0.0)
-            ));
-        }
-    }
-    solids
-        .iter()
-        .find(|s| s.facts.volume < -slack)
-        .map(|s| format!("the {} has the volume {:.3e}", s.operation.name(), s.facts.volume))
 }

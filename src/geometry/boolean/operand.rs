@@ -71,12 +71,10 @@ fn open_edges(mesh: &PolyMesh) -> usize {
         .count()
 }
 
-/// Whether triangles of one operand go through each other.
-pub(super) fn crosses_itself(operands: [&PolyMesh; 2], job: &Job) -> Result<bool, Cancelled> {
-    for mesh in operands {
-        if !self_intersection::pairs(&mesh.positions, &mesh.triangles().0, job)?.is_empty() {
-            return Ok(true);
-        }
-    }
-    Ok(false)
+/// Of each operand, whether triangles of it go through each other.
+pub(super) fn crosses_itself(operands: [&PolyMesh; 2], job: &Job) -> Result<[bool; 2], Cancelled> {
+    let crosses = |m: &PolyMesh| {
+        self_intersection::pairs(&m.positions, &m.triangles().0, job).map(|p| !p.is_empty())
+    };
+    Ok([crosses(operands[0])?, crosses(operands[1])?])
 }

@@ -134,7 +134,7 @@ fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Intersections) ->
 }
 
 /// A loop with the points that the meeting found on its edges.
-fn ring(corners: &[u32], m: &Intersections) -> Vec<u32> {
+pub(super) fn ring(corners: &[u32], m: &Intersections) -> Vec<u32> {
     let mut out = Vec::with_capacity(corners.len() + 2);
     for (i, &a) in corners.iter().enumerate() {
         let b = corners[(i + 1) % corners.len()];

@@ -1,6 +1,7 @@
-//! Pictures of heights in: brightness and opacity in 16 bits, from whatever format the picture has.
+//! Pictures of heights in, from whatever format the picture has, and out: brightness and opacity in
+//! 16 bits.
 
-use image::ImageReader;
+use image::{ImageBuffer, ImageFormat, ImageReader, Luma, LumaA};
 
 /// A picture of heights, rows from the top, each from the left.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,4 +31,25 @@ pub fn read_height_picture(bytes: &[u8], most: u64) -> Result<HeightPicture, Str
     let image = image::load_from_memory(bytes).map_err(|e| e.to_string())?.into_luma_alpha16();
     let pixels = image.pixels().map(|p| p.0).collect();
     Ok(HeightPicture { width, height, pixels })
+}
+
+/// Writes a PNG of 16 bits: of brightness alone where all is opaque, else with opacity.
+///
+/// # Errors
+/// Where the number of pixels is not that of the size, or is 0.
+pub fn write_height_picture(picture: &HeightPicture) -> Result<Vec<u8>, String> {
+    let HeightPicture { width, height, pixels } = picture;
+    let wrong = || format!("{} pixels are not {width} x {height}", pixels.len());
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let written = if pixels.iter().all(|p| p[1] == u16::MAX) {
+        let luma = pixels.iter().map(|p| p[0]).collect();
+        let image = ImageBuffer::<Luma<u16>, Vec<u16>>::from_raw(*width, *height, luma);
+        image.ok_or_else(wrong)?.write_to(&mut bytes, ImageFormat::Png)
+    } else {
+        let both = pixels.iter().flatten().copied().collect();
+        let image = ImageBuffer::<LumaA<u16>, Vec<u16>>::from_raw(*width, *height, both);
+        image.ok_or_else(wrong)?.write_to(&mut bytes, ImageFormat::Png)
+    };
+    written.map_err(|e| e.to_string())?;
+    Ok(bytes.into_inner())
 }

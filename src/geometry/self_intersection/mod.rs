@@ -71,6 +71,27 @@ pub fn pairs(
     Ok(crossed)
 }
 
+/// Pairs of triangles whose boxes are no farther from each other than twice `slack`, the lower
+/// triangle first, sorted.
+pub(crate) fn near_pairs(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    slack: f64,
+    job: &Job,
+) -> Result<Vec<(u32, u32)>, Cancelled> {
+    if triangles.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let boxes = TriangleBoxes::new(positions, triangles);
+    let list = (0..triangles.len() as u32).into_par_iter();
+    let tree = BoxGroups::build(list, |t| boxes.grown(t, slack), job)?;
+    let found: Vec<Vec<(u32, u32)>> =
+        tree.pairs(job, |found: &mut Vec<_>, t, u| found.push((t.min(u), t.max(u))))?;
+    let mut all = found.concat();
+    all.par_sort_unstable();
+    Ok(all)
+}
+
 /// Those of [`pairs`] in which one triangle of `changed` is, ascending and each once. The rest of
 /// the mesh is not compared, and costs a look at each box only.
 pub fn pairs_with(
@@ -191,13 +212,18 @@ impl<'a> TriangleBoxes<'a> {
     }
 
     fn of(&self, t: u32) -> RoundedBox {
+        self.grown(t, 0.0)
+    }
+
+    /// The box, larger by a length on every side.
+    fn grown(&self, t: u32, by: f64) -> RoundedBox {
         let [a, b, c] = self.triangles[t as usize].map(|v| self.positions[v as usize]);
         match self.turned {
             Some((turn, room)) => {
-                let [a, b, c] = [turn * a, turn * b, turn * c];
+                let ([a, b, c], room) = ([turn * a, turn * b, turn * c], room + by);
                 RoundedBox::around(a.min(b).min(c) - room, a.max(b).max(c) + room)
             }
-            None => RoundedBox::around(a.min(b).min(c), a.max(b).max(c)),
+            None => RoundedBox::around(a.min(b).min(c) - by, a.max(b).max(c) + by),
         }
     }
 }

@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::preset::Preset;
-use super::refine::refine;
+use super::refine::{refine, refine_within};
 use super::summary::ThicknessSummary;
 use super::warnings::warnings;
 use super::worst::ThinRegion;
@@ -22,7 +22,10 @@ pub const SPOTS: usize = 10;
 /// Places to measure at that a coarse part is given, about.
 const PLACES: usize = 20_000;
 /// More than this many are too many: long thin triangles take several times what their area says.
-const MOST_PLACES: usize = 50_000;
+const MOST_PLACES: usize = 32_000;
+/// How often the spacing is made a quarter wider then. A part of which that does not make fewer has
+/// places enough of its own.
+const WIDER: usize = 16;
 
 /// Puts places to measure on walls that have none, and gives the walls as they were. `spacing` is
 /// the longest edge that stays, millimetres; without it, a part of which more than half of the
@@ -39,14 +42,19 @@ pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) -> Opti
         (sharp * 2 > s.sharp.len()).then(|| (area * 2.0 / PLACES as f32).sqrt())
     });
     let mut spacing = spacing.filter(|s| *s > 0.0 && s.is_finite())?;
-    let mut fine = refine(mesh, spacing);
-    for _ in 0..4 {
-        if told || fine.mesh.positions.len() <= MOST_PLACES {
-            break;
+    let fine = if told {
+        refine(mesh, spacing)
+    } else {
+        let mut within = refine_within(mesh, spacing, MOST_PLACES);
+        for _ in 0..WIDER {
+            if within.is_some() {
+                break;
+            }
+            spacing *= 1.25;
+            within = refine_within(mesh, spacing, MOST_PLACES);
         }
-        spacing *= (fine.mesh.positions.len() as f32 / (1.5 * PLACES as f32)).sqrt();
-        fine = refine(mesh, spacing);
-    }
+        within?
+    };
     let whole = std::mem::replace(mesh, fine.mesh);
     Some(Walls { mesh: whole, of: fine.of })
 }

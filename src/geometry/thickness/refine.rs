@@ -20,6 +20,15 @@ const SLIVER: f32 = 0.1;
 const LOW: f32 = 0.01;
 const ROUNDINGS: f32 = 64.0;
 
+/// The number of an edge that is not cut in any case.
+const NOT_LONG: u32 = u32::MAX;
+
+/// A triangle that may be cut, and the numbers of its edges ab, bc, ca.
+struct OpenTriangle {
+    triangle: u32,
+    edges: [u32; 3],
+}
+
 /// A surface in smaller triangles.
 #[derive(Debug, Clone)]
 pub struct Refined {
@@ -34,13 +43,22 @@ pub struct Refined {
 /// are reached. The mesh's own vertices keep their indices; both triangles of an edge are cut at
 /// the same point, so a closed mesh stays closed.
 pub fn refine(mesh: &TriMesh, spacing: f32) -> Refined {
+    let whole = |mesh: &TriMesh| {
+        let of = (0..mesh.triangles.len() as u32).collect();
+        Refined { mesh: TriMesh { colours: None, ..mesh.clone() }, of }
+    };
+    refine_within(mesh, spacing, usize::MAX).unwrap_or_else(|| whole(mesh))
+}
+
+/// The same; none where that takes more than `most` vertices.
+pub(super) fn refine_within(mesh: &TriMesh, spacing: f32, most_vertices: usize) -> Option<Refined> {
     let mut out = TriMesh { colours: None, ..mesh.clone() };
     let mut of: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let usable = |t: &[u32; 3]| {
         t.iter().all(|&v| mesh.positions.get(v as usize).is_some_and(|p| p.is_finite()))
     };
     if !(spacing > 0.0 && out.triangles.iter().all(usable)) {
-        return Refined { mesh: out, of };
+        return Some(Refined { mesh: out, of });
     }
     let reach = mesh.positions.iter().fold(0.0f32, |r, p| r.max(p.abs().max_element()));
     let least = (LOW * spacing).max(ROUNDINGS * f32::EPSILON * reach);
@@ -49,50 +67,71 @@ pub fn refine(mesh: &TriMesh, spacing: f32) -> Refined {
     let mut settled = vec![false; out.triangles.len()];
     loop {
         let slivers = edges_of_slivers(&out, &settled, least);
-        // The edges of the others, each with a number.
-        let open: Vec<u32> = (0..settled.len() as u32).filter(|&t| !settled[t as usize]).collect();
-        let side = |i: usize| {
-            let t = out.triangles[open[i / 3] as usize];
-            let (a, b) = (t[i % 3], t[(i + 1) % 3]);
-            [a.min(b), a.max(b), 0]
+        // The long edges of the others, each with a number: no other is cut.
+        let mut open: Vec<OpenTriangle> = Vec::new();
+        let mut long: Vec<[u32; 3]> = Vec::new();
+        for (t, settled) in settled.iter_mut().enumerate().filter(|s| !*s.1) {
+            let [a, b, c] = out.triangles[t];
+            let mut own = OpenTriangle { triangle: t as u32, edges: [NOT_LONG; 3] };
+            let mut all_short = true;
+            for (slot, (a, b)) in own.edges.iter_mut().zip([(a, b), (b, c), (c, a)]) {
+                let length = out.positions[a as usize].distance_squared(out.positions[b as usize]);
+                if length > most {
+                    *slot = long.len() as u32;
+                    long.push([a.min(b), a.max(b), length.to_bits()]);
+                }
+                all_short &= length <= most;
+            }
+            *settled = all_short;
+            open.push(own);
+        }
+        // The bits of a length are the same on both sides of an edge.
+        let Ok((edges, edge_of)) = weld_keys(long.len(), &Job::default(), |i| long[i]) else {
+            return Some(Refined { mesh: out, of });
         };
-        let Ok((edges, edge_of)) = weld_keys(3 * open.len(), &Job::default(), side) else {
-            return Refined { mesh: out, of };
-        };
-        let length = |[a, b, _]: &[u32; 3]| {
-            out.positions[*a as usize].distance_squared(out.positions[*b as usize])
-        };
-        let lengths: Vec<f32> = edges.iter().map(length).collect();
         let mut middle: Vec<Option<u32>> = vec![None; edges.len()];
         let mut cut: Vec<[u32; 3]> = Vec::new();
-        for (&t, own) in open.iter().zip(edge_of.chunks_exact(3)) {
+        for own in &mut open {
+            for e in own.edges.iter_mut().filter(|e| **e != NOT_LONG) {
+                *e = edge_of[*e as usize];
+            }
             // Only a triangle's longest edge is cut in one round: slivers become round before they
             // become many.
-            settled[t as usize] = own.iter().all(|&e| lengths[e as usize] <= most);
             let longest = own
+                .edges
                 .iter()
-                .map(|&e| (lengths[e as usize], edges[e as usize], e))
-                .filter(|(_, [a, b, _], _)| slivers.binary_search(&(*a, *b)).is_err())
+                .filter(|&&e| e != NOT_LONG)
+                .map(|&e| (edges[e as usize], e))
+                .filter(|([a, b, _], _)| slivers.binary_search(&(*a, *b)).is_err())
+                .map(|([a, b, length], e)| (f32::from_bits(length), [a, b, 0], e))
                 .fold((0.0, [0; 3], 0), |m, e| if (e.0, e.1) > (m.0, m.1) { e } else { m });
-            let [a, b, c] = out.corners(t as usize);
+            if longest.0 <= most {
+                continue;
+            }
+            let [a, b, c] = out.corners(own.triangle as usize);
             let wide = (b - a).cross(c - a).length() * 0.5 > most * SLIVER;
             let slot = &mut middle[longest.2 as usize];
-            if longest.0 > most && wide && slot.is_none() {
+            if wide && slot.is_none() {
                 *slot = Some((out.positions.len() + cut.len()) as u32);
                 cut.push(longest.1);
             }
         }
+        if out.positions.len() + cut.len() > most_vertices {
+            return None;
+        }
         if cut.is_empty() || out.triangles.len() + 2 * cut.len() > MOST {
-            return Refined { mesh: out, of };
+            return Some(Refined { mesh: out, of });
         }
         let room = out.triangles.len() + 2 * cut.len();
         let (mut next, mut next_of) = (Vec::with_capacity(room), Vec::with_capacity(room));
         let mut next_settled = Vec::with_capacity(room);
-        let mut own = open.iter().zip(edge_of.chunks_exact(3)).peekable();
+        let mut own = open.iter().peekable();
         for (t, (corners, &whole)) in out.triangles.iter().zip(&of).enumerate() {
-            match own.next_if(|o| *o.0 as usize == t) {
-                Some((_, e)) => {
-                    split(*corners, [0, 1, 2].map(|k| middle[e[k] as usize]), &mut next);
+            match own.next_if(|o| o.triangle as usize == t) {
+                Some(o) => {
+                    // No edge has the number of one that is not long.
+                    let mids = o.edges.map(|e| middle.get(e as usize).copied().flatten());
+                    split(*corners, mids, &mut next);
                 }
                 None => next.push(*corners),
             }
@@ -116,8 +155,8 @@ fn edges_of_slivers(mesh: &TriMesh, settled: &[bool], least: f32) -> Vec<(u32, u
     let open = |i: &(usize, &[u32; 3])| !settled[i.0];
     for (i, t) in mesh.triangles.iter().enumerate().filter(open) {
         let [a, b, c] = mesh.corners(i);
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        if (b - a).cross(c - a).length() < least * longest {
+        let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        if (b - a).cross(c - a).length_squared() < least * least * longest {
             edges.extend((0..3).map(|k| {
                 let (u, v) = (t[k], t[(k + 1) % 3]);
                 (u.min(v), u.max(v))

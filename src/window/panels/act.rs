@@ -1,5 +1,6 @@
 //! What an action does: it changes the window's own state, or it becomes a request.
 
+use super::colours;
 use super::cube;
 use super::modal;
 use super::state::action::{self, Action};
@@ -53,6 +54,7 @@ pub fn act(
         Action::Redo => out.push(UiRequest::World(Command::Redo)),
         Action::DragRadius => modal::begin(ctx, view, ui_state, ModalSetting::Radius),
         Action::DragStrength => modal::begin(ctx, view, ui_state, ModalSetting::Strength),
+        Action::SampleColour => colours::sample_at_pointer(ctx, out),
         Action::NextMaterial => {
             ui_state.look.material = (ui_state.look.material + 1) % MATERIALS.len();
             if ui_state.look.light == Light::Matcap {

@@ -1,33 +1,11 @@
 //! The brush: which one, of the program's and of a person's own, and all its settings.
 
-use egui::{Pos2, Sense, Stroke, vec2};
-
-use super::rows;
-use super::state::action::brush_title;
-use super::state::{Action, UiRequest, View};
-use super::theme;
+use super::state::{Action, UiRequest, UiState, View};
+use super::{alphas, brush_palette, brush_size, colours, rows};
 use crate::language::tr;
 use crate::language::{text_of, text_or};
-use sculptd_clay::brush::{
-    Alpha, BrushKind, BrushSettings, Falloff, Measure, Method, OwnBrush, StampBy,
-};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Falloff, Measure, Method, StampBy};
 use sculptd_engine::command::Command;
-
-/// Those that are shown first; the others stand under "more".
-const FIRST: [BrushKind; 12] = [
-    BrushKind::Draw,
-    BrushKind::Clay,
-    BrushKind::ClayStrips,
-    BrushKind::Smooth,
-    BrushKind::Crease,
-    BrushKind::Inflate,
-    BrushKind::Grab,
-    BrushKind::Pinch,
-    BrushKind::Flatten,
-    BrushKind::Layer,
-    BrushKind::Mask,
-    BrushKind::Gaussian,
-];
 
 const METHODS: [(Method, &str); 7] = [
     (Method::Space, "method-space"),
@@ -64,18 +42,6 @@ const MEASURES: [(Measure, &str); 4] = [
     (Measure::View, "topology-view"),
 ];
 
-const ALPHAS: [(Alpha, &str); 9] = [
-    (Alpha::Studs, "alpha-studs"),
-    (Alpha::Scales, "alpha-scales"),
-    (Alpha::Rope, "alpha-rope"),
-    (Alpha::Stitches, "alpha-stitches"),
-    (Alpha::Waves, "alpha-waves"),
-    (Alpha::Bricks, "alpha-bricks"),
-    (Alpha::Stone, "alpha-stone"),
-    (Alpha::Cracks, "alpha-cracks"),
-    (Alpha::Picture, "alpha-picture"),
-];
-
 /// One of several, in a list that unfolds; `title` and the names are messages.
 fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, all: &[(T, &str)]) {
     let now = all.iter().find(|(v, _)| v == value).map_or_else(String::new, |(_, name)| tr!(name));
@@ -86,102 +52,46 @@ fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, al
     });
 }
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let mut brush: BrushSettings = view.state.brush;
-    ui.strong(tr!("brush-heading"));
-    let first = |k: &&BrushKind| FIRST.contains(k);
-    let mut palette = |ui: &mut egui::Ui, kinds: &mut dyn Iterator<Item = BrushKind>| {
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
-            for kind in kinds {
-                let chosen = brush.key() == (kind, 0);
-                let response = picture(ui, kind, chosen);
-                let about = view.presets.get(kind).about();
-                let about = text_of(&format!("kind-{}.about", kind.name()), about);
-                if response.on_hover_text(about).clicked() && !chosen {
-                    brush = view.presets.recalled(&brush, &view.state.kept_brushes, kind);
-                }
-            }
-        });
-    };
-    palette(ui, &mut FIRST.into_iter());
-    let chosen_below = !FIRST.contains(&view.state.brush.kind);
-    let more = folded("brush-more");
-    more.show(ui, |ui| palette(ui, &mut BrushKind::ALL.iter().filter(|k| !first(k)).copied()));
-    own_brushes(ui, view, &mut brush, out);
-    if chosen_below {
-        ui.label(tr!("brush-now", name = brush_title(view.state.brush.kind)));
-    }
-    let keys = |a: Action, b: Action| {
-        tr!("both-keys", first = view.keys.text(a), second = view.keys.text(b))
-    };
-    let radius = egui::Slider::new(&mut brush.radius, 0.005..=1.0).logarithmic(true);
-    let (both, drag) = (keys(Action::Smaller, Action::Larger), view.keys.text(Action::DragRadius));
-    rows::slider(ui, radius, &tr!("brush-radius")).on_hover_text(tr!(
-        "brush-radius.tip",
-        keys = both,
-        drag = drag
-    ));
+    brush_palette::ui(ui, view, ui_state, &mut brush, out);
+    brush_size::radius(ui, view, ui_state, &mut brush);
     let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0);
-    let both = keys(Action::Weaker, Action::Stronger);
+    let keys = view.both(Action::Weaker, Action::Stronger);
     let drag = view.keys.text(Action::DragStrength);
     rows::slider(ui, strength, &tr!("brush-strength")).on_hover_text(tr!(
         "brush-strength.tip",
-        keys = both,
+        keys = keys,
         drag = drag
     ));
-    ui.checkbox(&mut brush.negative, tr!("brush-carve"))
-        .on_hover_text(tr!("brush-carve.tip", action = view.tip(Action::Carve)));
-    folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
-    folded("brush-settings").show(ui, |ui| {
-        folded("brush-dab").show(ui, |ui| dab(ui, &mut brush));
-        folded("brush-stamp").show(ui, |ui| stamp(ui, &mut brush));
-        folded("brush-automasks").show(ui, |ui| automasks(ui, &mut brush));
-        folded("brush-topology").show(ui, |ui| topology(ui, &mut brush));
+    rows::flow(ui, |ui| {
+        ui.checkbox(&mut brush.negative, tr!("brush-carve"))
+            .on_hover_text(tr!("brush-carve.tip", action = view.tip(Action::Carve)));
+        check(ui, &mut ui_state.prefs.brushes.radius_in_pixels, "brush-radius-pixels");
+    });
+    let paints = view.state.brush.kind == BrushKind::Paint;
+    if paints {
+        colours::ui(ui, view, ui_state, &mut brush);
+    }
+    rows::folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
+    rows::folded("brush-settings").show(ui, |ui| {
+        rows::folded("brush-dab").show(ui, |ui| {
+            dab(ui, &mut brush);
+            if !paints {
+                colours::ui(ui, view, ui_state, &mut brush);
+            }
+        });
+        rows::folded("brush-stamp").show(ui, |ui| {
+            alphas::ui(ui, view, &mut brush, out);
+            stamp(ui, &mut brush);
+        });
+        rows::folded("brush-automasks").show(ui, |ui| automasks(ui, &mut brush));
+        rows::folded("brush-topology").show(ui, |ui| topology(ui, &mut brush));
+        brush_palette::save(ui, view, ui_state, out);
     });
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
-}
-
-/// A part that is folded at first, by the message of its title.
-fn folded(title: &'static str) -> egui::CollapsingHeader {
-    egui::CollapsingHeader::new(tr!(title)).id_salt(title).default_open(false)
-}
-
-/// A person's own brushes: choosing one takes its picture of heights along.
-fn own_brushes(
-    ui: &mut egui::Ui,
-    view: &View<'_>,
-    brush: &mut BrushSettings,
-    out: &mut Vec<UiRequest>,
-) {
-    let own = view.presets.own();
-    if own.is_empty() {
-        return;
-    }
-    ui.label(tr!("brush-own"));
-    ui.horizontal_wrapped(|ui| {
-        for one in own.iter() {
-            let chosen = view.state.brush.key() == one.settings.key();
-            let button = ui.selectable_label(chosen, &one.name);
-            if button.on_hover_text(own_hint(one)).clicked() {
-                *brush = view.presets.taken(brush, &view.state.kept_brushes, one);
-                if let Some(picture) = &one.picture {
-                    out.push(UiRequest::World(Command::Picture(picture.clone())));
-                }
-            }
-        }
-    });
-}
-
-fn own_hint(own: &OwnBrush) -> String {
-    let kind = brush_title(own.settings.kind);
-    let what = match own.about.is_empty() {
-        true => kind,
-        false => tr!("brush-own-about", kind = kind, about = own.about.as_str()),
-    };
-    tr!("brush-own.tip", what = what)
 }
 
 /// A slider by the message of its name, whose attribute `tip` says what it means.
@@ -248,14 +158,9 @@ fn dab(ui: &mut egui::Ui, brush: &mut BrushSettings) {
         let number = egui::Slider::new(value, extra.min..=extra.max);
         rows::slider(ui, number, &text_or(&id, extra.name)).on_hover_text(about);
     }
-    ui.horizontal(|ui| {
-        ui.color_edit_button_srgba_unmultiplied(&mut brush.colour);
-        ui.label(tr!("dab-colour"));
-    });
 }
 
 fn stamp(ui: &mut egui::Ui, brush: &mut BrushSettings) {
-    choice(ui, "stamp-alpha", &mut brush.alpha, &ALPHAS);
     let stamp = &mut brush.stamp;
     choice(ui, "stamp-stamp", &mut stamp.by, &STAMPS);
     if stamp.by == StampBy::Off {
@@ -294,63 +199,4 @@ fn topology(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     rows::slider(ui, length, &tr!("topology-length"));
     ui.checkbox(&mut topology.split, tr!("topology-split"));
     ui.checkbox(&mut topology.collapse, tr!("topology-collapse"));
-}
-
-/// The profile that a brush leaves on flat clay, `d` from -1 to 1 across it: drawn, not computed.
-/// A brush that is not named here is drawn as a bell.
-fn profile(kind: BrushKind, d: f32) -> f32 {
-    let bell = (-d * d * 9.0).exp();
-    let step = |edge: f32| 1.0 / (1.0 + ((d.abs() - edge) * 24.0).exp());
-    match kind {
-        BrushKind::Smooth | BrushKind::Relax | BrushKind::SlideRelax => {
-            0.25 * (-d * d * 3.0).exp() + 0.08 * (d * 22.0).sin() * d * d
-        }
-        BrushKind::Clay | BrushKind::Layer => 0.6 * step(0.55),
-        BrushKind::ClayStrips | BrushKind::Trim => 0.7 * step(0.42),
-        BrushKind::Crease => 0.35 * bell - 0.9 * (-d * d * 120.0).exp() + 0.3,
-        BrushKind::Inflate | BrushKind::Blob => (1.0 - d * d).max(0.0).sqrt() * 0.8,
-        BrushKind::Flatten | BrushKind::Scrape => (0.4 + 0.1 * (d * 9.0).sin()).min(0.36),
-        BrushKind::Fill => (0.4 + 0.25 * (d * 9.0).sin()).max(0.3),
-        BrushKind::Pinch => 0.9 * (-d.abs() * 7.0).exp(),
-        BrushKind::Grab
-        | BrushKind::Elastic
-        | BrushKind::SnakeHook
-        | BrushKind::Thumb
-        | BrushKind::Nudge => bell * 0.9 * (1.0 + 0.8 * d),
-        BrushKind::Mask | BrushKind::MaskBlur | BrushKind::Paint | BrushKind::DrawFaceSets => 0.25,
-        BrushKind::Twist => 0.4 + 0.35 * (d * 6.0).sin() * (1.0 - d * d),
-        BrushKind::Texture => 0.3 + 0.2 * (d * 31.0).sin() * step(0.7),
-        BrushKind::Topological => 0.5 * bell + 0.3 * (d * 12.0).cos().max(0.0) * step(0.6),
-        _ => bell * 0.85,
-    }
-}
-
-/// A button with the profile that the brush leaves.
-fn picture(ui: &mut egui::Ui, kind: BrushKind, chosen: bool) -> egui::Response {
-    let name = brush_title(kind);
-    let (rect, response) = ui.allocate_exact_size(vec2(66.0, 40.0), Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::RadioButton, ui.is_enabled(), chosen, name.clone())
-    });
-    let style = ui.style().interact_selectable(&response, chosen);
-    let fill = if chosen { ui.visuals().selection.bg_fill } else { style.weak_bg_fill };
-    ui.painter().rect(rect, 5.0, fill, style.bg_stroke, egui::StrokeKind::Inside);
-    let line: Vec<Pos2> = (0..=40)
-        .map(|i| {
-            let x = i as f32 / 40.0;
-            let y = profile(kind, (x - 0.5) * 2.0);
-            Pos2::new(rect.left() + 8.0 + x * (rect.width() - 16.0), rect.top() + 22.0 - y * 17.0)
-        })
-        .collect();
-    let text = if chosen { ui.visuals().selection.stroke.color } else { ui.visuals().text_color() };
-    let ink = if chosen { text } else { theme::accent(ui) };
-    ui.painter().add(egui::Shape::line(line, Stroke::new(1.8, ink)));
-    let font = egui::FontId::proportional(11.0);
-    let at = rect.center_bottom() - vec2(0.0, 2.0);
-    // A long name is written smaller: the button keeps its size.
-    let wide = ui.painter().layout_no_wrap(name.clone(), font.clone(), text).size().x;
-    let share = ((rect.width() - 4.0) / wide.max(1.0)).min(1.0);
-    let font = egui::FontId::proportional(font.size * share);
-    ui.painter().text(at, egui::Align2::CENTER_BOTTOM, name, font, text);
-    response
 }

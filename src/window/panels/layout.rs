@@ -3,10 +3,10 @@
 use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, cube, curve_stroke, devices, face_sets, files, fonts, hand_menu,
-    help, hints, history, keys, layers, legend, light, look, masks, measure, messages, modal,
-    outliner, preferences, pressure_curve, radial, region, remesh, retopology, rows, scene, search,
-    start, symmetry, tablet_keys, theme, timing, trim,
+    analysis, brush, chooser, colours, cube, curve_stroke, devices, face_sets, files, fonts,
+    hand_menu, help, hints, history, keys, layers, legend, light, look, masks, measure, messages,
+    modal, outliner, preferences, pressure_curve, radial, region, remesh, retopology, rows, scene,
+    search, start, symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -58,6 +58,8 @@ pub fn all(
         }
     }
     let free = ui.available_rect_before_wrap();
+    ui_state.brush_panel.free = Some(free);
+    colours::sampler(&ctx, ui_state, free, out);
     region::ui(&ctx, ui_state, free, out);
     curve_stroke::ui(&ctx, view, ui_state, free, out);
     hand_menu::ui(&ctx, view, free);
@@ -94,7 +96,7 @@ fn scrolled(ui: &mut egui::Ui, what: impl FnOnce(&mut egui::Ui)) {
 fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     ui.heading("sculptd");
     ui.add_space(6.0);
-    brush::ui(ui, view, out);
+    brush::ui(ui, view, ui_state, out);
     ui.add_space(8.0);
     symmetry::ui(ui, view, out);
     ui.add_space(8.0);

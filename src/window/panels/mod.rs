@@ -4,9 +4,13 @@
 //! Read first: [`state`], then [`layout`], then one panel.
 
 pub mod act;
+mod alphas;
 pub mod analysis;
 pub mod brush;
+mod brush_palette;
+mod brush_size;
 pub mod chooser;
+mod colours;
 pub mod cube;
 pub mod curve_stroke;
 pub mod devices;

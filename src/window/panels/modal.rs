@@ -3,6 +3,7 @@
 
 use egui::{Key, PointerButton};
 
+use super::brush_size;
 use super::state::{Modal, ModalSetting, UiRequest, UiState, View};
 use crate::language::tr;
 use sculptd_engine::command::Command;
@@ -43,7 +44,9 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, out: &mu
         out.push(UiRequest::World(Command::Brush(brush)));
     }
     let text = match modal.what {
-        ModalSetting::Radius => tr!("modal-radius", value = format!("{:.3}", brush.radius)),
+        ModalSetting::Radius => {
+            tr!("modal-radius", value = brush_size::told(ctx, view, ui_state, brush.radius))
+        }
         ModalSetting::Strength => tr!("modal-strength", value = format!("{:.2}", brush.strength)),
     };
     let area = egui::Area::new(egui::Id::unique("modal"))

@@ -1,6 +1,7 @@
 //! Rows of a panel that hold in every language: a label that does not fit beside its widget stands
 //! above it.
 
+use crate::language::tr;
 use egui::{ComboBox, Response, Slider, TextStyle, Ui, WidgetText};
 
 /// Points beside the bar of a slider: its number and the gaps.
@@ -18,8 +19,13 @@ fn width(ui: &Ui, text: &str) -> f32 {
 
 /// A slider with its name.
 pub fn slider(ui: &mut Ui, slider: Slider<'_>, name: &str) -> Response {
+    slider_beside(ui, slider, name, NUMBER)
+}
+
+/// A slider with its name, whose number and the gaps take so many points beside the bar.
+pub fn slider_beside(ui: &mut Ui, slider: Slider<'_>, name: &str, number: f32) -> Response {
     let usual = ui.spacing().slider_width;
-    let bar = (ui.available_width() - NUMBER - width(ui, name)).min(usual);
+    let bar = (ui.available_width() - number - width(ui, name)).min(usual);
     // A bar that is a little shorter is better than two kinds of rows on one page.
     if bar >= SHORTEST * usual {
         let add = |ui: &mut Ui| {
@@ -59,4 +65,9 @@ pub fn flow(ui: &mut Ui, what: impl FnOnce(&mut Ui)) {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         what(ui);
     });
+}
+
+/// A part that is folded at first, by the message of its title.
+pub fn folded(title: &'static str) -> egui::CollapsingHeader {
+    egui::CollapsingHeader::new(tr!(title)).id_salt(title).default_open(false)
 }

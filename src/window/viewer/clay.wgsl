@@ -265,8 +265,7 @@ struct LineCorner {
     @location(0) colour: vec4<f32>,
 };
 
-@vertex
-fn line_vertex(@location(0) place: vec3<f32>, @location(1) colour: vec4<f32>) -> LineCorner {
+fn line_corner(place: vec3<f32>, colour: vec4<f32>) -> LineCorner {
     var out: LineCorner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     // A hair nearer, so that a line on the surface is not eaten by it.
@@ -275,8 +274,30 @@ fn line_vertex(@location(0) place: vec3<f32>, @location(1) colour: vec4<f32>) ->
     return out;
 }
 
+@vertex
+fn line_vertex(@location(0) place: vec3<f32>, @location(1) colour: vec4<f32>) -> LineCorner {
+    return line_corner(place, colour);
+}
+
 @fragment
 fn line_fragment(in: LineCorner) -> @location(0) vec4<f32> {
+    return in.colour;
+}
+
+// What of a line is behind something, where it is seen through that at all.
+@vertex
+fn behind_vertex(
+    @location(0) place: vec3<f32>,
+    @location(1) colour: vec4<f32>,
+    @location(2) through: f32,
+) -> LineCorner {
+    var out = line_corner(place, colour);
+    out.colour.a *= through;
+    return out;
+}
+
+@fragment
+fn behind_fragment(in: LineCorner) -> @location(0) vec4<f32> {
     return in.colour;
 }
 

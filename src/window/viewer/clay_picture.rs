@@ -78,7 +78,7 @@ mod tests {
             |k| k.camera.yaw += 0.1,
             |k| k.look.wireframe = true,
             |k| k.brush = Some((Vec3::ZERO, 1.0)),
-            |k| k.lines.push(LineEnd { place: [0.0; 3], colour: [0; 4] }),
+            |k| k.lines.push(LineEnd::new(Vec3::ZERO, [0; 4])),
             |k| k.values += 1,
             |k| k.size.0 += 1,
         ];

@@ -78,6 +78,8 @@ const CORNER: f64 = 0.45;
 /// How near the pointer must be, view heights.
 const REACH: f32 = 0.018;
 const CORNERS: usize = 48;
+/// What lies before the gizmo dims it to this share: also inside of a larger object it can be held.
+const THROUGH: f32 = 0.55;
 
 impl Gizmo {
     /// That of an object that stands at `transform`.
@@ -123,7 +125,9 @@ impl Gizmo {
                 GizmoHandle::Scale => SCALING,
             };
             for pair in points.windows(2) {
-                out.extend(pair.iter().map(|p| LineEnd { place: p.to_array(), colour }));
+                out.extend(
+                    pair.iter().map(|p| LineEnd { through: THROUGH, ..LineEnd::new(*p, colour) }),
+                );
             }
         }
         // The corner as a small cross, the ends of the axes as arrows.
@@ -131,7 +135,7 @@ impl Gizmo {
         let mut cross = |p: Vec3, colour| {
             for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                 let ends = [p - axis * tip, p + axis * tip];
-                out.extend(ends.map(|p| LineEnd { place: p.to_array(), colour }));
+                out.extend(ends.map(|p| LineEnd { through: THROUGH, ..LineEnd::new(p, colour) }));
             }
         };
         cross(self.corner(), SCALING);

@@ -4,6 +4,7 @@
 //! Read first: `app` (events), `poll` (what changed), `frame` (one frame), `input` (the pointer).
 
 mod app;
+mod brush_requests;
 mod camera_animation;
 mod clay_picture;
 pub mod distance_field;

@@ -18,8 +18,8 @@ const BONE: [u8; 4] = [190, 225, 255, 200];
 const CORNERS: usize = 72;
 
 fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
-    out.push(LineEnd { place: a.to_array(), colour });
-    out.push(LineEnd { place: b.to_array(), colour });
+    out.push(LineEnd::new(a, colour));
+    out.push(LineEnd::new(b, colour));
 }
 
 /// How a ring is drawn.

@@ -61,6 +61,10 @@ impl WindowState {
             changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
             changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
             (self.devices, self.listed_us) = (devices, now);
+            let (own, pictures) = (wiring.presets.own(), wiring.presets.pictures());
+            let brushes = [own.as_ptr() as usize, pictures.as_ptr() as usize];
+            changed |= brushes != self.shown_brushes;
+            self.shown_brushes = brushes;
             self.since_listed.tell(self.figures.drawn);
             if let Some(wrong) = self.preferences_file.keep(&self.ui_state) {
                 self.ui_state.say(wrong, true);

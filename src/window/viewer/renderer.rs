@@ -26,6 +26,15 @@ pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub struct LineEnd {
     pub place: [f32; 3],
     pub colour: [u8; 4],
+    /// The share of the colour that is seen through what lies before it, 0 to 1.
+    pub through: f32,
+}
+
+impl LineEnd {
+    /// One that is hidden by what lies before it.
+    pub fn new(place: Vec3, colour: [u8; 4]) -> LineEnd {
+        LineEnd { place: place.to_array(), colour, through: 0.0 }
+    }
 }
 
 /// Ends of lines a frame at most: a dozen rings, four hands and a held object.
@@ -72,6 +81,8 @@ pub struct Renderer {
     sky: wgpu::RenderPipeline,
     clay: wgpu::RenderPipeline,
     line: wgpu::RenderPipeline,
+    /// The parts of lines that something hides, dim.
+    behind: wgpu::RenderPipeline,
     edge: wgpu::RenderPipeline,
     overlay: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
@@ -145,7 +156,7 @@ impl Renderer {
         let line_layout = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineEnd>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4, 2 => Float32],
         };
         let pipeline = |name: &str,
                         buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
@@ -174,10 +185,10 @@ impl Renderer {
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: DEPTH,
                     depth_write_enabled: Some(depth && !lines && !overlay),
-                    depth_compare: Some(if depth {
-                        wgpu::CompareFunction::LessEqual
-                    } else {
-                        wgpu::CompareFunction::Always
+                    depth_compare: Some(match depth {
+                        _ if name == "behind" => wgpu::CompareFunction::Greater,
+                        true => wgpu::CompareFunction::LessEqual,
+                        false => wgpu::CompareFunction::Always,
                     }),
                     stencil: Default::default(),
                     bias: Default::default(),
@@ -200,7 +211,8 @@ impl Renderer {
         Renderer {
             sky: pipeline("sky", &[], false, false),
             clay: pipeline("clay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
-            line: pipeline("line", &[Some(line_layout)], true, true),
+            line: pipeline("line", &[Some(line_layout.clone())], true, true),
+            behind: pipeline("behind", &[Some(line_layout)], true, true),
             edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
             overlay: pipeline("overlay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             frame,
@@ -426,6 +438,10 @@ impl Renderer {
             pass.set_pipeline(&self.line);
             pass.set_vertex_buffer(0, self.line_ends.slice(..));
             pass.draw(0..ends, 0..1);
+            if scene.lines.iter().any(|end| end.through > 0.0) {
+                pass.set_pipeline(&self.behind);
+                pass.draw(0..ends, 0..1);
+            }
         }
     }
 }

@@ -129,6 +129,13 @@ impl WindowState {
                     self.ui_state.say(e, true);
                 }
             }
+            UiRequest::SampleColour(at) => self.sample_colour(at, state, wiring),
+            UiRequest::SaveBrush { name, replace } => {
+                if let Some(folder) = wiring.brushes.clone() {
+                    let (commands, shown) = (wiring.commands.clone(), wiring.published.clone());
+                    self.tasks.save_brush((folder, name, replace), shown, commands);
+                }
+            }
             UiRequest::Do(Action::OpenMesh) => {
                 self.tasks.open_dialog(FilePurpose::Open, wiring.clock.clone());
             }

@@ -120,7 +120,7 @@ fn outline(lines: &mut Vec<LineEnd>, state: &Published, at: &ObjectTransform) {
     for i in 0..8u32 {
         for bit in (0..3).filter(|bit| i >> bit & 1 == 0) {
             let ends = [corner(i), corner(i | 1 << bit)];
-            lines.extend(ends.map(|p| LineEnd { place: p.to_array(), colour: BOX }));
+            lines.extend(ends.map(|p| LineEnd::new(p, BOX)));
         }
     }
 }

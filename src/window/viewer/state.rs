@@ -87,6 +87,8 @@ pub(super) struct WindowState {
     /// The revision and limit that a thickness map was last asked for.
     pub(super) asked_map: Option<(ClayState, f32, ObjectTransform)>,
     pub(super) devices: Vec<String>,
+    /// The lists of own brushes and pictures as they were shown, by their addresses.
+    pub(super) shown_brushes: [usize; 2],
     /// When the devices were listed last.
     pub(super) listed_us: u64,
     pub(super) uploaded: u64,
@@ -197,6 +199,7 @@ impl WindowState {
             let path = path.display().to_string();
             ui_state.say(tr!("language-unreadable", path = path, error = error.as_str()), true);
         }
+        ui_state.brush_panel.saves = wiring.brushes.is_some();
         ui_state.walls.presets.clone_from(&wiring.thickness_presets);
         let samples = gpu.samples(ui_state.prefs.smooth_edges);
         let renderer = Renderer::new(&gpu, clay_format, samples);
@@ -254,6 +257,7 @@ impl WindowState {
             values: None,
             asked_map: None,
             devices: Vec::new(),
+            shown_brushes: [0; 2],
             listed_us: 0,
             uploaded: 0,
             figures: FrameFigures::default(),

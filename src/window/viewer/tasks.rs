@@ -118,7 +118,7 @@ fn read_and_build(
 
 #[derive(Debug)]
 pub struct Tasks {
-    say: cc::Sender<TaskReport>,
+    pub(super) say: cc::Sender<TaskReport>,
     pub done: cc::Receiver<TaskReport>,
     thickness: Option<LatestWins<ThicknessRequest>>,
     dialog: Arc<AtomicBool>,

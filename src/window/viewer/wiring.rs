@@ -29,6 +29,8 @@ pub struct Wiring {
     pub translations: Translations,
     /// What each brush begins with.
     pub presets: Presets,
+    /// Where a person's own brushes are kept; `None`: nowhere.
+    pub brushes: Option<PathBuf>,
     /// Limits of wall thickness by process and material, for the panel of walls.
     pub thickness_presets: Vec<Preset>,
     pub clock: Clock,

@@ -373,21 +373,27 @@ fn layer_and_clay_strips_leave_a_flat_top() {
 fn neither_the_rate_of_reports_nor_the_spacing_changes_the_surface() {
     use BrushKind::{Crease, MultiplaneScrape, Texture, Trim};
     for kind in RAISING.into_iter().chain([Crease, Texture, Trim, MultiplaneScrape]) {
-        let trial = Trial { across: 30, ..Trial::new(sculptd::presets().of(kind)) };
-        let section = trial.draw().section(1.0);
-        let height = section.iter().fold(0.0f32, |h, v| h.max(v.abs()));
-        let rates = [60, 133, 266, 1000].map(|rate| Trial { rate, ..trial });
-        let spaced = [0.03, 0.05, 0.1, 0.2].map(|spacing| {
-            let mut other = trial;
-            other.brush.spacing = spacing;
-            other
-        });
-        for (i, other) in rates.iter().chain(&spaced).enumerate() {
-            let now = other.draw().section(1.0);
-            let off = now.iter().zip(&section).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            println!("{kind}, {i}: {:.2} % off", off / height * 100.0);
-            assert!(off < 0.02 * height, "{kind}, {i}: {off} of {height}");
+        for form in [TestForm::Plane, TestForm::Arc] {
+            let trial = Trial { form, across: 30, ..Trial::new(sculptd::presets().of(kind)) };
+            any_rate_and_spacing(kind, trial);
         }
+    }
+}
+
+fn any_rate_and_spacing(kind: BrushKind, trial: Trial) {
+    let section = trial.draw().section(1.0);
+    let height = section.iter().fold(0.0f32, |h, v| h.max(v.abs()));
+    let rates = [60, 133, 266, 1000].map(|rate| Trial { rate, ..trial });
+    let spaced = [0.03, 0.05, 0.1, 0.2].map(|spacing| {
+        let mut other = trial;
+        other.brush.spacing = spacing;
+        other
+    });
+    for (i, other) in rates.iter().chain(&spaced).enumerate() {
+        let now = other.draw().section(1.0);
+        let off = now.iter().zip(&section).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        println!("{kind}, {:?}, {i}: {:.2} % off", trial.form, off / height * 100.0);
+        assert!(off < 0.02 * height, "{kind}, {:?}, {i}: {off} of {height}", trial.form);
     }
 }
 
@@ -473,12 +479,14 @@ fn nor_does_what_raises_on_relief() {
         let off = off_by_spacing(sculptd::presets().of(kind), Vec2::new(19.0, 23.0));
         assert!(off < 0.02, "{kind}: {off}");
     }
-    // Where relief bends more sharply than the brush is wide, coordinates along the surface fold,
-    // and a pattern laid by them with it.
-    for alpha in [Alpha::Waves, Alpha::Scales, Alpha::Studs, Alpha::Rope, Alpha::Cracks] {
+    // The rims of some alphas are upright, and tell of any shift of a pattern. Where relief bends
+    // still more sharply, coordinates along the surface fold, and a pattern laid by them with it.
+    for alpha in Alpha::MADE {
         let brush = BrushSettings { alpha, ..sculptd::presets().of(BrushKind::Texture) };
-        let off = off_by_spacing(brush, Vec2::new(9.0, 8.0));
-        assert!(off < 0.02, "texture of {alpha:?}: {off}");
+        for waves in [Vec2::new(9.0, 8.0), Vec2::new(19.0, 23.0)] {
+            let off = off_by_spacing(brush, waves);
+            assert!(off < 0.01, "texture of {alpha:?} on {waves}: {off}");
+        }
     }
 }
 

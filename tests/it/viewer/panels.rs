@@ -4,7 +4,7 @@ use egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
-use sculptd_clay::brush::{BrushKind, Method};
+use sculptd_clay::brush::{BrushKind, Method, Presets};
 use sculptd_daemon::Published;
 use sculptd_daemon::trim::Part;
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
@@ -30,6 +30,7 @@ pub(super) struct State {
     pub demo_runs: bool,
     pub tablet: Option<TabletKeys>,
     pub translations: &'static Translations,
+    pub presets: Presets,
 }
 
 /// The preferences of a person who has chosen English.
@@ -47,6 +48,7 @@ pub(super) fn state(tab: Tab) -> State {
         demo_runs: false,
         tablet: None,
         translations: super::translations(),
+        presets: sculptd::presets().apart(),
     }
 }
 
@@ -56,7 +58,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         state: &s.published,
         translations: s.translations,
         keys: &keys,
-        presets: sculptd::presets(),
+        presets: &s.presets,
         camera: s.published.camera,
         devices: &s.devices,
         tablet: s.tablet.clone(),

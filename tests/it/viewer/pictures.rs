@@ -8,7 +8,7 @@ use sculptd_engine::camera::Camera;
 use sculptd_window::look::{Look, MATERIALS, Map};
 use sculptd_window::viewer::pages::MapValues;
 use sculptd_window::viewer::picture::Painter;
-use sculptd_window::viewer::renderer::Scene;
+use sculptd_window::viewer::renderer::{LineEnd, Scene};
 
 use crate::clay::sphere;
 
@@ -214,6 +214,39 @@ fn an_idle_frame_of_a_million_triangles_costs_little() {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     renderer.draw(gpu, &mut encoder, &target, (64, 64), &scene);
     assert_eq!(renderer.drawn.0, 0);
+}
+
+#[test]
+fn a_line_within_the_clay_is_seen_dim_where_it_is_to_be_seen_through_it() {
+    let Some(mut painter) = painter() else { return };
+    let mut mesh = sphere(8_000);
+    let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
+    let snapshot = mesh.snapshot();
+    let mut green = |depth: f32, through: f32| {
+        // Thick enough to be met at one pixel or another.
+        let ends: Vec<LineEnd> = (0..40)
+            .flat_map(|i| [-0.3, 0.3].map(|x| Vec3::new(x, 0.004 * i as f32 - 0.08, depth)))
+            .map(|place| LineEnd { through, ..LineEnd::new(place, [0, 255, 0, 255]) })
+            .collect();
+        let scene = Scene {
+            mesh: &snapshot,
+            camera: &camera,
+            brush: None,
+            lines: &ends,
+            look: Look::default(),
+            values: None,
+            beside: Default::default(),
+        };
+        let picture = painter.paint(&scene, 160, 160).expect("a picture");
+        let greens = (70..90).map(|y| picture.get_pixel(80, y).0);
+        greens.map(|[r, g, b, _]| i32::from(g) - i32::from(r.max(b))).max().expect("rows")
+    };
+    // Before the ball, within it, and within it while nothing shows through.
+    let (before, within, hidden) = (green(1.3, 0.35), green(0.0, 0.35), green(0.0, 0.0));
+    println!("green by {before} before the clay, {within} and {hidden} within");
+    assert!(before > 200, "{before}");
+    assert!(hidden < within && within < before, "{hidden}, {within}, {before}");
+    assert!(within > hidden + 40, "{within} to {hidden}");
 }
 
 /// With `SCULPTD_LONG=1`: whole frames, waited for, while a dab changes the clay before each.

@@ -65,6 +65,7 @@ const BLENDER: &[(Action, Option<KeyCombination>)] = &[
     (Action::Brush(BrushKind::Crease), shift(Key::C)),
     (Action::Brush(BrushKind::SnakeHook), key(Key::K)),
     (Action::Brush(BrushKind::Mask), key(Key::M)),
+    (Action::SampleColour, shift(Key::X)),
     (Action::NextMaterial, None),
     (Action::Grid, None),
     (Action::Thickness, None),

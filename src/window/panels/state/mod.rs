@@ -2,6 +2,8 @@
 //! ([`UiRequest`]) and what a person has set ([`UiState`]). It knows neither wgpu nor the panels.
 
 pub mod action;
+pub mod brush_panel;
+pub mod brush_preferences;
 pub mod chooser;
 pub mod face_sets;
 pub mod files;
@@ -21,6 +23,7 @@ pub mod preferences;
 pub mod region;
 pub mod request;
 pub mod retopology;
+pub mod screen_radius;
 pub mod search;
 pub mod sizes;
 pub mod tab;
@@ -30,6 +33,8 @@ pub mod ui;
 pub mod view;
 
 pub use action::{Action, ActionEntry};
+pub use brush_panel::BrushPanel;
+pub use brush_preferences::BrushPreferences;
 pub use chooser::{FileChooser, FilePurpose, FolderEntry, FolderListing, MESH_ENDINGS};
 pub use face_sets::FaceSetPanel;
 pub use files::{FilesPage, UNITS};

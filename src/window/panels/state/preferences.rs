@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::brush_preferences::BrushPreferences;
 use super::key_map::KeySettings;
 use super::light::Reference;
 use crate::look::Look;
@@ -102,6 +103,7 @@ pub struct Preferences {
     pub matcap: String,
     pub environment: String,
     pub reference: Reference,
+    pub brushes: BrushPreferences,
     pub keys: KeySettings,
     pub recent: Vec<PathBuf>,
     /// Views to come back to.
@@ -123,6 +125,7 @@ impl Default for Preferences {
             matcap: String::new(),
             environment: String::new(),
             reference: Reference::default(),
+            brushes: BrushPreferences::default(),
             keys: KeySettings::default(),
             recent: Vec::new(),
             kept_views: Vec::new(),
@@ -139,6 +142,7 @@ impl Preferences {
     pub fn read(text: &str) -> Result<Preferences, String> {
         let mut p: Preferences = toml::from_str(text).map_err(|e| e.to_string())?;
         p.scale = if p.scale.is_finite() { p.scale.clamp(SCALE.0, SCALE.1) } else { 1.0 };
+        p.brushes.bound();
         p.recent.truncate(RECENT);
         p.kept_views.retain(Camera::is_sane);
         p.kept_views.truncate(VIEWS);
@@ -160,6 +164,9 @@ mod tests {
     fn what_was_kept_comes_back_and_nonsense_is_as_at_first() {
         let mut p = Preferences { scale: 1.4, light: true, ..Default::default() };
         p.hints.turned = true;
+        p.brushes.mark("clay");
+        p.brushes.keep([250, 120, 30, 255]);
+        p.brushes.radius_in_pixels = true;
         for i in 0..12 {
             p.used(format!("/a/{i}.stl").into());
         }

@@ -75,6 +75,13 @@ pub enum UiRequest {
     TabletListen(bool),
     /// What a control of a tablet does; `None`: as usual.
     TabletBinding(Control, Option<Binding>),
+    /// The brush in hand takes the colour of the clay at this place of the window, points.
+    SampleColour(egui::Pos2),
+    /// The brush in hand becomes one of the person's own.
+    SaveBrush {
+        name: String,
+        replace: bool,
+    },
     /// For the window: dialogs and pictures.
     Do(Action),
 }

@@ -1,5 +1,6 @@
 //! What a person has set in the window. Nothing of it belongs to the world.
 
+use super::brush_panel::BrushPanel;
 use super::chooser::FileChooser;
 use super::face_sets::FaceSetPanel;
 use super::files::FilesPage;
@@ -35,6 +36,7 @@ pub struct UiState {
     pub search: Option<SearchBox>,
     pub radial: Option<egui::Pos2>,
     pub modal: Option<Modal>,
+    pub brush_panel: BrushPanel,
     pub keys: KeysPage,
     pub tablet_keys: TabletKeysPage,
     pub lesson: LessonHand,

@@ -42,6 +42,11 @@ pub struct View<'a> {
 }
 
 impl View<'_> {
+    /// The keys of two actions, as a tooltip has them.
+    pub fn both(&self, first: Action, second: Action) -> String {
+        tr!("both-keys", first = self.keys.text(first), second = self.keys.text(second))
+    }
+
     /// The name of an action, and its keys in brackets: for a tooltip.
     pub fn tip(&self, action: Action) -> String {
         let name = action.title();

@@ -1,0 +1,358 @@
+//! The results of one pair of operands: with one tolerance, with others, of operands that cross
+//! themselves, and by the global engine.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::arrange::{Arrangement, FaceState};
+use super::box_tree::Span;
+use super::{
+    BooleanError, BooleanOptions, BooleanReport, BooleanSolid, NAMES, Operation, Precision,
+    ResultFaces, attributes, common, emit, global, one_surface, simplify, solve, verify,
+};
+use crate::PolyMesh;
+use crate::job::Job;
+
+/// What is asked for, once the operands are known to be good.
+pub(super) struct BooleanTask<'a, N> {
+    pub operands: [&'a PolyMesh; 2],
+    pub volumes: [f64; 2],
+    pub operations: &'a [Operation],
+    pub options: &'a BooleanOptions,
+    /// The tolerance to begin with.
+    pub wanted: f64,
+    /// The least tolerance: what rounding of computed points needs.
+    pub floor: f64,
+    pub job: &'a Job,
+    pub now: &'a N,
+}
+
+impl<N: Fn() -> f64> BooleanTask<'_, N> {
+    /// The results with the first of the tolerances, in units of the wanted one, that gives some.
+    /// The inner error says why the first one does not.
+    pub fn within(
+        &self,
+        factors: &[f64],
+        precision: Precision,
+        report: &mut BooleanReport,
+    ) -> Result<Result<Vec<BooleanSolid>, String>, BooleanError> {
+        let mut why = String::new();
+        for factor in factors {
+            let eps = (self.wanted * factor).max(self.floor);
+            let solids = match self.attempt(eps, report)? {
+                Ok(solids) => solids,
+                Err(reason) => {
+                    if why.is_empty() {
+                        why = reason;
+                    }
+                    continue;
+                }
+            };
+            report.tolerance = eps;
+            let contact = report.contact;
+            let decided = contact.farthest > 8.0 * self.floor;
+            report.depends_on_tolerance = decided || contact.near_misses > 0;
+            if decided {
+                report.warnings.push(format!(
+                    "{} places up to {:.1e} apart were taken as in contact (tolerance {eps:.1e}, \
+                     coordinates in {}); a smaller tolerance may give another result",
+                    contact.places,
+                    contact.farthest,
+                    precision.name()
+                ));
+            }
+            if contact.near_misses > 0 {
+                report.warnings.push(format!(
+                    "{} places are apart by one to four times the tolerance of {eps:.1e}; a \
+                     larger tolerance may give another result",
+                    contact.near_misses
+                ));
+            }
+            return Ok(Ok(solids));
+        }
+        Ok(Err(why))
+    }
+
+    /// The results where each operand that crosses itself is the solid of all places that it goes
+    /// around; none where that is not found, or gives no result.
+    pub fn as_solids(
+        &self,
+        crossing: [bool; 2],
+        precision: Precision,
+        report: &mut BooleanReport,
+    ) -> Result<Option<Vec<BooleanSolid>>, BooleanError> {
+        let start = (self.now)();
+        let mut solved = [None, None];
+        for s in (0..2).filter(|&s| crossing[s]) {
+            let Some(made) = solve::arranged(self.operands[s], self.job)? else { return Ok(None) };
+            solved[s] = Some(made);
+        }
+        report.phases.push(("solve", (self.now)() - start));
+        let mesh = |s: usize| solved[s].as_ref().map_or(self.operands[s], |made| &made.0);
+        let operands = [mesh(0), mesh(1)];
+        let volume = |s: usize| match &solved[s] {
+            Some(made) => emit::measure(&made.0).0,
+            None => self.volumes[s],
+        };
+        let task = BooleanTask { operands, volumes: [volume(0), volume(1)], ..*self };
+        let mut made = BooleanReport { precision: report.precision, ..BooleanReport::default() };
+        let Ok(mut solids) = task.within(&[1.0, 0.125, 16.0], precision, &mut made)? else {
+            return Ok(None);
+        };
+        for solid in &mut solids {
+            for origin in &mut solid.origins {
+                if let Some((_, from)) = &solved[origin.operand as usize] {
+                    origin.face = from[origin.face as usize].face;
+                }
+            }
+        }
+        for s in (0..2).filter(|&s| crossing[s]) {
+            report.warnings.push(format!(
+                "{} crosses itself: it was taken as the solid of all places that it goes around",
+                NAMES[s]
+            ));
+        }
+        report.phases.append(&mut made.phases);
+        report.warnings.append(&mut made.warnings);
+        let (phases, warnings) = (report.phases.split_off(0), report.warnings.split_off(0));
+        *report = BooleanReport { phases, warnings, ..made };
+        Ok(Some(solids))
+    }
+
+    /// The four results by the global engine, held against each other as the others are.
+    pub fn globally(&self, report: &mut BooleanReport) -> Result<Vec<BooleanSolid>, BooleanError> {
+        let BooleanTask { operands, volumes, operations, options, floor, job, now, .. } = *self;
+        let start = now();
+        let engine =
+            global::GlobalEngine::new(operands, floor, job)?.map_err(BooleanError::Inconsistent)?;
+        let mut solids = Vec::new();
+        // Union and intersection too where they were not asked for: the volumes are to add up.
+        let needed = |o: &Operation| {
+            operations.contains(o) || matches!(o, Operation::Union | Operation::Intersection)
+        };
+        for operation in Operation::ALL.into_iter().filter(needed) {
+            let triangles = options.faces.triangles(operands);
+            let (mut mesh, origins, facts) =
+                engine.run(operation, triangles, job)?.map_err(BooleanError::Inconsistent)?;
+            if !facts.closed {
+                return Err(BooleanError::Inconsistent(format!(
+                    "the {} is not closed",
+                    operation.name()
+                )));
+            }
+            attributes::carry(&mut mesh, &origins, operands);
+            solids.push(BooleanSolid { operation, mesh, origins, facts });
+        }
+        report.phases.push(("global", now() - start));
+        let start = now();
+        let wrong = match doubt(&solids, volumes, 8.0 * floor, &operands[0].positions, report) {
+            // That engine takes places nearer than its own precision of 1e-12 as one.
+            None => verify::results(operands, &solids, 512.0 * floor, job)?,
+            why => why,
+        };
+        report.phases.push(("verify", now() - start));
+        if let Some(why) = wrong {
+            return Err(BooleanError::Inconsistent(why));
+        }
+        let asked = |o: &Operation| solids.iter().position(|s| s.operation == *o);
+        let order: Vec<usize> = operations.iter().filter_map(asked).collect();
+        Ok(order.into_iter().map(|i| solids[i].clone()).collect())
+    }
+
+    /// With one tolerance. The inner error says why the arrangement is not consistent.
+    fn attempt(
+        &self,
+        eps: f64,
+        report: &mut BooleanReport,
+    ) -> Result<Result<Vec<BooleanSolid>, String>, BooleanError> {
+        let BooleanTask { operands, volumes, operations, options, floor, job, now, .. } = *self;
+        let mut clock = now();
+        let mut lap = |name| {
+            let t = now();
+            report.phases.push((name, t - clock));
+            clock = t;
+        };
+        let mut common = common::common(operands, eps, job, &mut lap)?;
+        if common.same_surface {
+            let solids = one_surface::results(
+                operands[0],
+                operations,
+                options.faces.triangles(operands),
+                job,
+            )?;
+            if let Some(solids) = solids {
+                lap("emit");
+                report.contact = common.points.contact;
+                let slack = floor.max(8.0 * report.contact.farthest);
+                let why = doubt(&solids, volumes, slack, &common.points.at, report);
+                return Ok(why.map_or(Ok(solids), Err));
+            }
+            common.pair_again(job)?;
+        }
+        let a = Arrangement::of(common, eps, floor, None, job, &mut lap)?;
+        if let Some(why) = &a.doubt {
+            return Ok(Err(why.clone()));
+        }
+        let (mut solids, mut thin) = (Vec::new(), Vec::new());
+        for &operation in operations {
+            job.check()?;
+            let faces = operands.iter().map(|m| m.face_count()).sum();
+            let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
+            mesh.face_starts.reserve(faces);
+            mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
+            let mut cut: Vec<simplify::CutFace> = Vec::new();
+            let triangles = options.faces.triangles(operands);
+            a.faces(operation, options.keep_contact, job, |origin, corners, state| {
+                match options.faces {
+                    _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
+                        mesh.push_face(corners);
+                        origins.push(origin);
+                    }
+                    ResultFaces::ConvexPolygons => {
+                        for ring in simplify::convex(corners, &a.points.at) {
+                            mesh.push_face(&ring);
+                            origins.push(origin);
+                        }
+                    }
+                    _ if triangles => {
+                        cut.push(simplify::CutFace { origin, corners: corners.to_vec() })
+                    }
+                    _ => {
+                        mesh.push_face(corners);
+                        origins.push(origin);
+                    }
+                }
+            });
+            job.check()?;
+            let flat = 4.0 * floor.max(a.points.contact.farthest);
+            let group = |o| simplify::group_of(operands, o);
+            for (origin, t) in simplify::retriangulated(&cut, a.own, &a.points.at, flat, group) {
+                mesh.push_face(&t);
+                origins.push(origin);
+            }
+            job.check()?;
+            let at_the_cut = a.on_both();
+            // Kept contact is such a sheet, and wanted.
+            if !options.keep_contact {
+                emit::drop_folded_faces(&mut mesh, &mut origins, at_the_cut);
+            }
+            let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
+            let contact = a.points.contact.farthest;
+            let sheets = options.keep_contact && operation == Operation::Intersection;
+            if !sheets && facts.closed && facts.components > 1 && contact > 8.0 * floor {
+                let gone = emit::drop_thin_shells(&mut mesh, &mut origins, 2.0 * contact);
+                if gone > 0 {
+                    facts = emit::facts(&mesh, job)?;
+                    thin.push(format!(
+                        "{gone} shells of the {} that are thinner than the contact were left out",
+                        operation.name()
+                    ));
+                }
+            }
+            if !facts.closed {
+                return Ok(Err(format!("the {} is not closed", operation.name())));
+            }
+            attributes::carry(&mut mesh, &origins, operands);
+            solids.push(BooleanSolid { operation, mesh, origins, facts });
+        }
+        lap("emit");
+        // Surfaces moved by rounding, and by as much as places in contact were apart.
+        let slack = floor.max(8.0 * a.points.contact.farthest);
+        if let Some(why) = doubt(&solids, volumes, slack, &a.points.at, report) {
+            return Ok(Err(why));
+        }
+        report.contact = a.points.contact;
+        report.warnings.extend(thin);
+        report.cut = a.curve();
+        job.progress(1.0);
+        Ok(Ok(solids))
+    }
+}
+
+/// What the volumes say against the results; `eps`: how far a surface may have moved.
+fn doubt(
+    solids: &[BooleanSolid],
+    [a, b]: [f64; 2],
+    eps: f64,
+    at: &[DVec3],
+    report: &mut BooleanReport,
+) -> Option<String> {
+    let of = |o| solids.iter().find(|s| s.operation == o).map(|s| s.facts.volume);
+    let area: f64 = solids.iter().map(|s| s.facts.area).sum();
+    let size = at
+        .par_chunks(1 << 15)
+        .map(|c| Span::of(c.iter().copied()))
+        .reduce(|| Span::EMPTY, Span::join);
+    let slack = (a + b) * 5e-13 + area * eps + (size.hi - size.lo).length().powi(3) * 1e-16;
+    report.volume_bound = slack;
+    let (u, i) = (of(Operation::Union), of(Operation::Intersection));
+    let (d, r) = (of(Operation::Difference), of(Operation::ReverseDifference));
+    let sums = [
+        (u.zip(i).map(|(u, i)| u + i - a - b), "union and intersection"),
+        (d.zip(i).map(|(d, i)| d + i - a), "difference and intersection"),
+        (r.zip(i).map(|(r, i)| r + i - b), "reverse difference and intersection"),
+    ];
+    for (off, what) in sums {
+        if off.is_some_and(|x| x.abs() > slack) {
+            return Some(format!(
+                "the volumes of {what} do not add up, by {:.3e}",
+                off.unwrap_or(0.0)
+            ));
+        }
+    }
+    solids
+        .iter()
+        .find(|s| s.facts.volume < -slack)
+        .map(|s| format!("the {} has the volume {:.3e}", s.operation.name(), s.facts.volume))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::solve;
+    use crate::shapes::{cuboid, icosphere};
+
+    #[test]
+    fn an_operand_that_crosses_itself_is_the_solid_that_it_goes_around() {
+        let mut balls = icosphere(1.0, 6).to_poly();
+        let other = icosphere(1.2, 5).to_poly();
+        let first = balls.positions.len() as u32;
+        balls.positions.extend(other.positions.iter().map(|p| *p + DVec3::new(0.7, 0.4, 0.1)));
+        other.faces().for_each(|f| balls.push_face(&[f[0] + first, f[1] + first, f[2] + first]));
+        let block = cuboid(DVec3::new(-0.5, 0.1, -3.0), DVec3::new(0.7, 3.0, 3.0));
+        let job = Job::default();
+        let solved = solve(&balls, &job).expect("a solid");
+        let volume = |m: &PolyMesh| emit::measure(m).0;
+        let floor = 4.0 * 2f64.powi(-49);
+        let task = BooleanTask {
+            operands: [&balls, &block],
+            volumes: [volume(&balls), volume(&block)],
+            operations: &Operation::ALL,
+            options: &BooleanOptions::default(),
+            wanted: floor,
+            floor,
+            job: &job,
+            now: &|| 0.0,
+        };
+        let mut report = BooleanReport::default();
+        let made = task.as_solids([true, false], Precision::Double, &mut report);
+        let made = made.expect("runs").expect("results");
+        assert!(report.warnings.iter().any(|w| w.starts_with("A crosses itself")));
+        let of = |o| made.iter().find(|s| s.operation == o).map_or(f64::NAN, |s| s.facts.volume);
+        let sum = of(Operation::Union) + of(Operation::Intersection);
+        // Their own volume counts what both have twice.
+        assert!(volume(&balls) > volume(&solved) + 0.1);
+        assert!((sum - volume(&solved) - volume(&block)).abs() < 1e-11, "{sum}");
+        for solid in &made {
+            assert!(solid.facts.closed);
+            for (face, origin) in solid.mesh.faces().zip(&solid.origins) {
+                let source = [&balls, &block][origin.operand as usize];
+                let from = source.face(origin.face as usize);
+                let [a, b, c] = [0, 1, 2].map(|k| source.positions[from[k] as usize]);
+                let normal = (b - a).cross(c - a).normalize();
+                let off = |v: &u32| (solid.mesh.positions[*v as usize] - a).dot(normal).abs();
+                assert!(face.iter().map(off).fold(0.0, f64::max) < 1e-13);
+            }
+        }
+    }
+}
