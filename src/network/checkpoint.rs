@@ -10,6 +10,7 @@ use std::sync::Arc;
 use flate2::Compression;
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use sculptd_clay::brush::Picture;
@@ -22,9 +23,11 @@ use sculptd_geometry::TriMesh;
 
 use crate::wire::bytes::{ByteReader, put_bytes, put_number};
 
-/// Bytes that a checkpoint may become: a page's, and all of it.
-const MAX_PAGE: usize = 16 << 20;
-const MAX_ALL: u64 = 64 << 30;
+/// Bytes that a page may become, and the head.
+const MAX_PAGE: u64 = 16 << 20;
+const MAX_HEAD: u64 = 1 << 30;
+/// Pages of a block.
+const BLOCK: usize = 32;
 
 /// The bytes are not those of a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -66,7 +69,8 @@ impl Captured {
         Some(Captured { saved, scene, active, options })
     }
 
-    /// As bytes: the head, then the pages of each object in order, all of it deflated.
+    /// As bytes: the head, then the pages of each object in order, some to a block; each block is
+    /// deflated by itself, on all cores.
     pub fn to_bytes(&self) -> Vec<u8> {
         let each = || self.scene.each(&self.active).map(|(_, clay)| clay);
         let objects = each().map(|clay| ObjectHead {
@@ -83,21 +87,23 @@ impl Captured {
             options: (o.dab_budget, o.undo_bytes, o.hands),
             objects: objects.collect(),
         };
-        let mut out = DeflateEncoder::new(Vec::new(), Compression::fast());
-        let mut part = Vec::new();
-        put_bytes(&mut part, &postcard::to_stdvec(&head).unwrap_or_default());
-        // Writing to memory cannot fail.
-        let _ = out.write_all(&part);
+        let mut out = Vec::new();
+        put_bytes(&mut out, &deflated(&postcard::to_stdvec(&head).unwrap_or_default()));
         for clay in each() {
-            for page in clay.pages() {
-                part.clear();
-                put_number(&mut part, page.revision());
-                put_bytes(&mut part, &page.topology().to_bytes());
-                put_bytes(&mut part, &page.to_bytes());
-                let _ = out.write_all(&part);
-            }
+            let pages: Vec<&Arc<Page>> = clay.pages().collect();
+            let block = |some: &[&Arc<Page>]| {
+                let mut part = Vec::new();
+                for page in some {
+                    put_number(&mut part, page.revision());
+                    put_bytes(&mut part, &page.topology().to_bytes());
+                    put_bytes(&mut part, &page.to_bytes());
+                }
+                deflated(&part)
+            };
+            let blocks: Vec<Vec<u8>> = pages.par_chunks(BLOCK).map(block).collect();
+            blocks.iter().for_each(|b| put_bytes(&mut out, b));
         }
-        out.finish().unwrap_or_default()
+        out
     }
 
     /// The world again.
@@ -105,8 +111,8 @@ impl Captured {
     /// # Errors
     /// [`BadCheckpoint`]
     pub fn restore(bytes: &[u8], workers: Workers) -> Result<World, BadCheckpoint> {
-        let mut from = DeflateDecoder::new(bytes).take(MAX_ALL);
-        let head = read_bytes(&mut from, MAX_PAGE * 64)?;
+        let mut from = ByteReader::new(bytes);
+        let head = inflated(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?, MAX_HEAD)?;
         let head: Head = postcard::from_bytes(&head).map_err(|_| BadCheckpoint)?;
         let (dab_budget, undo_bytes, hands) = head.options;
         let mut saved = Saved {
@@ -130,15 +136,17 @@ impl Captured {
         }
         let mut clays = Vec::new();
         for (i, (rest, object)) in rests.iter().zip(head.objects).enumerate() {
-            let mut pages = Vec::new();
-            for _ in 0..object.pages {
-                let revision = read_number(&mut from)?;
-                let topology = PageTopology::from_bytes(&read_bytes(&mut from, MAX_PAGE)?);
-                let topology = Arc::new(topology.map_err(|_| BadCheckpoint)?);
-                let bytes = read_bytes(&mut from, MAX_PAGE)?;
-                let page = Page::from_bytes(&bytes, topology, revision);
-                pages.push(Arc::new(page.map_err(|_| BadCheckpoint)?));
+            let blocks = (object.pages as usize).div_ceil(BLOCK);
+            let mut parts = Vec::new();
+            for _ in 0..blocks {
+                parts.push(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?);
             }
+            let read = |(i, part): (usize, &&[u8])| {
+                pages_of(part, BLOCK.min(object.pages as usize - i * BLOCK))
+            };
+            let pages: Result<Vec<_>, BadCheckpoint> =
+                parts.par_iter().enumerate().map(read).collect();
+            let pages = pages?.into_iter().flatten().collect();
             let mut clay = Clay::of_stored(pages, rest).map_err(|_| BadCheckpoint)?;
             clay.set_empty(rest.empty.clone());
             match i == active {
@@ -152,25 +160,32 @@ impl Captured {
     }
 }
 
-fn read_number(from: &mut impl Read) -> Result<u64, BadCheckpoint> {
-    let mut bytes = Vec::with_capacity(10);
-    loop {
-        let mut byte = [0];
-        from.read_exact(&mut byte).map_err(|_| BadCheckpoint)?;
-        bytes.push(byte[0]);
-        if byte[0] & 0x80 == 0 || bytes.len() == 10 {
-            return ByteReader::new(&bytes).number().map_err(|_| BadCheckpoint);
-        }
+/// The pages of one block.
+fn pages_of(block: &[u8], count: usize) -> Result<Vec<Arc<Page>>, BadCheckpoint> {
+    let bytes = inflated(block, MAX_PAGE * BLOCK as u64)?;
+    let mut from = ByteReader::new(&bytes);
+    let mut pages = Vec::with_capacity(count);
+    for _ in 0..count {
+        let revision = from.number().map_err(|_| BadCheckpoint)?;
+        let topology = PageTopology::from_bytes(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?);
+        let topology = Arc::new(topology.map_err(|_| BadCheckpoint)?);
+        let bytes = from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?;
+        let page = Page::from_bytes(bytes, topology, revision);
+        pages.push(Arc::new(page.map_err(|_| BadCheckpoint)?));
     }
+    Ok(pages)
 }
 
-fn read_bytes(from: &mut impl Read, most: usize) -> Result<Vec<u8>, BadCheckpoint> {
-    let length = read_number(from)?;
-    if length > most as u64 {
-        return Err(BadCheckpoint);
-    }
-    // What is told may be more than there is: memory grows with what comes.
-    let mut bytes = Vec::new();
-    let read = from.take(length).read_to_end(&mut bytes).map_err(|_| BadCheckpoint)?;
-    if read as u64 == length { Ok(bytes) } else { Err(BadCheckpoint) }
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut out = DeflateEncoder::new(Vec::new(), Compression::fast());
+    // Writing to memory cannot fail.
+    let _ = out.write_all(bytes);
+    out.finish().unwrap_or_default()
+}
+
+/// Memory grows with what comes, not with what is told.
+fn inflated(bytes: &[u8], most: u64) -> Result<Vec<u8>, BadCheckpoint> {
+    let mut out = Vec::new();
+    let read = DeflateDecoder::new(bytes).take(most).read_to_end(&mut out);
+    read.map(|_| out).map_err(|_| BadCheckpoint)
 }

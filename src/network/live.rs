@@ -15,7 +15,7 @@ use crossbeam_channel as cc;
 
 use crate::checkpoint::Captured;
 use crate::core::Event;
-use crate::executor::{Asked, Executor, HashView};
+use crate::executor::{Asked, Executor, HashView, KnownHashes};
 use crate::local_echo::LocalEcho;
 use crate::policy;
 use crate::station::Station;
@@ -533,10 +533,11 @@ impl Running {
 
 /// The worker's thread.
 fn work_on(jobs: &cc::Receiver<Job>, done: &cc::Sender<Done>, workers: usize) {
+    let mut known = KnownHashes::default();
     for job in jobs {
         let finished = match job {
             Job::Hash(view) => {
-                let hash = view.hash();
+                let hash = view.hash(&mut known);
                 Done::Hash(view, hash)
             }
             Job::Checkpoint(index, captured) => Done::Checkpoint(index, captured.to_bytes()),

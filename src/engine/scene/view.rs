@@ -66,7 +66,16 @@ impl SceneView {
 
     /// One number for the state of all objects; costs as much as they are large.
     pub fn hash(&self, active: &Snapshot) -> u64 {
-        let all = self.each(active).map(|(o, clay)| (&o.settings, clay.hash()));
+        self.hash_with(active, |_, clay| clay.hash())
+    }
+
+    /// The same with another number for each object's clay.
+    pub fn hash_with(
+        &self,
+        active: &Snapshot,
+        mut of: impl FnMut(&ObjectView, &Snapshot) -> u64,
+    ) -> u64 {
+        let all = self.each(active).map(|(o, clay)| (&o.settings, of(o, clay)));
         combined_hash(all, self.active)
     }
 }

@@ -6,7 +6,7 @@ use super::frame::{Arrival, Batch, MAX_NAME, PersonId, Role};
 use super::frame_codec::{put_batches, take_batches};
 
 /// The version of the messages; a host refuses others by name.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 /// Bytes of one chunk of a checkpoint.
 pub const CHUNK: usize = 32 << 10;
 /// Bytes of a reason.

@@ -14,7 +14,7 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 use sculptd_network::checkpoint::Captured;
 use sculptd_network::core::{Event, To};
-use sculptd_network::executor::Executor;
+use sculptd_network::executor::{Executor, KnownHashes};
 use sculptd_network::keyring::{Entropy, Invitation, Keyring, fresh};
 use sculptd_network::local_echo::LocalEcho;
 use sculptd_network::station::{Identity, Station};
@@ -68,6 +68,7 @@ pub struct Replica {
     pub station: Station,
     pub world: Option<World>,
     pub executor: Executor,
+    pub known: KnownHashes,
     /// Shows the own strokes before they are ordered; `None`: without.
     pub echo: Option<LocalEcho>,
     /// Ticks with a tip down in which the world that was shown moved, and in which it did not.
@@ -147,6 +148,7 @@ impl Simulation {
             station,
             world,
             executor: Executor::new(RATE, 0),
+            known: KnownHashes::default(),
             echo: None,
             shown: (0, 0),
             alone: (ball(), (0, 0)),
@@ -273,7 +275,7 @@ impl Simulation {
                     let world = replica.world.as_mut().expect("a frame comes after a checkpoint");
                     let asked = replica.executor.execute(world, &frame);
                     if let Some(view) = asked.hash {
-                        let hash = view.hash();
+                        let hash = view.hash(&mut replica.known);
                         replica.hashes.insert(frame.index, hash);
                         replica.station.own_hash(frame.index, hash);
                     }
