@@ -17,9 +17,9 @@ pub struct PageHashes {
 
 impl PageHashes {
     /// A number for positions, mask, colours, triangles, layers and face sets, page by page: equal
-    /// for clays of the same pages, as replicas of one world have them. [`Snapshot::hash`] tells the
-    /// same of clays whatever their pages. Costs as much as the pages that changed since the last
-    /// call, on all cores, and an eighth of a nanosecond for each other.
+    /// for clays of the same pages, as replicas of one world have them. [`Snapshot::hash`] tells
+    /// the same of clays whatever their pages. Costs as much as the pages that changed since the
+    /// last call, on all cores, and an eighth of a nanosecond for each other.
     pub fn hash(&mut self, clay: &Snapshot) -> u64 {
         let mut changed: Vec<(u32, &Arc<Page>)> = Vec::new();
         match &self.last {

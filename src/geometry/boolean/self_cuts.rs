@@ -127,13 +127,20 @@ impl SelfCuts {
         for (i, s) in spans.iter().enumerate() {
             for u in spans[i + 1..].iter().take_while(|u| u.0 <= s.1) {
                 if u.2 <= s.3 && s.2 <= u.3 {
-                    self.meet(t, [s.4.min(u.4), s.4.max(u.4)], &flat, points, triple, eps);
+                    self.intersect_cuts(
+                        t,
+                        [s.4.min(u.4), s.4.max(u.4)],
+                        &flat,
+                        points,
+                        triple,
+                        eps,
+                    );
                 }
             }
         }
     }
 
-    fn meet(
+    fn intersect_cuts(
         &mut self,
         t: u32,
         two: [u32; 2],
