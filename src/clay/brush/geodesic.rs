@@ -149,6 +149,7 @@ impl Geodesic {
 
     /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
     /// Says whether it was nearer.
+    #[inline(always)]
     pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {
         let mark = self.mark_mut(mesh, key);
         let nearer = distance < mark.distance;
@@ -383,6 +384,7 @@ impl Geodesic {
 }
 
 /// Calls `visit` with each neighbour of a vertex and where it is.
+#[inline(always)]
 pub fn ring<'a>(
     at: impl Fn(u32) -> &'a Arc<Page>,
     (page, v): Key,
