@@ -107,7 +107,7 @@ pub struct SavedBrush<'a> {
 /// Keeps the settings of a brush in hand as a brush of its own in `folder`.
 ///
 /// # Errors
-/// As [`write`]; and for a brush that presses a picture and is given none.
+/// As [`write()`]; and for a brush that presses a picture and is given none.
 pub fn save(
     folder: &Path,
     settings: &BrushSettings,
