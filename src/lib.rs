@@ -44,8 +44,9 @@
 //!    of a stroke on a layer allocates that layer's new offsets; a command that needs the whole
 //!    surface while layers are still being summed up finishes them in its tick, and so do a
 //!    hand's menu and commands of a shared sculpture with such an edit; and in a shared sculpture
-//!    (feature `network`) ticks allocate, and each replica builds a mesh that a command brings on
-//!    this thread.
+//!    (feature `network`) ticks allocate, each replica builds a mesh that a command brings on
+//!    this thread, and where others sculpt beside an own stroke, the world is forked for the
+//!    picture (`network::local_echo`), at most ten times a second, at a cost of its pages.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
 //!    state; only replay from the start may be refused, by name. A file is written beside and
 //!    renamed.
