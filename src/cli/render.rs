@@ -9,7 +9,7 @@ use sculptd_daemon::config::CameraConfig;
 use sculptd_daemon::startup;
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::job::Job;
-use sculptd_window::look::{Light, Look, MATERIALS};
+use sculptd_window::look::{Light, Look, MATERIALS, RAISED};
 use sculptd_window::viewer::look_files::{read_environment, read_matcap};
 use sculptd_window::viewer::picture::{Painter, write_png};
 use sculptd_window::viewer::renderer::Scene;
@@ -40,9 +40,15 @@ pub struct RenderArgs {
     /// Light from the room that comes with the program.
     #[arg(long, conflicts_with_all = ["matcap", "environment"])]
     pub room: bool,
-    /// How far the surroundings are turned about the upright axis, degrees.
+    /// How far the main light, or the surroundings, are turned about the upright axis, degrees.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub turned: f32,
+    /// How high the main light stands over the horizon, degrees.
+    #[arg(long, default_value_t = RAISED, allow_negative_numbers = true)]
+    pub raised: f32,
+    /// How much of the main light shadows take, 0 casts none to 1.
+    #[arg(long, default_value_t = 0.0)]
+    pub shadow: f32,
     /// One tone a triangle.
     #[arg(long)]
     pub flat: bool,
@@ -138,6 +144,8 @@ pub fn run(args: &RenderArgs, as_json: bool) -> Outcome {
         material: MATERIALS.iter().position(|m| m.short_name() == args.material).unwrap_or(0),
         light,
         turned: args.turned,
+        raised: args.raised,
+        shadow: args.shadow,
         flat: args.flat,
         cavity: args.cavity,
         shade: args.shade,

@@ -151,8 +151,13 @@ pub struct Look {
     /// Index into [`MATERIALS`]; beyond them, the last.
     pub material: usize,
     pub light: Light,
-    /// How far what is around is turned about the eye's upright axis, degrees.
+    /// How far the studio's main light, or what is around, is turned about the eye's upright axis,
+    /// degrees.
     pub turned: f32,
+    /// How high the studio's main light stands over the eye's horizon, degrees.
+    pub raised: f32,
+    /// How much of the studio's main light a shadow takes: 0 casts none, 1 takes all.
+    pub shadow: f32,
     /// How bright what is around is; 1 is as bright as the studio.
     pub bright: f32,
     /// One tone a triangle.
@@ -181,6 +186,8 @@ impl Default for Look {
             material: 0,
             light: Light::Studio,
             turned: 0.0,
+            raised: RAISED,
+            shadow: 0.0,
             bright: 1.0,
             flat: false,
             cavity: 1.0,
@@ -195,7 +202,27 @@ impl Default for Look {
     }
 }
 
+/// Where the studio's main light stands when nobody moved it: over the left shoulder. Degrees over
+/// the eye's horizon, and radians about its upright axis from the eye on.
+pub const RAISED: f32 = 40.3;
+const AROUND: f32 = -0.628;
+
 impl Look {
+    /// Towards the studio's main light, in the eye's own frame (right, up, backward); one long.
+    pub fn main_light(&self) -> [f32; 3] {
+        let sane = |degrees: f32, or: f32| if degrees.is_finite() { degrees } else { or };
+        let raised = sane(self.raised, RAISED).clamp(-90.0, 90.0).to_radians();
+        let around = AROUND - sane(self.turned, 0.0).to_radians();
+        [raised.cos() * around.sin(), raised.sin(), raised.cos() * around.cos()]
+    }
+
+    /// How much of the main light shadows take as it is: none where something else lights the clay
+    /// or a map is read.
+    pub fn cast(&self) -> f32 {
+        let studio = self.light == Light::Studio && self.map == Map::None;
+        if studio && self.shadow.is_finite() { self.shadow.clamp(0.0, 1.0) } else { 0.0 }
+    }
+
     pub fn material(&self) -> &'static Material {
         &MATERIALS[self.material.min(MATERIALS.len() - 1)]
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::stage::{Stage, long};
 
 /// The sessions of the person's data folder, the first in name first.
-fn kept(s: &Stage) -> Vec<PathBuf> {
+pub fn kept(s: &Stage) -> Vec<PathBuf> {
     let folder = s.dir.path().join("data/sculptd/sessions");
     let found = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
     let mut all: Vec<PathBuf> =

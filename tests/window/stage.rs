@@ -343,7 +343,7 @@ pub fn differs(a: &RgbaImage, b: &RgbaImage) -> f64 {
     sum as f64 / a.len() as f64
 }
 
-/// DistanceTarget the small picture that is kept.
+/// Compares a picture, made small, with the one that is kept.
 pub fn as_kept(name: &str, now: &RgbaImage) {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/window/{name}.png"));

@@ -62,6 +62,9 @@ pub fn act(
             }
         }
         Action::Facets => ui_state.look.flat = !ui_state.look.flat,
+        Action::Shadows => {
+            ui_state.look.shadow = if ui_state.look.shadow > 0.0 { 0.0 } else { 0.7 }
+        }
         Action::Ssao => ui_state.look.shade = if ui_state.look.shade > 0.0 { 0.0 } else { 1.0 },
         Action::Wireframe => ui_state.look.wireframe = !ui_state.look.wireframe,
         Action::Grid => ui_state.look.grid = !ui_state.look.grid,

@@ -2,7 +2,7 @@
 //! surroundings, and a reference picture.
 
 use super::rows;
-use super::state::UiState;
+use super::state::{Action, UiState, View};
 use crate::language::tr;
 use crate::look::{Light, MATERIALS};
 
@@ -74,7 +74,7 @@ fn title(light: Light, environment: &str) -> String {
 }
 
 /// Lights and surroundings.
-pub fn lights(ui: &mut egui::Ui, ui_state: &mut UiState) {
+pub fn lights(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     let UiState { look, prefs, light, .. } = ui_state;
     let now = title(look.light, &prefs.environment);
     rows::list(ui, &tr!("light-name"), now, |ui| {
@@ -90,9 +90,18 @@ pub fn lights(ui: &mut egui::Ui, ui_state: &mut UiState) {
         }
     })
     .on_hover_text(tr!("light-name.tip"));
-    if look.light.is_around() {
+    if look.light != Light::Matcap {
         let turned = egui::Slider::new(&mut look.turned, -180.0..=180.0).suffix("°");
         rows::slider(ui, turned, &tr!("light-turned"));
+    }
+    if look.light == Light::Studio {
+        let raised = egui::Slider::new(&mut look.raised, -20.0..=90.0).suffix("°");
+        rows::slider(ui, raised, &tr!("light-raised"));
+        let shadow = egui::Slider::new(&mut look.shadow, 0.0..=1.0);
+        rows::slider(ui, shadow, &tr!("light-shadow"))
+            .on_hover_text(tr!("light-shadow.tip", action = view.tip(Action::Shadows)));
+    }
+    if look.light.is_around() {
         let bright = egui::Slider::new(&mut look.bright, 0.1..=4.0).logarithmic(true);
         rows::slider(ui, bright, &tr!("light-bright"));
     }

@@ -7,7 +7,7 @@ use crate::look::Map;
 
 pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, view: &View<'_>) {
     light::materials(ui, ui_state);
-    light::lights(ui, ui_state);
+    light::lights(ui, ui_state, view);
     let look = &mut ui_state.look;
     ui.add_space(4.0);
     ui.checkbox(&mut look.flat, tr!("look-facets")).on_hover_text(view.tip(Action::Facets));

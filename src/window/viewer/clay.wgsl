@@ -36,6 +36,11 @@ struct Frame {
     light: vec4<f32>,
     // The reference picture's width and height as shares of the view, and how dense it is.
     backdrop: vec4<f32>,
+    // xyz: towards the studio's main light, in the frame of the view; w: how much of it a shadow
+    // takes.
+    main_light: vec4<f32>,
+    // From a place to that light's own picture of depths.
+    shadow: mat4x4<f32>,
     led: array<LedDab, 8>,
     // The falloff's values at even steps from the middle to the rim.
     profile: array<vec4<f32>, 3>,
@@ -49,6 +54,8 @@ struct Frame {
 @group(1) @binding(2) var glossy_around: texture_2d<f32>;
 @group(1) @binding(3) var smooth_reads: sampler;
 @group(1) @binding(4) var reference: texture_2d<f32>;
+@group(1) @binding(5) var lit_depths: texture_depth_2d;
+@group(1) @binding(6) var depth_reads: sampler_comparison;
 
 struct Corner {
     @builtin(position) clip: vec4<f32>,
@@ -149,20 +156,32 @@ fn corner(place: vec3<f32>, normal: vec4<f32>, colour: vec4<f32>, value: f32) ->
     return out;
 }
 
+// For the main light's picture of depths.
+@vertex
+fn shadow_vertex(
+    @location(0) at: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+) -> @builtin(position) vec4<f32> {
+    return frame.shadow * vec4<f32>(led(at, normal).place, 1.0);
+}
+
 fn scaled(value: f32) -> vec3<f32> {
     let at = clamp((value - frame.map.x) * frame.map.y, 0.0, 1.0) * 7.0;
     let i = min(u32(at), 6u);
     return mix(frame.scale[i].rgb, frame.scale[i + 1u].rgb, at - f32(i));
 }
 
-// Two soft lights, a rim and a sky, in the frame of the view.
-fn lit(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
-    let key = max(dot(n, normalize(vec3<f32>(-0.45, 0.65, 0.62))), 0.0);
+// Two soft lights, a rim and a sky, in the frame of the view; `reaches`: the share of the main light
+// that nothing stands in.
+fn lit(n: vec3<f32>, base: vec3<f32>, reaches: f32) -> vec3<f32> {
+    let main_light = frame.main_light.xyz;
+    let key = max(dot(n, main_light), 0.0) * reaches;
     let fill = max(dot(n, normalize(vec3<f32>(0.8, -0.1, 0.45))), 0.0);
     let sky = 0.5 + 0.5 * n.y;
     let rim = pow(1.0 - clamp(n.z, 0.0, 1.0), 3.0);
-    let half_way = normalize(normalize(vec3<f32>(-0.45, 0.65, 0.62)) + vec3<f32>(0.0, 0.0, 1.0));
-    let shine = pow(max(dot(n, half_way), 0.0), frame.finish.y) * frame.finish.x;
+    // A light straight behind the clay has no way half to the eye.
+    let half_way = normalize(main_light + vec3<f32>(0.0, 0.0, 1.001));
+    let shine = pow(max(dot(n, half_way), 0.0), frame.finish.y) * frame.finish.x * reaches;
     let warm = vec3<f32>(1.0, 0.95, 0.88) * key * 0.85;
     let cool = vec3<f32>(0.55, 0.68, 0.95) * fill * 0.28;
     let ambient = mix(vec3<f32>(0.13, 0.11, 0.11), vec3<f32>(0.26, 0.29, 0.34), sky);
@@ -185,8 +204,25 @@ fn mirrored(n: vec3<f32>, at_front: vec3<f32>) -> vec3<f32> {
     return seen * (at_front + (vec3<f32>(1.0) - at_front) * pow(1.0 - facing, 5.0));
 }
 
+// The share of the main light that reaches a place: the mean of sixteen looks into the picture of
+// depths, each of which weighs four texels. What lies beside the picture is lit.
+fn reached(place: vec3<f32>) -> f32 {
+    let at = (frame.shadow * vec4<f32>(place, 1.0)).xyz;
+    let middle = vec2<f32>(at.x, -at.y) * 0.5 + vec2<f32>(0.5);
+    if (any(middle < vec2<f32>(0.0)) || any(middle > vec2<f32>(1.0))) {
+        return 1.0;
+    }
+    let texel = 1.0 / f32(textureDimensions(lit_depths).x);
+    var sum = 0.0;
+    for (var i = 0u; i < 16u; i++) {
+        let by = vec2<f32>(f32(i % 4u), f32(i / 4u)) - vec2<f32>(1.5);
+        sum += textureSampleCompareLevel(lit_depths, depth_reads, middle + by * texel, at.z);
+    }
+    return 1.0 - frame.main_light.w * (1.0 - sum / 16.0);
+}
+
 // By what the person chose.
-fn shaded(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
+fn shaded(n: vec3<f32>, base: vec3<f32>, place: vec3<f32>) -> vec3<f32> {
     if (frame.light.x > 1.5) {
         let soft = textureSampleLevel(diffuse_around, smooth_reads, around(n), 0.0).rgb;
         let scattered = base * soft * (1.0 - frame.light.w);
@@ -198,10 +234,15 @@ fn shaded(n: vec3<f32>, base: vec3<f32>) -> vec3<f32> {
         let at = vec2<f32>(n.x, -n.y) * 0.485 + vec2<f32>(0.5);
         return textureSampleLevel(ball, smooth_reads, at, 0.0).rgb * base;
     }
-    if (frame.light.w > 0.5) {
-        return mirrored(n, base) + lit(n, base) * 0.15;
+    var reaches = 1.0;
+    // What turns away from the light is dark without a shadow.
+    if (frame.main_light.w > 0.0 && dot(n, frame.main_light.xyz) > 0.0) {
+        reaches = reached(place);
     }
-    return lit(n, base);
+    if (frame.light.w > 0.5) {
+        return mirrored(n, base) * (0.4 + 0.6 * reaches) + lit(n, base, reaches) * 0.15;
+    }
+    return lit(n, base, reaches);
 }
 
 @fragment
@@ -235,7 +276,7 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         }
         base *= 0.8;
     }
-    var colour = shaded(view, mix(base, base * 0.35, held));
+    var colour = shaded(view, mix(base, base * 0.35, held), in.place);
     colour *= 1.0 + clamp(bend * 4.0, -0.4, 0.4) * frame.finish.w;
     // The falloff inside the brush: strongest in the middle.
     if (frame.brush.w > 0.0) {
@@ -257,7 +298,7 @@ fn overlay_fragment(in: Corner) -> @location(0) vec4<f32> {
     let n = normalize(in.normal);
     let view = vec3<f32>(dot(n, frame.right.xyz), dot(n, frame.up.xyz), dot(n, frame.back.xyz));
     let edge = pow(1.0 - clamp(view.z, 0.0, 1.0), 2.0);
-    return vec4<f32>(lit(view, in.colour.rgb), mix(in.colour.a, 1.0, edge * 0.6));
+    return vec4<f32>(lit(view, in.colour.rgb, 1.0), mix(in.colour.a, 1.0, edge * 0.6));
 }
 
 struct LineCorner {

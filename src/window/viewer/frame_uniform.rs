@@ -24,6 +24,8 @@ pub(super) struct Frame {
     pub(super) high: [f32; 4],
     pub(super) light: [f32; 4],
     pub(super) backdrop: [f32; 4],
+    pub(super) main_light: [f32; 4],
+    pub(super) shadow: [[f32; 4]; 4],
     pub(super) led: ProvisionalDabs,
 }
 

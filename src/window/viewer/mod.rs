@@ -37,6 +37,7 @@ pub mod provisional;
 pub mod renderer;
 mod requests;
 mod scene_pointer;
+mod shadow;
 mod shots;
 mod snapshot_workers;
 mod ssao;

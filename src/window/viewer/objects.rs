@@ -89,8 +89,10 @@ impl Frame {
             |v: [f32; 4]| own.direction(Vec3::new(v[0], v[1], v[2])).extend(v[3]).to_array();
         let [x, y, z, radius] = self.brush;
         let place = own.point(Vec3::new(x, y, z));
+        let shadow = Mat4::from_cols_array_2d(&self.shadow) * model(transform);
         Frame {
             view_projection: (*matrix * model(transform)).to_cols_array_2d(),
+            shadow: shadow.to_cols_array_2d(),
             right: direction(self.right),
             up: direction(self.up),
             back: direction(self.back),
@@ -136,6 +138,11 @@ impl ObjectBuffers {
     pub fn new(layout: wgpu::BindGroupLayout) -> ObjectBuffers {
         let (pages, frames) = (BTreeMap::new(), Vec::new());
         ObjectBuffers { layout, pages, frames, active: 0, uploaded: 0, waiting: 0 }
+    }
+
+    /// Of the frame that each object is drawn with.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
     }
 
     /// Exchanges the renderer's own pages for those of the object that is active now.

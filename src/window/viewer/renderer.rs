@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use super::frame_uniform::{Frame, in_view};
 use super::gpu::Gpu;
@@ -11,6 +11,7 @@ use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
 use super::provisional::ProvisionalDabs;
+use super::shadow::{Shadow, light_matrix};
 use super::surroundings::Surroundings;
 use crate::look::{Light, Look, Map, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
@@ -76,6 +77,7 @@ type Targets = (wgpu::TextureView, Option<wgpu::TextureView>, (u32, u32));
 
 #[derive(Debug)]
 pub struct Renderer {
+    shader: wgpu::ShaderModule,
     frame: wgpu::Buffer,
     group: wgpu::BindGroup,
     sky: wgpu::RenderPipeline,
@@ -103,6 +105,8 @@ pub struct Renderer {
     shades: bool,
     /// Made when it is first asked for.
     shade: Option<Ssao>,
+    /// Made when it is first asked for.
+    shadow: Option<Shadow>,
     /// Bytes of pages sent with the last frame, and pages that still wait.
     pub uploaded: u64,
     pub waiting: usize,
@@ -215,6 +219,7 @@ impl Renderer {
             behind: pipeline("behind", &[Some(line_layout)], true, true),
             edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
             overlay: pipeline("overlay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
+            shader,
             frame,
             group,
             line_ends,
@@ -231,6 +236,7 @@ impl Renderer {
             // OpenGL draws nothing at all with a depth of several samples that is to be read.
             shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
             shade: None,
+            shadow: None,
             uploaded: 0,
             waiting: 0,
             drawn: (0, 0),
@@ -307,6 +313,10 @@ impl Renderer {
         let matrix = scene.camera.view_projection(radius);
         let (right, up) = scene.camera.axes();
         let m = scene.look.material();
+        let main_light = scene.look.main_light();
+        let sun = light_matrix(scene.camera, main_light, (lo, hi));
+        let cast = sun.map_or(0.0, |_| scene.look.cast());
+        let [x, y, z] = main_light;
         let kind = match (scene.look.map, scene.values) {
             (Map::None, _) | (_, None) if scene.look.map != Map::Mask => 0.0,
             (Map::Mask, _) => 1.0,
@@ -335,6 +345,8 @@ impl Renderer {
             high: linear(ground[1]),
             light: light(&scene.look),
             backdrop: self.surroundings.backdrop(size, scene.beside.backdrop),
+            main_light: [x, y, z, cast],
+            shadow: sun.unwrap_or_default().to_cols_array_2d(),
             led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
@@ -359,6 +371,9 @@ impl Renderer {
         };
         let own = matrix * model(&stance.transform);
         let shown = |i: u32, page: &Page| stance.visible && !hidden(i) && in_view(&own, page);
+        if let Some(sun) = sun.filter(|_| cast > 0.0) {
+            self.cast(gpu, encoder, &sun, scene, &hidden);
+        }
         let Some((depth, smooth, _)) = &self.targets else { return };
         let view = smooth.as_ref().unwrap_or(target);
         let resolve = smooth.as_ref().map(|_| target);
@@ -406,6 +421,33 @@ impl Renderer {
             pass.set_bind_group(1, &self.surroundings.group, &[]);
             self.over(scene, &mut pass, lines.len() as u32);
         }
+    }
+
+    /// Draws what the main light sees: where it does not come, shadows are.
+    fn cast(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        sun: &Mat4,
+        scene: &Scene<'_>,
+        hidden: &dyn Fn(u32) -> bool,
+    ) {
+        let Some(pages) = &self.pages else { return };
+        let shadow = self.shadow.get_or_insert_with(|| {
+            let made = Shadow::new(gpu, &self.shader, self.objects.layout());
+            self.surroundings.set_depths(gpu, &made.depths);
+            made
+        });
+        let stance = scene.beside.stance;
+        let own = *sun * model(&stance.transform);
+        let mut pass = shadow.begin(encoder);
+        pass.set_bind_group(0, self.objects.active_group(), &[]);
+        let seen = |i: u32, page: &Page| stance.visible && !hidden(i) && in_view(&own, page);
+        pages.draw(&mut pass, seen);
+        if scene.beside.preview.is_some() {
+            self.preview.draw(&mut pass);
+        }
+        self.objects.draw(&mut pass, sun, scene.beside.others);
     }
 
     /// Sends what is beside the clay and is not there yet; a preview of another object is none.

@@ -1,11 +1,13 @@
 //! What the clay is lit by beside the studio's own lights, on the card: a picture of a lit ball
 //! (matcap), an environment, and a
-//! reference picture behind it. One bind group for all objects.
+//! reference picture behind it; and what the studio's main light reaches. One bind group for all
+//! objects.
 
 use image::RgbaImage;
 
 use super::environment::Environment;
 use super::gpu::Gpu;
+use super::shadow;
 
 /// The textures and their sampler.
 #[derive(Debug)]
@@ -17,6 +19,9 @@ pub struct Surroundings {
     diffuse: wgpu::TextureView,
     glossy: wgpu::TextureView,
     reference: wgpu::TextureView,
+    /// What the main light sees, and how that is compared.
+    depths: wgpu::TextureView,
+    compare: wgpu::Sampler,
     /// Width over height of the reference picture.
     aspect: f32,
 }
@@ -48,6 +53,22 @@ impl Surroundings {
                     count: None,
                 },
                 texture(4),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 5,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Depth,
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                        multisampled: false,
+                    },
+                    count: None,
+                },
+                wgpu::BindGroupLayoutEntry {
+                    binding: 6,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+                    count: None,
+                },
             ],
         });
         let linear = wgpu::FilterMode::Linear;
@@ -64,9 +85,38 @@ impl Surroundings {
         let room = Environment::room();
         let (diffuse, glossy) = around(gpu, &room);
         let reference = flat(gpu, &RgbaImage::new(1, 1));
-        let group = group(gpu, &layout, &sampler, [&matcap, &diffuse, &glossy, &reference]);
-        let aspect = 1.0;
-        Surroundings { layout, group, sampler, matcap, diffuse, glossy, reference, aspect }
+        let compare = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: linear,
+            min_filter: linear,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..Default::default()
+        });
+        let depths = shadow::depths(device, 1);
+        let group = group(
+            gpu,
+            &layout,
+            [&sampler, &compare],
+            [&matcap, &diffuse, &glossy, &reference, &depths],
+        );
+        Surroundings {
+            layout,
+            group,
+            sampler,
+            matcap,
+            diffuse,
+            glossy,
+            reference,
+            depths,
+            compare,
+            aspect: 1.0,
+        }
+    }
+
+    /// Takes what the main light sees.
+    pub fn set_depths(&mut self, gpu: &Gpu, depths: &wgpu::TextureView) {
+        self.depths = depths.clone();
+        self.regroup(gpu);
     }
 
     /// Takes another reference picture.
@@ -101,27 +151,37 @@ impl Surroundings {
     }
 
     fn regroup(&mut self, gpu: &Gpu) {
-        let views = [&self.matcap, &self.diffuse, &self.glossy, &self.reference];
-        self.group = group(gpu, &self.layout, &self.sampler, views);
+        let views = [&self.matcap, &self.diffuse, &self.glossy, &self.reference, &self.depths];
+        self.group = group(gpu, &self.layout, [&self.sampler, &self.compare], views);
     }
 }
 
 fn group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
-    sampler: &wgpu::Sampler,
-    views: [&wgpu::TextureView; 4],
+    samplers: [&wgpu::Sampler; 2],
+    views: [&wgpu::TextureView; 5],
 ) -> wgpu::BindGroup {
     let view = |binding: u32, i: usize| wgpu::BindGroupEntry {
         binding,
         resource: wgpu::BindingResource::TextureView(views[i]),
     };
-    let sampler =
-        wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(sampler) };
+    let sampler = |binding: u32, i: usize| wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::Sampler(samplers[i]),
+    };
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("surroundings"),
         layout,
-        entries: &[view(0, 0), view(1, 1), view(2, 2), sampler, view(4, 3)],
+        entries: &[
+            view(0, 0),
+            view(1, 1),
+            view(2, 2),
+            sampler(3, 0),
+            view(4, 3),
+            view(5, 4),
+            sampler(6, 1),
+        ],
     })
 }
 

@@ -4,12 +4,15 @@
 use std::path::Path;
 use std::process::Command;
 
+use glam::Vec3;
 use image::{Rgba, RgbaImage};
 use sculptd_engine::camera::Camera;
+use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::io::write_mesh;
 use sculptd_geometry::shapes;
-use sculptd_window::look::{Light, Look};
+use sculptd_window::look::{Light, Look, Map, RAISED};
 use sculptd_window::viewer::environment::Environment;
+use sculptd_window::viewer::objects::OtherObject;
 use sculptd_window::viewer::picture::Painter;
 use sculptd_window::viewer::renderer::{Beside, Scene};
 
@@ -131,4 +134,85 @@ fn the_command_draws_by_name_by_ball_and_by_surroundings() {
     assert!(said.contains("ball.obj") && !at("none.png").exists(), "{said}");
     let args = [&common[..], &["none.png", "--material", "glass"]].concat();
     assert_eq!(render(&args, dir.path()).0, Some(2));
+}
+
+/// A ball from the front, and a smaller one, if `between`, on the way from the main light to it.
+fn in_the_light(painter: &mut Painter, look: Look, between: bool) -> RgbaImage {
+    let mut mesh = sphere(20_000);
+    let clay = mesh.snapshot();
+    let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
+    let towards = Vec3::from(look.main_light()).as_dvec3();
+    let transform = ObjectTransform { shift: towards * 1.6, scale: 0.2, ..ObjectTransform::NONE };
+    let others = [OtherObject { id: 7, clay: &clay, transform }];
+    let others = if between { &others[..] } else { &[] };
+    let scene = Scene {
+        mesh: &clay,
+        camera: &camera,
+        brush: None,
+        lines: &[],
+        look: Look { cavity: 0.0, shade: 0.0, ..look },
+        values: None,
+        beside: Beside { others, ..Beside::default() },
+    };
+    painter.paint(&scene, 300, 300).expect("a picture")
+}
+
+#[test]
+fn what_stands_in_the_main_light_casts_a_shadow() {
+    let Some(mut painter) = painter() else { return };
+    for (turned, raised) in [(0.0, RAISED), (60.0, 20.0), (-25.0, 55.0)] {
+        let plain = Look { turned, raised, material: 1, ..Look::default() };
+        let cast = Look { shadow: 1.0, ..plain };
+        let without = in_the_light(&mut painter, plain, true);
+        let with = in_the_light(&mut painter, cast, true);
+        // Where the line from the light through the small ball meets the large one; the camera
+        // looks along the third axis, and a ball of radius one is this many pixels wide.
+        let mesh = sphere(2_000);
+        let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
+        let seen = |p: Vec3| {
+            let v = camera.project(p).expect("before the eye");
+            ((v.x * 300.0) as u32, (v.y * 300.0) as u32)
+        };
+        let towards = Vec3::from(cast.main_light());
+        let (x, y) = seen(towards);
+        let (lit, dark) = (bright(&without, x, y), bright(&with, x, y));
+        assert!(dark * 4 < lit * 3, "{turned} {raised}: {dark} in the shadow, {lit} without");
+        // A fifth of the radius to the side of the rim is nothing of it.
+        let beside = (towards + Vec3::new(0.5, -0.35, 0.0)).normalize();
+        let (x, y) = seen(beside);
+        let (lit, other) = (bright(&without, x, y), bright(&with, x, y));
+        assert!((lit - other).abs() <= 6, "{turned} {raised}: {other} beside it, {lit} without");
+    }
+}
+
+#[test]
+fn a_ball_does_not_shade_itself() {
+    let Some(mut painter) = painter() else { return };
+    for turned in [0.0, 70.0, 140.0] {
+        let plain = Look { turned, ..Look::default() };
+        let without = in_the_light(&mut painter, plain, false);
+        let with = in_the_light(&mut painter, Look { shadow: 1.0, ..plain }, false);
+        let off = without
+            .pixels()
+            .zip(with.pixels())
+            .flat_map(|(a, b)| (0..3).map(|k| a.0[k].abs_diff(b.0[k])))
+            .max();
+        assert!(off.is_some_and(|off| off <= 8), "turned by {turned}: {off:?} of 255");
+    }
+}
+
+#[test]
+fn shadows_are_the_studio_s_alone() {
+    let bare = Look { shadow: 0.7, ..Look::default() };
+    assert_eq!(bare.cast(), 0.7);
+    for light in [Light::Room, Light::Environment, Light::Matcap] {
+        assert_eq!(Look { light, ..bare }.cast(), 0.0);
+    }
+    assert_eq!(Look { map: Map::Mask, ..bare }.cast(), 0.0, "a map's colours are to be read");
+    for odd in [f32::NAN, f32::INFINITY, -3.0] {
+        let look = Look { shadow: odd, turned: odd, raised: odd, ..bare };
+        assert!((0.0..=1.0).contains(&look.cast()));
+        let length = Vec3::from(look.main_light()).length();
+        assert!((length - 1.0).abs() < 1e-5, "{odd}: {length}");
+    }
 }

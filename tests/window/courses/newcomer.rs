@@ -5,7 +5,8 @@ use sculptd_geometry::shapes;
 use serde_json::json;
 
 use super::{Course, brush, drag_with, hash, key, press, steps};
-use crate::stage::{Stage, differs};
+use crate::sessions::kept;
+use crate::stage::{Stage, differs, pause};
 
 #[test]
 fn a_newcomer_s_hour_with_a_mouse() {
@@ -143,5 +144,79 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |_| std::fs::read(&out).is_ok_and(|now| now == first),
     );
 
+    // A file that is broken, a cut, a part that is hidden; closing and opening again.
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    std::fs::write(c.s.dir.path().join("broken.obj"), "v 0 0 0\nf 1 2 nothing\n").expect("written");
+    let (kept, work) = (c.s.figure("vertices"), hash(&c.s));
+    let before = c.s.look("course-newcomer-before-broken");
+    c.step(
+        "a broken file is told, and the work stays",
+        |s| s.answer("ctrl+o", "broken.obj"),
+        |s| {
+            differs(&before, &s.look("course-newcomer-broken")) > 0.05
+                && s.figure("vertices") == kept
+                && hash(s) == work
+        },
+    );
+    c.step("a box that trims", |s| s.answer("ctrl+k", "trim by a box"), |_| true);
+    c.step("what lies in it is cut off", |s| s.drag((-220, -260), (220, -60)), |s| hash(s) != work);
+    c.step("and comes back", |s| key(s, "ctrl+z"), |s| hash(s) == work);
+    c.step("Escape ends it", |s| key(s, "Escape"), |_| true);
+    let all = c.s.look("course-newcomer-all");
+    c.step(
+        "a box that hides",
+        |s| {
+            s.answer("ctrl+k", "hide a region");
+            key(s, "b");
+        },
+        |_| true,
+    );
+    c.step(
+        "half of it is hidden",
+        |s| s.drag((0, -260), (220, 260)),
+        |s| differs(&all, &s.look("course-newcomer-half")) > 1.0,
+    );
+    c.step(
+        "and comes back too",
+        |s| {
+            key(s, "Escape");
+            key(s, "ctrl+z");
+        },
+        |s| hash(s) == work,
+    );
+    for (what, keys) in [("from above", "9"), ("from the front", "7"), ("no perspective", "5")] {
+        let was = camera(&c.s);
+        c.step(what, |s| key(s, keys), |s| camera(s) != was);
+        pause(600);
+    }
+    let was = c.s.look("course-newcomer-no-floor");
+    c.step(
+        "G shows the floor",
+        |s| key(s, "g"),
+        |s| differs(&was, &s.look("course-newcomer-floor")) > 0.05,
+    );
+    let was = c.s.look("course-newcomer-a-page");
+    c.step(
+        "where the languages are is found",
+        |s| s.answer("ctrl+k", "language"),
+        |s| differs(&was, &s.look("course-newcomer-languages")) > 0.3,
+    );
+    let was = c.s.look("course-newcomer-panels");
+    c.step(
+        "N takes the panels away",
+        |s| key(s, "n"),
+        |s| differs(&was, &s.look("course-newcomer-no-panels")) > 2.0,
+    );
+    c.step(
+        "and brings them back",
+        |s| key(s, "n"),
+        |s| differs(&was, &s.look("course-newcomer-panels-again")) < 1.0,
+    );
+    let session = kept(&c.s).pop().expect("a session is always on").display().to_string();
+    c.step(
+        "the window is closed and the work opened again",
+        |s| s.restart(&["--session", &session]),
+        |s| hash(s) == work,
+    );
     println!("{} steps", c.steps);
 }

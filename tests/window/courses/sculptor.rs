@@ -7,8 +7,9 @@ use sculptd_devices::serial::Protocol;
 use sculptd_devices::sim::{PenScript, SerialPen, SerialPenConfig, Shape, Stroke};
 use serde_json::json;
 
-use super::{Course, brush, key, press, steps};
-use crate::stage::{Stage, pause};
+use super::{Course, brush, hash, key, press, steps};
+use crate::sessions::kept;
+use crate::stage::{Stage, differs, pause};
 
 /// The tablet, mm.
 const AREA: Vec2 = Vec2::new(200.0, 125.0);
@@ -17,7 +18,7 @@ const AREA: Vec2 = Vec2::new(200.0, 125.0);
 type DrawnLine = ((f32, f32), (f32, f32), f32);
 
 /// Every stroke of the course in turn: two places of the tablet, shares of it, and the pressure.
-const STROKES: [DrawnLine; 7] = [
+const STROKES: [DrawnLine; 11] = [
     ((0.40, 0.38), (0.60, 0.38), 0.15),
     ((0.40, 0.48), (0.60, 0.48), 0.5),
     ((0.40, 0.58), (0.60, 0.58), 1.0),
@@ -25,6 +26,10 @@ const STROKES: [DrawnLine; 7] = [
     ((0.42, 0.30), (0.58, 0.30), 0.7),
     ((0.42, 0.66), (0.58, 0.62), 0.8),
     ((0.36, 0.42), (0.38, 0.36), 0.9),
+    ((0.46, 0.50), (0.54, 0.50), 0.9),
+    ((0.44, 0.44), (0.56, 0.46), 0.7),
+    ((0.42, 0.54), (0.58, 0.54), 0.6),
+    ((0.42, 0.40), (0.58, 0.60), 0.8),
 ];
 /// The pen's own time for each stroke, microseconds.
 const TURN_US: u64 = 1_200_000;
@@ -163,5 +168,100 @@ fn a_tablet_sculptor_s_hour() {
     };
     c.step("around the middle", around, |s| steps(s) == before + 1);
     c.step("Escape goes back to sculpting", |s| key(s, "Escape"), |_| true);
+    let (was, dabs) = (volume(&c.s), c.s.figure("dabs"));
+    c.step("a stroke within the mask", |_| tablet.draw(), |s| s.figure("dabs") > dabs);
+    let by = (volume(&c.s) - was).abs();
+    assert!(by < 0.1 * moved[1], "{by} moved within the mask, {} without one", moved[1]);
+    finer_and_remeshed(&mut c, &mut tablet);
+    looked_at_and_kept(&mut c, &mut tablet, args);
     println!("{} steps", c.steps);
+}
+
+/// Levels, a remesh, undo over all of it.
+fn finer_and_remeshed(c: &mut Course, tablet: &mut Tablet) {
+    let vertices = |s: &Stage| s.figure("vertices");
+    let masked = steps(&c.s);
+    c.step(
+        "Ctrl+Z takes back up to before the mask",
+        |s| {
+            key(s, "ctrl+z");
+            if steps(s) == masked {
+                key(s, "ctrl+z");
+            }
+        },
+        |s| steps(s) < masked,
+    );
+    while steps(&c.s) + 1 > masked.saturating_sub(1) {
+        let now = steps(&c.s);
+        c.step("and once more", |s| key(s, "ctrl+z"), |s| steps(s) < now);
+    }
+    let coarse = vertices(&c.s);
+    c.step("a finer level", |s| key(s, "ctrl+Prior"), |s| vertices(s) > 3 * coarse);
+    let before = hash(&c.s);
+    c.step("a stroke on it", |_| tablet.draw(), |s| hash(s) != before);
+    let fine = hash(&c.s);
+    c.step("the coarser level", |s| key(s, "ctrl+Next"), |s| vertices(s) == coarse);
+    c.step("the finer one has the stroke still", |s| key(s, "ctrl+Prior"), |s| hash(s) == fine);
+    let many = vertices(&c.s);
+    c.step("a remesh", |s| key(s, "ctrl+r"), |s| vertices(s) != many);
+    let even = hash(&c.s);
+    let before = even.clone();
+    c.step("a stroke on even triangles", |_| tablet.draw(), |s| hash(s) != before);
+    c.step("Ctrl+Z takes the stroke back", |s| key(s, "ctrl+z"), |s| hash(s) == even);
+    c.step("and the remesh", |s| key(s, "ctrl+z"), |s| hash(s) == fine);
+}
+
+/// Views, light, paint, a picture; closing and opening again.
+fn looked_at_and_kept(c: &mut Course, tablet: &mut Tablet, args: [&str; 2]) {
+    for (what, keys) in [
+        ("from the right", "8"),
+        ("from above", "9"),
+        ("from behind", "shift+7"),
+        ("and from the front", "7"),
+    ] {
+        let camera = |s: &Stage| s.ask("camera", &json!({}));
+        let was = camera(&c.s);
+        c.step(what, |s| key(s, keys), |s| camera(s) != was);
+        // The way there is animated.
+        pause(600);
+    }
+    let bare = c.s.look("course-sculptor-bare");
+    let mut shaded = bare.clone();
+    c.step(
+        "shadows",
+        |s| s.answer("ctrl+k", "shadows"),
+        |s| {
+            shaded = s.look("course-sculptor-shadows");
+            differs(&bare, &shaded) > 0.02
+        },
+    );
+    c.step(
+        "the brush that paints",
+        |s| s.answer("ctrl+k", "paint brush"),
+        |s| brush(s)["kind"] == "paint",
+    );
+    let (was, before) = (volume(&c.s), hash(&c.s));
+    c.step("a painted stroke", |_| tablet.draw(), |s| hash(s) != before);
+    let by = (volume(&c.s) - was).abs();
+    assert!(by < 1e-9, "paint moves nothing, and {by} was moved");
+    let pictures = c.s.dir.path().join("pictures");
+    std::fs::create_dir_all(&pictures).expect("a folder");
+    let folders = c.s.dir.path().join("user-dirs.dirs");
+    let text = format!("XDG_PICTURES_DIR=\"{}\"\n", pictures.display());
+    #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
+    std::fs::write(folders, text).expect("written");
+    let taken = || std::fs::read_dir(&pictures).map_or(0, |all| all.count());
+    c.step("F12 takes a picture", |s| key(s, "F12"), |_| taken() == 1);
+    let work = hash(&c.s);
+    let session = kept(&c.s).pop().expect("a session is always on").display().to_string();
+    c.step(
+        "the window is closed and the work opened again",
+        |s| s.restart(&[&args[..], &["--session", &session]].concat()),
+        |s| hash(s) == work,
+    );
+    c.step(
+        "one more step back, from before it was closed",
+        |s| key(s, "ctrl+z"),
+        |s| hash(s) != work,
+    );
 }
