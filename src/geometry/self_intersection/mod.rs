@@ -10,6 +10,7 @@
 
 mod box_groups;
 mod predicate;
+mod sectors;
 mod shared;
 mod stars;
 mod touch;
@@ -56,7 +57,7 @@ pub fn pairs(
     job.progress(0.6);
     let found: Vec<Found> = tree.pairs(job, |found, t, u| {
         let (own, other) = (triangles[t as usize], triangles[u as usize]);
-        if !own.iter().any(|v| other.contains(v) && stars.clear(*v)) {
+        if !own.iter().any(|v| other.contains(v) && stars.apart(triangles, *v, t, u)) {
             compare(positions, triangles, t.min(u), t.max(u), found);
         }
     })?;

@@ -302,3 +302,52 @@ fn folded_surfaces_cross_as_each_two_of_their_triangles_do() {
     }
     assert!(some > 10 && clean > 5, "{some} {clean}");
 }
+
+/// A closed fan about a tip over `spokes` ends that go around the upright axis `rounds` times, each
+/// at a height of its own; some ends change places with the next.
+fn fan(mix: &mut SplitMix, spokes: usize, rounds: usize, swaps: usize) -> Flat {
+    let mut ends: Vec<I64Vec3> = (0..spokes)
+        .map(|k| {
+            let a = (k * rounds) as f64 / spokes as f64 * std::f64::consts::TAU;
+            let r = 500.0 + mix.below(500) as f64;
+            I64Vec3::new((a.cos() * r) as i64, (a.sin() * r) as i64, mix.below(90) - 45)
+        })
+        .collect();
+    for _ in 0..swaps {
+        let k = mix.below(spokes as u64 - 1) as usize;
+        ends.swap(k, k + 1);
+    }
+    ends.insert(0, I64Vec3::new(0, 0, mix.below(40)));
+    let n = spokes as u32;
+    (ends, (0..n).map(|k| [0, k + 1, (k + 1) % n + 1]).collect())
+}
+
+#[test]
+fn triangles_of_a_large_fan_cross_where_each_two_of_them_are_compared_too() {
+    let mut mix = SplitMix(23);
+    let (mut crossed, mut parted, mut left) = (0, 0, 0);
+    for case in 0..120 {
+        let (rounds, swaps) = ([1, 1, 2][case % 3], [0, 1, 0, 3][case % 4]);
+        let spokes = 60 + mix.below(80) as usize;
+        let (at, faces) = fan(&mut mix, spokes, rounds, swaps);
+        let at: Vec<DVec3> = at.iter().map(|p| p.as_dvec3()).collect();
+        let job = Job::default();
+        let found = pairs(&at, &faces, &job).expect("not cancelled");
+        let stars = Stars::new(&at, &faces, &job).expect("not cancelled");
+        for t in 0..faces.len() as u32 {
+            for u in t + 1..faces.len() as u32 {
+                let (s, o) = (faces[t as usize], faces[u as usize]);
+                if s.iter().filter(|v| o.contains(v)).count() != 1 {
+                    continue;
+                }
+                let crosses = triangles_meet(&at, s, o) == Meet::Cross;
+                assert!(!crosses || found.contains(&(t, u)), "case {case}: {s:?} {o:?}");
+                assert!(!crosses || !stars.apart(&faces, 0, t, u), "case {case}: {s:?} {o:?}");
+                crossed += usize::from(crosses);
+                parted += usize::from(!stars.clear(0) && stars.apart(&faces, 0, t, u));
+                left += usize::from(!stars.apart(&faces, 0, t, u));
+            }
+        }
+    }
+    assert!(crossed > 100 && parted > 1000 && left > 1000, "{crossed} {parted} {left}");
+}
