@@ -61,7 +61,10 @@ fn shift_faults(name: &str, mesh: &PolyMesh, length: f64, how: Stored) -> Option
     let (solids, report) = made.ok()?;
     let [u, i, d, r] = [0, 1, 2, 3].map(|k| solids[k].facts.volume);
     let bound = report.volume_bound;
-    let layer = facts[0].area * (length + 2.0 * report.tolerance) + bound;
+    // A digit that is rounded the other way moves a vertex by more than a small shift does.
+    let apart = a.positions.iter().zip(&b.positions).map(|(p, q)| p.distance(*q));
+    let farthest = apart.fold(length, f64::max);
+    let layer = facts[0].area * (farthest + 2.0 * report.tolerance) + bound;
     let identities = (u + i - va - vb).abs().max((d + i - va).abs()).max((r + i - vb).abs());
     let moved = b.positions != a.positions;
     let snapped = report.contact.farthest > 1e-3 * report.tolerance;

@@ -5,7 +5,6 @@ use sculptd_geometry::shapes;
 use serde_json::json;
 
 use super::{Course, brush, drag_with, hash, key, press, steps};
-use crate::sessions::kept;
 use crate::stage::{Stage, differs, pause};
 
 #[test]
@@ -212,7 +211,8 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |s| key(s, "n"),
         |s| differs(&was, &s.look("course-newcomer-panels-again")) < 1.0,
     );
-    let session = kept(&c.s).pop().expect("a session is always on").display().to_string();
+    let session =
+        crate::sessions::kept(&c.s).pop().expect("a session is always on").display().to_string();
     c.step(
         "the window is closed and the work opened again",
         |s| s.restart(&["--session", &session]),
