@@ -10,7 +10,6 @@
 
 mod box_groups;
 mod predicate;
-mod sectors;
 mod shared;
 mod stars;
 mod touch;
@@ -57,7 +56,7 @@ pub fn pairs(
     job.progress(0.6);
     let found: Vec<Found> = tree.pairs(job, |found, t, u| {
         let (own, other) = (triangles[t as usize], triangles[u as usize]);
-        if !own.iter().any(|v| other.contains(v) && stars.apart(triangles, *v, t, u)) {
+        if !own.iter().any(|v| other.contains(v) && stars.clear(*v)) {
             compare(positions, triangles, t.min(u), t.max(u), found);
         }
     })?;

@@ -10,7 +10,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::sectors::{self, Sectors};
 use crate::job::{Cancelled, Job};
 
 /// The triangles at each vertex, and at which vertices none of them can cross another.
@@ -23,8 +22,6 @@ pub(super) struct Stars {
     starts: Vec<u32>,
     corners: Vec<u32>,
     clear: Vec<bool>,
-    /// Where large fans are.
-    sectors: Sectors,
 }
 
 /// Vertices of one task.
@@ -50,8 +47,7 @@ impl Stars {
         let facing: Vec<u8> =
             triangles.par_iter().map(|t| facing(t.map(|v| positions[v as usize]))).collect();
         job.check()?;
-        let (clear, sectors) = (Vec::new(), Sectors::default());
-        let mut stars = Stars { facing, starts, corners, clear, sectors };
+        let mut stars = Stars { facing, starts, corners, clear: Vec::new() };
         let mut clear = vec![false; positions.len()];
         clear.par_chunks_mut(TASK).enumerate().for_each(|(task, out)| {
             let mut ends = (Vec::new(), Vec::new());
@@ -60,14 +56,6 @@ impl Stars {
             }
         });
         stars.clear = clear;
-        job.check()?;
-        for v in (0..positions.len()).filter(|&v| !stars.clear[v]) {
-            let (from, to) = (stars.starts[v] as usize, stars.starts[v + 1] as usize);
-            if to - from >= sectors::MANY {
-                let around = &stars.corners[from..to];
-                stars.sectors.part(v as u32, around, &stars.facing, positions, flat);
-            }
-        }
         Ok(stars)
     }
 
@@ -75,12 +63,6 @@ impl Stars {
     #[inline(always)]
     pub fn clear(&self, v: u32) -> bool {
         self.clear[v as usize]
-    }
-
-    /// Whether two triangles that share this vertex are known not to cross.
-    #[inline(always)]
-    pub fn apart(&self, triangles: &[[u32; 3]], v: u32, t: u32, u: u32) -> bool {
-        self.clear(v) || self.sectors.share(triangles, v, t, u)
     }
 
     fn around(&self, v: u32) -> &[u32] {
