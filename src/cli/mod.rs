@@ -56,6 +56,10 @@ pub struct Cli {
     /// The log on standard error: text, or one JSON object a line.
     #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
     pub log_format: logs::LogFormat,
+    /// Compute as on a processor without AVX2: the same results to the bit, slower. For those who
+    /// compare machines.
+    #[arg(long, global = true)]
+    pub portable: bool,
     #[command(subcommand)]
     pub command: Option<Command>,
 }
@@ -147,6 +151,9 @@ pub enum Command {
 pub fn run() -> u8 {
     let cli = Cli::parse();
     logs::begin(cli.log_format);
+    if cli.portable {
+        sculptd_geometry::simd::wide::use_portable();
+    }
     let outcome = match cli.command {
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "sculptd", &mut std::io::stdout());

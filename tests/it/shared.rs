@@ -36,6 +36,37 @@ fn key(keys: &Path, role: &str) -> String {
 }
 
 #[test]
+fn processors_with_and_without_vector_code_have_one_sculpture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (keys, at) = (folder.path().join("keys"), free_endpoint());
+    let keys_text = keys.display().to_string();
+    let name = format!("processors-{}", std::process::id());
+    let host =
+        Daemon::run(&["--host", &name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"]);
+    until("the host answers", || host.hash().is_some());
+    let sculptor = key(&keys, "sculptor");
+    let mut plain = join(&name, &sculptor, &at, "Bob");
+    plain.push("--portable");
+    let plain = Daemon::run(&plain);
+    until("Bob is there", || plain.hash().is_some());
+    plain.follows(&host, "");
+    let brushes =
+        ["draw", "clay", "clay-strips", "smooth", "crease", "inflate", "grab", "texture", "twist"];
+    for (i, kind) in brushes.into_iter().enumerate() {
+        for (n, by) in [&host, &plain].into_iter().enumerate() {
+            let before = host.hash().expect("a hash");
+            let brush = format!(r#"{{"kind":"{kind}"}}"#);
+            assert!(by.ctl("brush", Some(&brush)).is_some(), "{kind}");
+            by.stroke(0.4 + 0.02 * i as f32 + 0.01 * n as f32);
+            plain.follows(&host, &before);
+        }
+    }
+    for one in [&host, &plain] {
+        assert!(!one.has_told("differs"), "{:?}", one.told.lock().expect("no panic"));
+    }
+}
+
+#[test]
 fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     let folder = tempfile::tempdir().expect("a folder");
     let (keys, at) = (folder.path().join("keys"), free_endpoint());

@@ -12,6 +12,8 @@
 //! the weights of a sliver's corners are known to its length squared over its area, in roundings.
 //! What that leaves unsure is computed again in double precision ([`Prepared::settle_all`]).
 
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
 use glam::{DVec3, Vec4};
 
 use super::rings::{Hexes, Rows};
@@ -570,13 +572,20 @@ pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Output {
     work.run(PortableLanes)
 }
 
+/// What is known of the processor: 0 nothing yet, 1 it has what `has_fast` asks for, 2 it has not.
+static KNOWN: AtomicU8 = AtomicU8::new(0);
+
+/// From here on all work is done in plain Rust, as on a processor without AVX2: the same bits,
+/// slower. For those who compare processors.
+pub fn use_portable() {
+    KNOWN.store(2, Relaxed);
+}
+
 /// AVX2 came together with BMI in every processor (Haswell, Excavator); both are checked all the
 /// same, once.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn has_fast() -> bool {
-    use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
-    static KNOWN: AtomicU8 = AtomicU8::new(0);
     match KNOWN.load(Relaxed) {
         1 => true,
         2 => false,

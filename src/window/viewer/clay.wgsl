@@ -235,8 +235,8 @@ fn shaded(n: vec3<f32>, base: vec3<f32>, place: vec3<f32>) -> vec3<f32> {
         return textureSampleLevel(ball, smooth_reads, at, 0.0).rgb * base;
     }
     var reaches = 1.0;
-    // What turns away from the light is dark without a shadow.
-    if (frame.main_light.w > 0.0 && dot(n, frame.main_light.xyz) > 0.0) {
+    // What turns away from the light lies in its own shadow: no highlight is left there.
+    if (frame.main_light.w > 0.0) {
         reaches = reached(place);
     }
     if (frame.light.w > 0.5) {

@@ -90,5 +90,39 @@ fn an_installer_s_hour() {
     );
     c.is_as_kept();
     c.step("a touch stops it", |s| s.drag((-20, 20), (20, 20)), |s| steps(s) == 2);
+    // The same installation for others: what is in the file is on the screen.
+    let dabs = c.s.figure("dabs");
+    c.step("nobody comes back: the loop begins again", |_| {}, |s| s.figure("dabs") > dabs + 60);
+    c.step("and the clay is clean", |_| {}, |s| hash(s) != visitor);
+    let plain = c.s.look("course-installer-plain");
+    for (what, more) in [
+        ("large print and strong contrast", "[screen]\ntext = 1.6\ncontrast = true\n"),
+        ("everything within reach of a chair", "[screen]\nseated = true\n"),
+        ("one switch walks over the buttons", "[screen]\nscan_s = 1.0\n"),
+        ("Italian, with a brush of its own", "brush = \"clay-strips\"\nlanguage = \"it\"\n"),
+    ] {
+        let file = settings(dir.path(), more);
+        let mut now = plain.clone();
+        c.step(
+            what,
+            |s| s.restart(&["--kiosk", "--kiosk-config", &file]),
+            |s| {
+                now = s.look("course-installer-other");
+                differs(&plain, &now) > 0.2
+            },
+        );
+        c.step(
+            "a touch begins a visit there too",
+            |s| {
+                pause(500);
+                s.drag((-80, 0), (80, 10));
+            },
+            |s| steps(s) >= 1,
+        );
+    }
+    assert_eq!(super::brush(&c.s)["kind"], "clay-strips", "the brush of the file");
+    c.step("Finished keeps this work too", |s| press(s, tools[4]), |_| works() >= 2);
+    let pictures = std::fs::read_dir(&gallery).expect("a folder").count();
+    c.step("what was kept is in the gallery", |_| {}, |_| pictures >= 2);
     println!("{} steps", c.steps);
 }
