@@ -13,6 +13,9 @@ pub enum NoViewer {
     ReadBack(String),
 }
 
+/// The format of every picture of depths.
+pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
 #[derive(Debug)]
 pub struct Gpu {
     pub instance: wgpu::Instance,
@@ -21,6 +24,21 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// A software adapter: one sample a pixel unless asked, redraw only when something changed.
     pub software: bool,
+}
+
+/// A picture of depths that can be compared with.
+pub(super) fn depths(device: &wgpu::Device, side: u32) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("shadow"),
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
 }
 
 /// Of a window on this display. OpenGL needs to know the display before it is begun: without one it

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::frame_uniform::{Frame, in_view};
-use super::gpu::Gpu;
+use super::gpu::{DEPTH, Gpu};
 use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
 use super::preview::Preview;
@@ -18,8 +18,6 @@ use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
 use sculptd_engine::camera::Camera;
-
-pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// An end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -8,9 +8,8 @@
 
 use glam::{Mat4, Vec3, camera::rh};
 
-use super::gpu::Gpu;
+use super::gpu::{DEPTH, Gpu, depths};
 use super::pages::{VALUE_LAYOUT, VERTEX_LAYOUT};
-use super::renderer::DEPTH;
 use sculptd_engine::camera::Camera;
 
 /// Texels along a side of the light's picture.
@@ -24,21 +23,6 @@ const WIDER: f32 = 1.5;
 pub(super) struct Shadow {
     pub depths: wgpu::TextureView,
     pipeline: wgpu::RenderPipeline,
-}
-
-/// A picture of depths that can be compared with.
-pub(super) fn depths(device: &wgpu::Device, side: u32) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("shadow"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&Default::default())
 }
 
 /// From the world to the clip space of the light: `towards` it in the eye's own frame, and the box

@@ -6,8 +6,7 @@
 use image::RgbaImage;
 
 use super::environment::Environment;
-use super::gpu::Gpu;
-use super::shadow;
+use super::gpu::{Gpu, depths};
 
 /// The textures and their sampler.
 #[derive(Debug)]
@@ -92,7 +91,7 @@ impl Surroundings {
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         });
-        let depths = shadow::depths(device, 1);
+        let depths = depths(device, 1);
         let group = group(
             gpu,
             &layout,
