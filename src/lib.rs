@@ -152,6 +152,8 @@
 //!   and the own input, orders or follows. Waits for: the network, the tick thread, time.
 //! * `sculptd-replica`, made by `network::live`: hashes, checkpoints, and worlds made of them, for
 //!   that station. Waits for: the station.
+//! * `sculptd-bulk`, made by `network::zenoh_link`: sends checkpoints to those who join. Waits for:
+//!   them, and for the receiver.
 //! * `sculptd-fleet`, made by `network::fleet::installation_thread`: publishes how an installation
 //!   is, and does what staff ask. Waits for: the network, time, the published state.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by

@@ -62,6 +62,7 @@ pub mod multires;
 mod normals;
 pub mod page;
 mod page_hashes;
+mod page_planes;
 mod page_sets;
 mod page_supply;
 mod pick;

@@ -46,7 +46,15 @@ impl PageTopology {
     /// # Errors
     /// [`BadPage`] where anything points outside.
     pub fn from_bytes(bytes: &[u8]) -> Result<PageTopology, BadPage> {
-        let mut t: PageTopology = postcard::from_bytes(bytes).map_err(|_| BadPage)?;
+        postcard::from_bytes::<PageTopology>(bytes).map_err(|_| BadPage)?.checked()
+    }
+
+    /// The topology with what follows from it filled in.
+    ///
+    /// # Errors
+    /// [`BadPage`] where anything points outside.
+    pub(super) fn checked(mut self) -> Result<PageTopology, BadPage> {
+        let t = &self;
         let halo = t.halo_sources.len();
         let all = t.own.checked_add(halo).filter(|n| *n < BREAK as usize).ok_or(BadPage)?;
         let ascending = |ends: &[u16]| ends.windows(2).all(|w| w[0] <= w[1]);
@@ -65,7 +73,7 @@ impl PageTopology {
             && t.neighbours.first().is_none_or(|n| n.first == 0)
             && t.neighbours.iter().all(|n| n.first as usize <= halo)
             && (halo == 0 || !t.neighbours.is_empty());
-        if sane && t.index() { Ok(t) } else { Err(BadPage) }
+        if sane && self.index() { Ok(self) } else { Err(BadPage) }
     }
 }
 
@@ -121,22 +129,27 @@ impl Page {
         let (points, normals) = bytes.split_at(all * 16);
         let points: Vec<Vec4> = points.chunks_exact(16).map(row).collect();
         let normals: Vec<Vec4> = normals.chunks_exact(16).map(row).collect();
+        Page { topology, points, normals, revision, layers, sets, ..Page::default() }.of_read()
+    }
+
+    /// The page that was read, with what follows from its points filled in.
+    ///
+    /// # Errors
+    /// [`BadPage`] where a place is not finite.
+    pub(super) fn of_read(mut self) -> Result<Page, BadPage> {
         // The colour's bits may spell anything.
-        if !points.iter().all(|p| p.is_finite())
-            || !normals.iter().all(|n| n.truncate().is_finite())
+        if !self.points.iter().all(|p| p.is_finite())
+            || !self.normals.iter().all(|n| n.truncate().is_finite())
         {
             return Err(BadPage);
         }
-        let leaves = topology.triangles.len().div_ceil(LEAF);
-        let mut page =
-            Page { topology, points, normals, revision, layers, sets, ..Page::default() };
-        page.tree.reset(leaves);
-        if page.topology.own == 0 && page.topology.triangles.is_empty() {
-            (page.lo, page.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        self.tree.reset(self.topology.triangles.len().div_ceil(LEAF));
+        if self.topology.own == 0 && self.topology.triangles.is_empty() {
+            (self.lo, self.hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         } else {
-            page.refit(u32::MAX);
+            self.refit(u32::MAX);
         }
-        Ok(page)
+        Ok(self)
     }
 
     /// The page that stands where there was none before.

@@ -4,30 +4,30 @@
 //! Capturing shares the pages and costs the tick thread as much as a published state; the bytes are
 //! made by another thread.
 
-use std::io::{Read, Write};
+use std::io::Read;
 use std::sync::Arc;
 
-use flate2::Compression;
-use flate2::read::DeflateDecoder;
-use flate2::write::DeflateEncoder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use sculptd_clay::brush::Picture;
-use sculptd_clay::page::PageTopology;
 use sculptd_clay::{Clay, Levels, ObjectState, Page, Snapshot, Workers};
 use sculptd_engine::hand::HandSettings;
 use sculptd_engine::scene::SceneView;
 use sculptd_engine::world::{Saved, World, WorldOptions};
 use sculptd_geometry::TriMesh;
 
-use crate::wire::bytes::{ByteReader, put_bytes, put_number};
+use crate::wire::bytes::{ByteReader, put_bytes};
 
 /// Bytes that a page may become, and the head.
 const MAX_PAGE: u64 = 16 << 20;
 const MAX_HEAD: u64 = 1 << 30;
 /// Pages of a block.
 const BLOCK: usize = 32;
+/// Blocks that are made or read side by side.
+const AT_ONCE: usize = 8;
+/// Of the compression: the quickest. Of the planes of pages, others gain little.
+const LEVEL: i32 = 1;
 
 /// The bytes are not those of a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -69,9 +69,10 @@ impl Captured {
         Some(Captured { saved, scene, active, options })
     }
 
-    /// As bytes: the head, then the pages of each object in order, some to a block; each block is
-    /// deflated by itself, on all cores.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    /// As bytes, part by part as they are made on all cores: the head, then the pages of each object
+    /// in order, some to a block; head and blocks are compressed by themselves, and the length of
+    /// each is before it. `put` takes each part, and whether it is the last.
+    pub fn write(&self, mut put: impl FnMut(&[u8], bool)) {
         let each = || self.scene.each(&self.active).map(|(_, clay)| clay);
         let objects = each().map(|clay| ObjectHead {
             pages: clay.page_count() as u32,
@@ -88,32 +89,85 @@ impl Captured {
             objects: objects.collect(),
         };
         let mut out = Vec::new();
-        put_bytes(&mut out, &deflated(&postcard::to_stdvec(&head).unwrap_or_default()));
+        put_bytes(&mut out, &compressed(&postcard::to_stdvec(&head).unwrap_or_default()));
+        put(&out, false);
         for clay in each() {
             let pages: Vec<&Arc<Page>> = clay.pages().collect();
-            let block = |some: &[&Arc<Page>]| {
-                let mut part = Vec::new();
-                for page in some {
-                    put_number(&mut part, page.revision());
-                    put_bytes(&mut part, &page.topology().to_bytes());
-                    put_bytes(&mut part, &page.to_bytes());
-                }
-                deflated(&part)
-            };
-            let blocks: Vec<Vec<u8>> = pages.par_chunks(BLOCK).map(block).collect();
-            blocks.iter().for_each(|b| put_bytes(&mut out, b));
+            for some in pages.chunks(BLOCK * AT_ONCE) {
+                let blocks: Vec<Vec<u8>> = some.par_chunks(BLOCK).map(block_of).collect();
+                out.clear();
+                blocks.iter().for_each(|b| put_bytes(&mut out, b));
+                put(&out, false);
+            }
         }
-        out
+        put(&[], true);
     }
 
-    /// The world again.
+    /// All of [`Captured::write`] in a row.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        self.write(|part, _| out.extend_from_slice(part));
+        out
+    }
+}
+
+/// Makes a world of the bytes of a checkpoint, as they come.
+#[derive(Default)]
+pub struct Restoring {
+    /// What came and is no whole part yet.
+    rest: Vec<u8>,
+    head: Option<Head>,
+    /// Parts that are whole, compressed.
+    blocks: Vec<Vec<u8>>,
+    pages: Vec<Arc<Page>>,
+}
+
+impl std::fmt::Debug for Restoring {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Restoring").field("pages", &self.pages.len()).finish_non_exhaustive()
+    }
+}
+
+impl Restoring {
+    /// Takes the next bytes.
     ///
     /// # Errors
     /// [`BadCheckpoint`]
-    pub fn restore(bytes: &[u8], workers: Workers) -> Result<World, BadCheckpoint> {
-        let mut from = ByteReader::new(bytes);
-        let head = inflated(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?, MAX_HEAD)?;
-        let head: Head = postcard::from_bytes(&head).map_err(|_| BadCheckpoint)?;
+    pub fn take(&mut self, bytes: &[u8]) -> Result<(), BadCheckpoint> {
+        self.rest.extend_from_slice(bytes);
+        let mut from = ByteReader::new(&self.rest);
+        let mut used = 0;
+        // What is not whole yet is read again with what follows.
+        while let Ok(part) = from.bytes(usize::MAX) {
+            used = self.rest.len() - from.left();
+            match &self.head {
+                Some(_) => self.blocks.push(part.to_vec()),
+                None => {
+                    let head = inflated(part, MAX_HEAD)?;
+                    self.head = Some(postcard::from_bytes(&head).map_err(|_| BadCheckpoint)?);
+                }
+            }
+        }
+        self.rest.drain(..used);
+        if self.blocks.len() >= AT_ONCE { self.read_blocks() } else { Ok(()) }
+    }
+
+    fn read_blocks(&mut self) -> Result<(), BadCheckpoint> {
+        let read: Vec<_> = self.blocks.par_iter().map(|b| pages_of(b)).collect();
+        self.blocks.clear();
+        for pages in read {
+            self.pages.extend(pages?);
+        }
+        Ok(())
+    }
+
+    /// The world again, after all bytes.
+    ///
+    /// # Errors
+    /// [`BadCheckpoint`]
+    pub fn finish(mut self, workers: Workers) -> Result<World, BadCheckpoint> {
+        self.read_blocks()?;
+        let head = self.head.filter(|_| self.rest.is_empty()).ok_or(BadCheckpoint)?;
         let (dab_budget, undo_bytes, hands) = head.options;
         let mut saved = Saved {
             tick: head.tick,
@@ -134,20 +188,11 @@ impl Captured {
         if rests.len() != head.objects.len() {
             return Err(BadCheckpoint);
         }
+        let mut pages = self.pages.into_iter();
         let mut clays = Vec::new();
         for (i, (rest, object)) in rests.iter().zip(head.objects).enumerate() {
-            let blocks = (object.pages as usize).div_ceil(BLOCK);
-            let mut parts = Vec::new();
-            for _ in 0..blocks {
-                parts.push(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?);
-            }
-            let read = |(i, part): (usize, &&[u8])| {
-                pages_of(part, BLOCK.min(object.pages as usize - i * BLOCK))
-            };
-            let pages: Result<Vec<_>, BadCheckpoint> =
-                parts.par_iter().enumerate().map(read).collect();
-            let pages = pages?.into_iter().flatten().collect();
-            let mut clay = Clay::of_stored(pages, rest).map_err(|_| BadCheckpoint)?;
+            let own: Vec<Arc<Page>> = pages.by_ref().take(object.pages as usize).collect();
+            let mut clay = Clay::of_stored(own, rest).map_err(|_| BadCheckpoint)?;
             clay.set_empty(rest.empty.clone());
             match i == active {
                 true => saved.levels = object.levels,
@@ -160,32 +205,45 @@ impl Captured {
     }
 }
 
+/// The world of all bytes in a row.
+///
+/// # Errors
+/// [`BadCheckpoint`]
+pub fn restore(bytes: &[u8], workers: Workers) -> Result<World, BadCheckpoint> {
+    let mut restoring = Restoring::default();
+    restoring.take(bytes)?;
+    restoring.finish(workers)
+}
+
+/// Some pages, compressed.
+fn block_of(pages: &[&Arc<Page>]) -> Vec<u8> {
+    let mut part = Vec::new();
+    pages.iter().for_each(|page| page.put_planes(&mut part));
+    compressed(&part)
+}
+
 /// The pages of one block.
-fn pages_of(block: &[u8], count: usize) -> Result<Vec<Arc<Page>>, BadCheckpoint> {
+fn pages_of(block: &[u8]) -> Result<Vec<Arc<Page>>, BadCheckpoint> {
     let bytes = inflated(block, MAX_PAGE * BLOCK as u64)?;
-    let mut from = ByteReader::new(&bytes);
-    let mut pages = Vec::with_capacity(count);
-    for _ in 0..count {
-        let revision = from.number().map_err(|_| BadCheckpoint)?;
-        let topology = PageTopology::from_bytes(from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?);
-        let topology = Arc::new(topology.map_err(|_| BadCheckpoint)?);
-        let bytes = from.bytes(usize::MAX).map_err(|_| BadCheckpoint)?;
-        let page = Page::from_bytes(bytes, topology, revision);
-        pages.push(Arc::new(page.map_err(|_| BadCheckpoint)?));
+    let mut rest = &bytes[..];
+    let mut pages = Vec::with_capacity(BLOCK);
+    while !rest.is_empty() {
+        let (page, after) = Page::take_planes(rest).map_err(|_| BadCheckpoint)?;
+        pages.push(Arc::new(page));
+        rest = after;
     }
     Ok(pages)
 }
 
-fn deflated(bytes: &[u8]) -> Vec<u8> {
-    let mut out = DeflateEncoder::new(Vec::new(), Compression::fast());
+fn compressed(bytes: &[u8]) -> Vec<u8> {
     // Writing to memory cannot fail.
-    let _ = out.write_all(bytes);
-    out.finish().unwrap_or_default()
+    zstd::bulk::compress(bytes, LEVEL).unwrap_or_default()
 }
 
 /// Memory grows with what comes, not with what is told.
 fn inflated(bytes: &[u8], most: u64) -> Result<Vec<u8>, BadCheckpoint> {
     let mut out = Vec::new();
-    let read = DeflateDecoder::new(bytes).take(most).read_to_end(&mut out);
-    read.map(|_| out).map_err(|_| BadCheckpoint)
+    let from = zstd::stream::read::Decoder::with_buffer(bytes).map_err(|_| BadCheckpoint)?;
+    from.take(most).read_to_end(&mut out).map_err(|_| BadCheckpoint)?;
+    Ok(out)
 }

@@ -25,6 +25,8 @@ pub enum To {
     Heirs,
     /// One process.
     Peer(Address),
+    /// One process, behind all that is not so: much of it may wait.
+    Bulk(Address),
 }
 
 /// What a station tells whoever runs it.
@@ -32,12 +34,18 @@ pub enum To {
 pub enum Event {
     /// The next frame to be stepped.
     Frame(Arc<Frame>),
-    /// The world is made anew from a checkpoint; frames from the one after `index` follow.
+    /// The next bytes of a checkpoint, as [`crate::checkpoint::Captured::write`] made them.
+    RestorePart {
+        /// Whether they are its first: what came before was of another.
+        first: bool,
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// The world is made anew from the checkpoint whose bytes have come; frames from the one after
+    /// `index` follow.
     Restore {
         /// The frame of the checkpoint.
         index: u64,
-        /// As [`crate::checkpoint::Captured::to_bytes`] made them.
-        checkpoint: Arc<Vec<u8>>,
     },
     /// The station's person has this number, and the loop this rate.
     Entered {

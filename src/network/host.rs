@@ -11,20 +11,22 @@ use std::sync::Arc;
 
 use crate::acknowledgement::Acknowledgements;
 use crate::comparison::HashComparison;
-use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::core::{Core, DOWN, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::held_checkpoint::HeldCheckpoint;
 use crate::host_limits::{
-    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE, REST_US,
+    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE, RECENT,
+    REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, SenderLimits, bounded, fitting,
+    BatchQueue, Greeted, JoinedMember, PER_MESSAGE, SenderLimits, bounded, fitting,
 };
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
 use crate::seal::Secret;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
 use crate::wire::message::{
-    Address, AmongHeirs, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer,
-    Reached, Term, VERSION,
+    Address, AmongHeirs, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer, Reached,
+    Term, VERSION,
 };
 
 /// The host's state.
@@ -249,6 +251,7 @@ impl Host {
             first: reached.map_or(core.log.last(), |r| r.1),
             sent: reached.map_or(core.log.last(), |r| r.1),
             progress_us: now_us,
+            wanted: Default::default(),
             next_us: now_us,
             trip: RoundTrip::default(),
             limits: SenderLimits::new(now_us),
@@ -259,11 +262,9 @@ impl Host {
         if resumes {
             let people = core.log.people();
             self.enter(core, from, None, people);
-        } else if let Some((index, bytes, people)) = self.checkpoint.clone()
-            && core.log.from(index + 1, 1).is_some()
-            && core.log.last() < index + 600
-        {
-            self.enter(core, from, Some((index, bytes.len() as u64)), people);
+        } else if let Some(held) = self.checkpoint.as_ref().filter(|held| is_recent(core, held)) {
+            let (offer, people) = (Some(held.index), held.people.clone());
+            self.enter(core, from, offer, people);
         } else {
             self.wanted_us.get_or_insert(now_us);
         }
@@ -274,23 +275,22 @@ impl Host {
         &mut self,
         core: &mut Core,
         to: Address,
-        offer: Option<(u64, u64)>,
+        offer: Option<Offer>,
         people: Vec<(Arrival, u64)>,
     ) {
         let succession = (self.group.0.to_vec(), self.keyring.to_bytes());
         let Some(member) = self.members.get_mut(&to) else { return };
         member.waits = false;
-        if let Some((index, _)) = offer {
+        if let Some(index) = offer {
             (member.sent, member.first) = (index, index);
         }
-        let chunks = |size: u64| size.div_ceil(CHUNK as u64) as u32;
         let waiting = self.waiting.get(&member.person);
         let entry = Entry {
             person: member.person,
             term: self.term,
             rate_hz: core.rate_hz,
             applied: waiting.map_or_else(|| core.log.applied(member.person), |w| w.received),
-            offer: offer.map(|(index, size)| Offer { index, size, chunks: chunks(size) }),
+            offer,
             people,
             turns: core.log.turns().to_vec(),
             succession: (member.role == Role::Sculptor).then_some(succession),
@@ -306,12 +306,12 @@ impl Host {
                 member.trip.take(sent_ms, echo_ms, now_us);
                 if have == NOT_ENTERED {
                     // Its entry was lost.
-                    let offer = self.checkpoint.as_ref().map(|c| (c.0, c.1.len() as u64));
+                    let offer = self.checkpoint.as_ref().map(|c| c.index);
                     return match (member.waits, member.have) {
                         (true, _) => {}
                         (false, Some(_)) => self.enter(core, from, None, core.log.people()),
                         (false, None) => {
-                            let people = self.checkpoint.as_ref().map(|c| c.2.clone());
+                            let people = self.checkpoint.as_ref().map(|c| c.people.clone());
                             self.enter(core, from, offer, people.unwrap_or_default());
                         }
                     };
@@ -320,7 +320,7 @@ impl Host {
                     return self.violation(core, from, "has frames that never were", now_us);
                 }
                 if member.role != Role::Device && member.have.is_none_or(|h| have > h) {
-                    let offered = self.checkpoint.as_ref().is_some_and(|c| have >= c.0);
+                    let offered = self.checkpoint.as_ref().is_some_and(|c| have >= c.index);
                     if member.have.is_some() || offered {
                         (member.have, member.progress_us) = (Some(have), now_us);
                         member.sent = member.sent.max(have);
@@ -337,15 +337,14 @@ impl Host {
                 self.take_batches(core, from, batches, now_us);
             }
             FromMember::Want { index, first, count } => {
-                let Some((_, bytes, _)) = self.checkpoint.as_ref().filter(|c| c.0 == index) else {
+                let Some(held) = self.checkpoint.as_ref().filter(|c| c.index == index) else {
                     return self.dismiss(core, from, "the checkpoint is gone: join again");
                 };
-                let chunks = bytes.chunks(CHUNK).enumerate().skip(first as usize);
-                for (k, part) in chunks.take(count.min(MAX_WANTED) as usize) {
-                    let number = k as u32;
-                    let chunk = FromHost::Chunk { index, number, bytes: part.to_vec() };
-                    core.down(from, &mut member.down, &chunk);
+                member.wanted.extend(first..first.saturating_add(count.min(MAX_WANTED)));
+                while member.wanted.len() > 2 * MAX_WANTED as usize {
+                    member.wanted.pop_last();
                 }
+                send_chunks(core, from, member, held);
             }
             FromMember::Hash { index, hash } => {
                 if let Some(own) = self.comparison.take(index, from, hash) {
@@ -409,12 +408,26 @@ impl Host {
         }
     }
 
-    /// The checkpoint of a frame with that mark is there.
-    pub fn checkpoint(&mut self, core: &mut Core, index: u64, bytes: Arc<Vec<u8>>) {
-        if self.making.take() != Some(index) {
+    /// The next bytes of the checkpoint of a frame with that mark; `last`: nothing follows them.
+    pub fn checkpoint_part(&mut self, core: &mut Core, index: u64, part: &[u8], last: bool) {
+        if self.making != Some(index) {
             return;
         }
-        let size = bytes.len() as u64;
+        if self.checkpoint.as_ref().is_none_or(|held| held.index != index) {
+            self.begin_checkpoint(core, index);
+        }
+        let Some(held) = &mut self.checkpoint else { return };
+        held.push(part, last);
+        for (to, member) in self.members.iter_mut().filter(|m| !m.1.wanted.is_empty()) {
+            send_chunks(core, *to, member, held);
+        }
+        if last {
+            self.making = None;
+        }
+    }
+
+    /// Those who wait are let in: they fetch the checkpoint while it is made.
+    fn begin_checkpoint(&mut self, core: &mut Core, index: u64) {
         // As the log was then.
         let mut people = core.log.people();
         let after = core.log.from(index + 1, usize::MAX).unwrap_or_default();
@@ -424,11 +437,12 @@ impl Host {
                 *applied = first.number - 1;
             }
         }
-        self.checkpoint = Some((index, bytes, people.clone()));
+        self.checkpoint = Some(HeldCheckpoint::new(index, people.clone()));
+        self.members.values_mut().for_each(|m| m.wanted.clear());
         let waiting: Vec<Address> =
             self.members.iter().filter(|(_, m)| m.waits).map(|(a, _)| *a).collect();
         for to in waiting {
-            self.enter(core, to, Some((index, size)), people.clone());
+            self.enter(core, to, Some(index), people.clone());
         }
     }
 
@@ -466,6 +480,10 @@ impl Host {
             self.send_next(core, to, now_us);
         }
         let offered = self.members.values().filter(|m| m.have.is_none() && !m.waits);
+        let held = self.checkpoint.as_ref().filter(|held| held.is_whole());
+        if held.is_some_and(|held| !is_recent(core, held)) && offered.clone().next().is_none() {
+            self.checkpoint = None;
+        }
         let slowest = self.replicas().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
         let slowest = offered.map(|m| m.sent).min().unwrap_or(u64::MAX).min(slowest);
         core.log.trim(slowest.max(core.log.last().saturating_sub(200_000)));
@@ -595,5 +613,22 @@ impl Host {
             frames,
         };
         core.down(to, &mut member.down, &down);
+    }
+}
+
+/// Whether who joins now may begin with a checkpoint that is there.
+fn is_recent(core: &Core, held: &HeldCheckpoint) -> bool {
+    core.log.from(held.index + 1, 1).is_some() && core.log.last() < held.index + RECENT
+}
+
+/// Sends the chunks that a member wants, as far as they are made.
+fn send_chunks(core: &mut Core, to: Address, member: &mut JoinedMember, held: &HeldCheckpoint) {
+    while let Some(number) = member.wanted.first().copied()
+        && let Some((bytes, last)) = held.chunk(number)
+    {
+        member.wanted.pop_first();
+        let chunk = FromHost::Chunk { index: held.index, number, last, bytes: bytes.to_vec() };
+        let sealed = member.down.seal(&chunk.to_bytes());
+        core.send(To::Bulk(to), DOWN, &sealed);
     }
 }

@@ -1,6 +1,6 @@
 //! What a host keeps of each who greets it and of each who joined.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use crate::core::RoundTrip;
@@ -9,7 +9,7 @@ use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
-use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
+use crate::wire::frame::{Batch, Frame, PersonId, Role};
 use crate::wire::frame_codec::frames_to_bytes;
 use crate::wire::message::Nonce;
 
@@ -18,9 +18,6 @@ pub const PER_MESSAGE: (usize, usize) = (64, 2048);
 
 /// Samples, commands and batches of one person and one frame; one batch may go beyond.
 const PER_FRAME: usize = 128;
-
-/// The newest checkpoint: its frame, its bytes, and everybody's last batch then.
-pub type HeldCheckpoint = (u64, Arc<Vec<u8>>, Vec<(Arrival, u64)>);
 
 /// Who said hello and may join next.
 #[derive(Debug)]
@@ -78,6 +75,8 @@ pub struct JoinedMember {
     /// Frames up to this one were sent.
     pub sent: u64,
     pub progress_us: u64,
+    /// Chunks of the checkpoint that are to be sent as soon as they are made.
+    pub wanted: BTreeSet<u32>,
     pub next_us: u64,
     pub trip: RoundTrip,
     pub limits: SenderLimits,

@@ -28,6 +28,7 @@ pub mod comparison;
 pub mod core;
 pub mod executor;
 pub mod fleet;
+pub mod held_checkpoint;
 pub mod host;
 pub mod host_limits;
 pub mod host_members;

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use crate::checkpoint::Captured;
+use crate::checkpoint::{Captured, Restoring};
 use crate::core::Event;
 use crate::executor::{Asked, Executor, HashView, KnownHashes};
 use crate::local_echo::LocalEcho;
@@ -36,6 +36,8 @@ const WAITING: usize = 4096;
 const MAX_DEVICES: usize = 16;
 /// After so long without an entry a host that refuses the key is believed.
 const ENOUGH: Duration = Duration::from_secs(3);
+/// Jobs of the worker beyond which no state is hashed: it misses a comparison.
+const MAX_JOBS: usize = 64;
 /// Compared states that are kept for a dump.
 const KEPT_VIEWS: usize = 8;
 
@@ -56,14 +58,16 @@ enum ToLoop {
 enum Job {
     Hash(HashView),
     Checkpoint(u64, Box<Captured>),
-    Restore(Arc<Vec<u8>>),
+    RestorePart { first: bool, bytes: Vec<u8> },
+    Restore,
     Dump(Box<HashView>, PathBuf),
 }
 
 /// From the worker.
 enum Done {
     Hash(HashView, u64),
-    Checkpoint(u64, Vec<u8>),
+    /// The next part of a checkpoint, and whether it is the last.
+    CheckpointPart(u64, Vec<u8>, bool),
     Restored(Option<Box<World>>),
 }
 
@@ -176,7 +180,7 @@ impl Shared {
         let (to, from_loop) = cc::bounded(WAITING);
         let (to_loop, from) = cc::unbounded();
         let (tell, told) = cc::bounded(1024);
-        let (jobs, work) = cc::bounded(64);
+        let (jobs, work) = cc::unbounded();
         let (finished, done) = cc::bounded(64);
         let workers = settings.workers;
         std::thread::Builder::new()
@@ -433,14 +437,14 @@ impl Running {
             }
             FromLoop::Stepped { frame, asked, at_rest } => {
                 self.station.after_step(at_rest);
-                if let Some(view) = asked.hash {
-                    let _ = self.jobs.try_send(Job::Hash(view));
+                if let Some(view) = asked.hash.filter(|_| self.jobs.len() < MAX_JOBS) {
+                    let _ = self.jobs.send(Job::Hash(view));
                 }
                 if frame.mark == Mark::Checkpoint && self.station.hosts() {
                     match asked.captured {
                         Some(captured) => {
                             let job = Job::Checkpoint(frame.index, Box::new(captured));
-                            let _ = self.jobs.try_send(job);
+                            let _ = self.jobs.send(job);
                         }
                         None => self.station.checkpoint_failed(frame.index, self.clock.now_us()),
                     }
@@ -458,7 +462,9 @@ impl Running {
                     self.views.pop_first();
                 }
             }
-            Done::Checkpoint(index, bytes) => self.station.checkpoint(index, Arc::new(bytes)),
+            Done::CheckpointPart(index, part, last) => {
+                self.station.checkpoint_part(index, &part, last);
+            }
             Done::Restored(None) => {
                 self.note("the checkpoint could not be read: asking for another".into());
                 self.restoring = None;
@@ -470,7 +476,7 @@ impl Running {
                     let view = HashView { index, tick: world.tick(), scene, active };
                     let name = format!("differs-frame-{index}-host.ply");
                     let job = Job::Dump(Box::new(view), self.dumps.join(name));
-                    let _ = self.jobs.try_send(job);
+                    let _ = self.jobs.send(job);
                 }
                 let executor = Executor::new(self.station.rate_hz(), self.station.person());
                 let _ = self.to_loop.send(ToLoop::World(world, executor));
@@ -495,9 +501,12 @@ impl Running {
                         let _ = self.to_loop.send(ToLoop::Frame(frame));
                     }
                 },
-                Event::Restore { checkpoint, .. } => {
+                Event::RestorePart { first, bytes } => {
+                    let _ = self.jobs.send(Job::RestorePart { first, bytes });
+                }
+                Event::Restore { .. } => {
                     self.restoring = Some(Vec::new());
-                    let _ = self.jobs.send(Job::Restore(checkpoint));
+                    let _ = self.jobs.send(Job::Restore);
                 }
                 Event::Entered { person, rate_hz } => {
                     let _ = self.to_loop.send(ToLoop::Entered(person, rate_hz));
@@ -517,7 +526,7 @@ impl Running {
                     if let Some(view) = view {
                         let name = format!("differs-frame-{index}-own.ply");
                         let job = Job::Dump(Box::new(view.clone()), self.dumps.join(name));
-                        let _ = self.jobs.try_send(job);
+                        let _ = self.jobs.send(job);
                     }
                     self.differs = Some(index);
                 }
@@ -534,15 +543,33 @@ impl Running {
 /// The worker's thread.
 fn work_on(jobs: &cc::Receiver<Job>, done: &cc::Sender<Done>, workers: usize) {
     let mut known = KnownHashes::default();
+    let mut restoring = Ok(Restoring::default());
     for job in jobs {
         let finished = match job {
             Job::Hash(view) => {
                 let hash = view.hash(&mut known);
                 Done::Hash(view, hash)
             }
-            Job::Checkpoint(index, captured) => Done::Checkpoint(index, captured.to_bytes()),
-            Job::Restore(bytes) => {
-                let world = Captured::restore(&bytes, Workers::new(workers));
+            Job::Checkpoint(index, captured) => {
+                captured.write(|part, last| {
+                    let _ = done.send(Done::CheckpointPart(index, part.to_vec(), last));
+                });
+                continue;
+            }
+            Job::RestorePart { first, bytes } => {
+                if first {
+                    restoring = Ok(Restoring::default());
+                }
+                if let Ok(some) = &mut restoring
+                    && let Err(bad) = some.take(&bytes)
+                {
+                    restoring = Err(bad);
+                }
+                continue;
+            }
+            Job::Restore => {
+                let whole = std::mem::replace(&mut restoring, Ok(Restoring::default()));
+                let world = whole.and_then(|some| some.finish(Workers::new(workers)));
                 Done::Restored(world.ok().map(Box::new))
             }
             Job::Dump(view, path) => {

@@ -11,13 +11,15 @@ use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::frame_codec::frames_from_bytes;
 use crate::wire::message::{
-    Address, CHUNK, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer, Term, VERSION,
+    Address, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Term, VERSION,
 };
 
 /// Between two greetings.
 const GREET_US: u64 = 200_000;
-/// Chunks that are asked for at once.
-const WINDOW: usize = 48;
+/// Chunks that are on their way at once: 8 MiB.
+const WINDOW: u32 = 256;
+/// Gaps that are asked for again at once.
+const MAX_GAPS: usize = 16;
 /// A chunk that did not come is asked for again.
 const CHUNK_US: u64 = 700_000;
 /// Frames that wait for one before them.
@@ -40,12 +42,16 @@ enum MemberPhase {
 #[derive(Debug)]
 struct Fetch {
     entry: Entry,
-    offer: Offer,
-    chunks: Vec<Option<Vec<u8>>>,
-    left: usize,
-    /// The first chunk of those that were asked for, and when; 0: not yet.
-    window: usize,
-    asked_us: u64,
+    index: u64,
+    /// The first chunk that is not here; those before it were handed on.
+    next: u32,
+    early: BTreeMap<u32, Vec<u8>>,
+    /// Chunks up to this one were asked for.
+    asked: u32,
+    /// The last one, once it is known.
+    last: Option<u32>,
+    /// When something came, or was asked for again.
+    progress_us: u64,
 }
 
 /// A member's state.
@@ -164,8 +170,8 @@ impl Member {
                     }
                 }
             }
-            FromHost::Chunk { index, number, bytes } => {
-                self.chunk(core, index, number, bytes, now_us)
+            FromHost::Chunk { index, number, last, bytes } => {
+                self.chunk(core, index, (number, last), bytes, now_us)
             }
             FromHost::Differs { index, hash } => {
                 let own = self.hashes.get(&index).copied().unwrap_or_default();
@@ -200,15 +206,17 @@ impl Member {
                 }
                 self.follow(core, &entry, now_us);
             }
-            Some(offer) => {
-                // 32 KiB a chunk: what is allocated is bounded by what was told and sealed.
-                let chunks = vec![None; offer.chunks as usize];
-                if offer.size.div_ceil(CHUNK as u64) != u64::from(offer.chunks) {
-                    return core.note("a checkpoint of no size was offered");
-                }
+            Some(index) => {
                 self.level = false;
-                let (left, entry) = (chunks.len(), *entry);
-                let fetch = Fetch { entry, offer, chunks, left, window: 0, asked_us: 0 };
+                let fetch = Fetch {
+                    entry: *entry,
+                    index,
+                    next: 0,
+                    early: BTreeMap::new(),
+                    asked: 0,
+                    last: None,
+                    progress_us: now_us,
+                };
                 self.phase = MemberPhase::Fetches(Box::new(fetch));
                 self.advance(core, now_us);
             }
@@ -226,35 +234,37 @@ impl Member {
         core.note(format!("joined turn {}; people so far: {host}", entry.term.number));
     }
 
-    fn chunk(&mut self, core: &mut Core, index: u64, number: u32, bytes: Vec<u8>, now_us: u64) {
+    fn chunk(
+        &mut self,
+        core: &mut Core,
+        index: u64,
+        (number, last): (u32, bool),
+        bytes: Vec<u8>,
+        now_us: u64,
+    ) {
         let MemberPhase::Fetches(fetch) = &mut self.phase else { return };
-        let slot = fetch.chunks.get_mut(number as usize).filter(|_| fetch.offer.index == index);
-        let Some(slot) = slot else { return };
-        if slot.is_none() {
-            *slot = Some(bytes);
-            fetch.left -= 1;
+        if index != fetch.index || !(fetch.next..fetch.asked).contains(&number) {
+            return;
         }
-        let end = (fetch.window + WINDOW).min(fetch.chunks.len());
-        if fetch.chunks[fetch.window..end].iter().all(Option::is_some) {
-            (fetch.window, fetch.asked_us) = (end, 0);
+        if last {
+            fetch.last = Some(number);
         }
-        if fetch.left > 0 {
+        fetch.early.insert(number, bytes);
+        fetch.progress_us = now_us;
+        while let Some(bytes) = fetch.early.remove(&fetch.next) {
+            core.events.push_back(Event::RestorePart { first: fetch.next == 0, bytes });
+            fetch.next += 1;
+        }
+        if fetch.last.is_none_or(|last| fetch.next <= last) {
             return self.advance(core, now_us);
         }
         let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, MemberPhase::Follows)
         else {
             return;
         };
-        let Fetch { entry, offer, chunks, .. } = *fetch;
-        let checkpoint: Vec<u8> = chunks.into_iter().flatten().flatten().collect();
-        if checkpoint.len() as u64 != offer.size {
-            core.note("a checkpoint came with another size than was told");
-            return self.greet(core, now_us);
-        }
-        let (turns, people) = (entry.turns.clone(), entry.people.clone());
-        core.log = ReplicaLog::at(offer.index, 0, turns, people);
-        let checkpoint = Arc::new(checkpoint);
-        core.events.push_back(Event::Restore { index: offer.index, checkpoint });
+        let Fetch { entry, index, .. } = *fetch;
+        core.log = ReplicaLog::at(index, 0, entry.turns.clone(), entry.people.clone());
+        core.events.push_back(Event::Restore { index });
         self.follow(core, &entry, now_us);
     }
 
@@ -327,13 +337,19 @@ impl Member {
                     return self.greet(core, now_us);
                 }
                 let Some((up, _)) = &mut self.seals else { return };
-                if fetch.asked_us == 0 || now_us >= fetch.asked_us + CHUNK_US {
-                    fetch.asked_us = now_us.max(1);
-                    let from = fetch.window;
-                    let first = fetch.chunks[from..].iter().position(Option::is_none).unwrap_or(0);
-                    let (first, index) = ((from + first) as u32, fetch.offer.index);
-                    let count = (from + WINDOW) as u32 - first;
+                let index = fetch.index;
+                let mut ask = |chunks: std::ops::Range<u32>| {
+                    let (first, count) = (chunks.start, chunks.len() as u32);
                     core.up(self.host, up, &FromMember::Want { index, first, count });
+                };
+                let end = fetch.last.map_or(u32::MAX, |last| last + 1).min(fetch.next + WINDOW);
+                if end >= fetch.asked + WINDOW / 4 {
+                    ask(fetch.asked..end);
+                    fetch.asked = end;
+                }
+                if now_us >= fetch.progress_us + CHUNK_US {
+                    fetch.progress_us = now_us;
+                    gaps(fetch).into_iter().for_each(ask);
                 }
             }
             MemberPhase::Follows => {
@@ -365,4 +381,18 @@ impl Member {
     pub fn hurry(&mut self, now_us: u64) {
         self.next_us = self.next_us.min(now_us + SEND_US);
     }
+}
+
+/// The chunks that were asked for and did not come, up to the newest that did.
+fn gaps(fetch: &Fetch) -> Vec<std::ops::Range<u32>> {
+    let mut gaps = Vec::new();
+    let mut first = fetch.next;
+    let end = fetch.last.map_or(fetch.asked, |last| last + 1);
+    for &here in fetch.early.keys().chain([&end]) {
+        if here > first && gaps.len() < MAX_GAPS {
+            gaps.push(first..here);
+        }
+        first = here + 1;
+    }
+    gaps
 }

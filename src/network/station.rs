@@ -8,7 +8,6 @@
 //! turn becomes a member again. Where the network is split, each part goes on; when it heals, the
 //! smaller turn's stations join the greater's, and send again what of their own input it lacks.
 
-use std::sync::Arc;
 
 use crate::core::{Core, DOWN, Event, GREETING, HEIRS, HeirsSeal, LOST_US, To, UP};
 use crate::host::Host;
@@ -350,10 +349,11 @@ impl Station {
         }
     }
 
-    /// The own world's checkpoint after a frame with the mark. Only a host needs it.
-    pub fn checkpoint(&mut self, index: u64, bytes: Arc<Vec<u8>>) {
+    /// The next bytes of the own world's checkpoint after a frame with the mark; `last`: nothing
+    /// follows them. Only a host needs them.
+    pub fn checkpoint_part(&mut self, index: u64, part: &[u8], last: bool) {
         if let StationPhase::Hosts(host) = &mut self.phase {
-            host.checkpoint(&mut self.core, index, bytes);
+            host.checkpoint_part(&mut self.core, index, part, last);
         }
     }
 

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use crossbeam_channel as cc;
 use zenoh::Wait;
 use zenoh::pubsub::{Publisher, Subscriber};
-use zenoh::qos::CongestionControl;
+use zenoh::qos::{CongestionControl, Priority};
 
 use crate::core::To;
 use crate::transport::Transport;
@@ -23,6 +23,8 @@ use crate::wire::message::Address;
 
 /// Datagrams that wait to be read; more are dropped, as a full network drops them.
 const WAITING: usize = 8192;
+/// Datagrams of a checkpoint that wait to be sent; more are dropped.
+const BULK: usize = 1024;
 /// Stations whose publisher is kept.
 const MAX_PUBLISHERS: usize = 256;
 
@@ -47,6 +49,7 @@ pub struct ZenohLink {
     subscribers: Vec<Subscriber<()>>,
     host: Option<Subscriber<()>>,
     publishers: BTreeMap<String, Publisher<'static>>,
+    bulk: cc::Sender<(String, Vec<u8>)>,
 }
 
 /// Whether a sculpture may be called so: it is a part of a key.
@@ -103,6 +106,12 @@ impl ZenohLink {
     pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
         let session = open_session(endpoints, None)?;
         let (sender, incoming) = cc::bounded(WAITING);
+        let (bulk, waiting) = cc::bounded(BULK);
+        let of_thread = session.clone();
+        std::thread::Builder::new()
+            .name("sculptd-bulk".into())
+            .spawn(move || send_bulk(&of_thread, &waiting))
+            .map_err(|e| e.to_string())?;
         Ok(ZenohLink {
             session,
             name: name.into(),
@@ -111,6 +120,7 @@ impl ZenohLink {
             subscribers: Vec::new(),
             host: None,
             publishers: BTreeMap::new(),
+            bulk,
         })
     }
 
@@ -119,7 +129,7 @@ impl ZenohLink {
         match to {
             To::Host => format!("sculptd/1/{name}/host"),
             To::Heirs => format!("sculptd/1/{name}/heirs"),
-            To::Peer(address) => format!("sculptd/1/{name}/to/{address:016x}"),
+            To::Peer(address) | To::Bulk(address) => format!("sculptd/1/{name}/to/{address:016x}"),
         }
     }
 
@@ -165,6 +175,11 @@ impl Transport for ZenohLink {
     }
 
     fn send(&mut self, to: To, bytes: Vec<u8>) {
+        if let To::Bulk(_) = to {
+            // What does not fit is asked for again.
+            let _ = self.bulk.try_send((self.key(to), bytes));
+            return;
+        }
         if let Err(e) = self.put(to, bytes) {
             tracing::debug!("a datagram was not sent: {e}");
         }
@@ -172,5 +187,25 @@ impl Transport for ZenohLink {
 
     fn incoming(&self) -> cc::Receiver<Vec<u8>> {
         self.incoming.clone()
+    }
+}
+
+/// Sends checkpoints: behind all else, and as fast as the receiver takes them. It may wait for a
+/// receiver that is gone until its connection is given up; nothing else waits with it.
+fn send_bulk(session: &zenoh::Session, waiting: &cc::Receiver<(String, Vec<u8>)>) {
+    let mut newest: Option<(String, Publisher<'static>)> = None;
+    for (key, bytes) in waiting {
+        if newest.as_ref().is_none_or(|n| n.0 != key) {
+            let publisher = session
+                .declare_publisher(key.clone())
+                .congestion_control(CongestionControl::Block)
+                .priority(Priority::DataLow);
+            newest = publisher.wait().ok().map(|publisher| (key, publisher));
+        }
+        if let Some((_, publisher)) = &newest
+            && let Err(e) = publisher.put(bytes).wait()
+        {
+            tracing::debug!("a part of a checkpoint was not sent: {e}");
+        }
     }
 }

@@ -6,7 +6,7 @@ use super::frame::{Arrival, Batch, MAX_NAME, PersonId, Role};
 use super::frame_codec::{put_batches, take_batches};
 
 /// The version of the messages; a host refuses others by name.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 /// Bytes of one chunk of a checkpoint.
 pub const CHUNK: usize = 32 << 10;
 /// Bytes of a reason.
@@ -84,16 +84,9 @@ pub enum Greeting {
 /// Where a log ends that somebody already has: the turn of its last frame, and its index.
 pub type Reached = (Term, u64);
 
-/// A checkpoint that waits to be fetched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Offer {
-    /// The frame right after which it was taken.
-    pub index: u64,
-    /// Its bytes.
-    pub size: u64,
-    /// Its chunks.
-    pub chunks: u32,
-}
+/// A checkpoint that can be fetched, by the frame right after which it was taken. Its first chunks
+/// may be had while the last ones are still made.
+pub type Offer = u64;
 
 /// How somebody is let in.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -191,6 +184,8 @@ pub enum FromHost {
         index: u64,
         /// Which.
         number: u32,
+        /// Whether none follows.
+        last: bool,
         /// At most [`CHUNK`].
         bytes: Vec<u8>,
     },
@@ -353,10 +348,8 @@ impl Entry {
         put_number(out, u64::from(self.rate_hz));
         put_number(out, self.applied);
         out.push(u8::from(self.offer.is_some()));
-        if let Some(offer) = &self.offer {
-            put_number(out, offer.index);
-            put_number(out, offer.size);
-            put_number(out, u64::from(offer.chunks));
+        if let Some(index) = self.offer {
+            put_number(out, index);
         }
         put_number(out, self.people.len() as u64);
         for (person, applied) in &self.people {
@@ -382,11 +375,7 @@ impl Entry {
         let applied = b.at_most(u64::MAX >> 1)?;
         let offer = match b.byte()? {
             0 => None,
-            _ => Some(Offer {
-                index: b.at_most(u64::MAX >> 1)?,
-                size: b.at_most(MAX_CHUNKS * CHUNK as u64)?,
-                chunks: b.at_most(MAX_CHUNKS)? as u32,
-            }),
+            _ => Some(b.at_most(u64::MAX >> 1)?),
         };
         let mut people = Vec::new();
         for _ in 0..b.count(256)? {
@@ -425,10 +414,11 @@ impl FromHost {
                 put_number(&mut out, u64::from(*echo_ms));
                 out.extend(frames);
             }
-            FromHost::Chunk { index, number, bytes } => {
+            FromHost::Chunk { index, number, last, bytes } => {
                 out.push(3);
                 put_number(&mut out, *index);
                 put_number(&mut out, u64::from(*number));
+                out.push(u8::from(*last));
                 put_bytes(&mut out, bytes);
             }
             FromHost::Differs { index, hash } => {
@@ -457,6 +447,7 @@ impl FromHost {
             3 => FromHost::Chunk {
                 index: b.number()?,
                 number: b.at_most(MAX_CHUNKS)? as u32,
+                last: b.byte()? != 0,
                 bytes: b.bytes(CHUNK)?.to_vec(),
             },
             4 => FromHost::Differs { index: b.number()?, hash: u64::from_le_bytes(b.array()?) },
@@ -519,7 +510,7 @@ mod tests {
             term,
             rate_hz: 120,
             applied: 9,
-            offer: Some(Offer { index: 4, size: 70_000, chunks: 3 }),
+            offer: Some(4),
             people: vec![(person, 8)],
             turns: vec![(term, 1)],
             succession: Some((vec![1; 32], vec![2; 90])),
@@ -529,7 +520,7 @@ mod tests {
             FromHost::Entry(Box::new(entry)).to_bytes(),
             FromHost::Refused("no".into()).to_bytes(),
             FromHost::Down { received: 1, acknowledged: 2, sent_ms, echo_ms, frames }.to_bytes(),
-            FromHost::Chunk { index: 4, number: 1, bytes: vec![3; 99] }.to_bytes(),
+            FromHost::Chunk { index: 4, number: 1, last: true, bytes: vec![3; 99] }.to_bytes(),
             FromHost::Differs { index: 4, hash: 5 }.to_bytes(),
         ]
     }

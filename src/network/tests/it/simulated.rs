@@ -1,6 +1,6 @@
 //! Stations around worlds, and a network between them that is moved by hand.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use glam::Vec2;
 use sculptd_clay::brush::BrushSettings;
@@ -12,7 +12,7 @@ use sculptd_engine::hand::HandSettings;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
-use sculptd_network::checkpoint::Captured;
+use sculptd_network::checkpoint::Restoring;
 use sculptd_network::core::{Event, To};
 use sculptd_network::executor::{Executor, KnownHashes};
 use sculptd_network::keyring::{Entropy, Invitation, Keyring, fresh};
@@ -69,6 +69,9 @@ pub struct Replica {
     pub world: Option<World>,
     pub executor: Executor,
     pub known: KnownHashes,
+    /// Parts of its checkpoints that another thread would still be making.
+    making: VecDeque<(u64, Vec<u8>, bool)>,
+    restoring: Restoring,
     /// Shows the own strokes before they are ordered; `None`: without.
     pub echo: Option<LocalEcho>,
     /// Ticks with a tip down in which the world that was shown moved, and in which it did not.
@@ -149,6 +152,8 @@ impl Simulation {
             world,
             executor: Executor::new(RATE, 0),
             known: KnownHashes::default(),
+            making: VecDeque::new(),
+            restoring: Restoring::default(),
             echo: None,
             shown: (0, 0),
             alone: (ball(), (0, 0)),
@@ -269,6 +274,9 @@ impl Simulation {
     fn events(&mut self, i: usize) {
         let now_us = self.now_us;
         let replica = &mut self.replicas[i];
+        if let Some((index, part, last)) = replica.making.pop_front() {
+            replica.station.checkpoint_part(index, &part, last);
+        }
         while let Some(event) = replica.station.take_event() {
             match event {
                 Event::Frame(frame) => {
@@ -283,8 +291,16 @@ impl Simulation {
                         let captured =
                             asked.captured.expect("a checkpoint's tick ends all strokes");
                         if replica.station.hosts() {
-                            let bytes = captured.to_bytes();
-                            replica.station.checkpoint(frame.index, bytes.into());
+                            // In pieces, so that who joins is ahead of what is made.
+                            captured.write(|part, last| {
+                                for piece in part.chunks(9_000) {
+                                    let piece = (frame.index, piece.to_vec(), false);
+                                    replica.making.push_back(piece);
+                                }
+                                if last {
+                                    replica.making.push_back((frame.index, Vec::new(), true));
+                                }
+                            });
                         }
                     }
                     replica.station.after_step(world.is_at_rest());
@@ -292,8 +308,15 @@ impl Simulation {
                         echo.ordered(&frame);
                     }
                 }
-                Event::Restore { checkpoint, .. } => {
-                    let world = Captured::restore(&checkpoint, Workers::new(1)).expect("whole");
+                Event::RestorePart { first, bytes } => {
+                    if first {
+                        replica.restoring = Restoring::default();
+                    }
+                    replica.restoring.take(&bytes).expect("parts of a checkpoint");
+                }
+                Event::Restore { .. } => {
+                    let whole = std::mem::take(&mut replica.restoring);
+                    let world = whole.finish(Workers::new(1)).expect("whole");
                     world.verify_invariants().expect("sound");
                     replica.world = Some(world);
                     replica.executor = Executor::new(RATE, replica.station.person());
@@ -327,7 +350,9 @@ impl Simulation {
             .filter(|&k| match to {
                 To::Host => self.replicas[k].station.hosts(),
                 To::Heirs => true,
-                To::Peer(address) => self.replicas[k].station.address() == address,
+                To::Peer(address) | To::Bulk(address) => {
+                    self.replicas[k].station.address() == address
+                }
             })
             .collect();
         if self.replicas[from].cut_off {
