@@ -129,9 +129,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     // Recordings that are played without a window and without visitors are stepped, so that they
     // give the same bits every time.
     #[cfg(feature = "network")]
-    let (is_shared, joins) = (args.shared.is_on(), args.shared.join.is_some());
+    let (is_shared, looks_on) = (args.shared.is_on(), args.shared.looks_on());
     #[cfg(not(feature = "network"))]
-    let (is_shared, joins) = (false, false);
+    let (is_shared, looks_on) = (false, false);
     let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk || is_shared;
     #[cfg(unix)]
     if args.metrics.is_some() && !on_the_wall_clock {
@@ -152,9 +152,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
     // In a window a session is always on.
-    let own = (window && args.session.is_none() && kiosk.is_none() && players.is_empty() && !joins)
-        .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
-        .flatten();
+    let own =
+        (window && args.session.is_none() && kiosk.is_none() && players.is_empty() && !looks_on)
+            .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
+            .flatten();
     let session = args.session.as_ref().or(own.as_ref());
     let fresh = !session.is_some_and(|s| s.exists());
     // A large mesh is loaded in sight, with its progress, once the window is there.
@@ -169,12 +170,15 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     #[cfg(feature = "network")]
     let (begun, shared) = if args.shared.join.is_some() {
         let alone = |config: &Config| begin(&[], None, config);
-        let (begun, shared) = args.shared.join(&mut config, alone)?;
+        let session = session.map(PathBuf::as_path);
+        let (begun, shared) = args.shared.join(&mut config, session, alone)?;
         (begun, Some(shared))
     } else {
         let begun = begin(&meshes, session.map(PathBuf::as_path), &config)?;
         let hosts = args.shared.host.is_some();
-        let shared = hosts.then(|| args.shared.host(&begun, &config)).transpose()?;
+        let shared = hosts
+            .then(|| args.shared.host(&begun, session.map(PathBuf::as_path), &config))
+            .transpose()?;
         (begun, shared)
     };
     let objects = begun.world.scene().objects();

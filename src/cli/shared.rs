@@ -5,12 +5,14 @@ use std::time::Duration;
 
 use super::Fail;
 use sculptd_daemon::config::Config;
+use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::shared_input::SharedInput;
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::Clock;
 use sculptd_network::keyring::{Entropy, Invitation, Keyring};
 use sculptd_network::live::{Shared, SharedError, SharedSettings};
 use sculptd_network::random::system_entropy;
+use sculptd_network::shared_session::SharedSession;
 use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::Role;
 use sculptd_network::zenoh_link::{Endpoints, ZenohLink, sculpture_name};
@@ -26,7 +28,7 @@ pub struct SharedArgs {
     pub host: Option<String>,
     /// Join the sculpture of this name, with the invitation --key.
     #[arg(long, value_name = "NAME", value_parser = sculpture_name, requires = "key",
-        conflicts_with_all = ["mesh", "session", "kiosk"])]
+        conflicts_with_all = ["mesh", "kiosk"])]
     pub join: Option<String>,
     /// The folder of a host's invitations, a file each; one for each role is made where there is
     /// none. Without it, `invitations/NAME` in the user's data folder.
@@ -65,6 +67,11 @@ impl SharedArgs {
         self.host.is_some() || self.join.is_some()
     }
 
+    /// Whether this is the screen or the tablet of others' work: nothing of it is kept here.
+    pub fn looks_on(&self) -> bool {
+        self.join.is_some() && self.role != JoinRole::Sculptor
+    }
+
     fn link(&self, name: &str) -> Result<ZenohLink, Fail> {
         let (listen, connect) = (self.listen.clone(), self.connect.clone());
         let endpoints = Endpoints { listen, connect, multicast: true };
@@ -78,7 +85,12 @@ impl SharedArgs {
     }
 
     /// Hosts the world that a run has begun.
-    pub fn host(&self, begun: &Begun, config: &Config) -> Result<Box<dyn SharedInput>, Fail> {
+    pub fn host(
+        &self,
+        begun: &Begun,
+        session: Option<&Path>,
+        config: &Config,
+    ) -> Result<Box<dyn SharedInput>, Fail> {
         let name = self.host.as_deref().unwrap_or_default();
         let folder = self.keys.clone().unwrap_or_else(|| data_folder("invitations").join(name));
         let mut entropy = system_entropy();
@@ -100,8 +112,12 @@ impl SharedArgs {
         let (rate, tick) = (config.r#loop.rate_hz, begun.world.tick());
         let identity = self.identity(Role::Sculptor, own, entropy);
         let station = Station::host(identity, keyring, rate, tick, clock.now_us());
-        let shared =
-            Shared::start(station, Box::new(self.link(name)?), clock, settings(config, name));
+        let shared = Shared::start(
+            station,
+            Box::new(self.link(name)?),
+            clock,
+            settings(config, name, session.map(|s| (s, true))),
+        );
         let shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
         Ok(Box::new(shared.link))
     }
@@ -111,9 +127,15 @@ impl SharedArgs {
     pub fn join(
         &self,
         config: &mut Config,
+        session: Option<&Path>,
         alone: impl FnOnce(&Config) -> Result<Begun, Fail>,
     ) -> Result<(Begun, Box<dyn SharedInput>), Fail> {
         let name = self.join.as_deref().unwrap_or_default();
+        if let Some(path) = session.filter(|path| path.exists()) {
+            let path = path.display();
+            let text = "who joins begins a new session: name a file that is not there";
+            return Err(Fail::Usage(format!("{path}: {text}")));
+        }
         let key = self.key.as_deref().unwrap_or(Path::new(""));
         let invitation = Invitation::read(key).map_err(|e| Fail::Config(e.to_string()))?;
         let role = match self.role {
@@ -124,30 +146,45 @@ impl SharedArgs {
         let clock = Clock::monotonic();
         let identity = self.identity(role, invitation, system_entropy());
         let station = Station::join(identity, clock.now_us());
-        let shared =
-            Shared::start(station, Box::new(self.link(name)?), clock, settings(config, name));
+        let shared = Shared::start(
+            station,
+            Box::new(self.link(name)?),
+            clock,
+            settings(config, name, session.map(|s| (s, false))),
+        );
         let mut shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
         eprintln!("sculptd: joining '{name}'");
         let entered = shared.enter(name, role != Role::Device, PATIENCE);
         let (world, rate) = entered.map_err(|e| match e {
             SharedError::Refused(_) => Fail::Permission(e.to_string()),
+            SharedError::Session(_) => Fail::Input(e.to_string()),
             e => Fail::Check(e.to_string()),
         })?;
         if (30..=1000).contains(&rate) {
             config.r#loop.rate_hz = rate;
         }
-        let world = match world {
-            Some(world) => *world,
+        let (world, journal) = match world {
+            Some((world, journal)) => (*world, journal),
             // It stands still.
-            None => alone(config)?.world,
+            None => (alone(config)?.world, None),
         };
-        Ok((Begun { world, journal: None, warnings: Vec::new() }, Box::new(shared.link)))
+        Ok((Begun { world, journal, warnings: Vec::new() }, Box::new(shared.link)))
     }
 }
 
-fn settings(config: &Config, name: &str) -> SharedSettings {
+/// `session`: a file of which a session is made, and whether it is one already.
+fn settings(config: &Config, name: &str, session: Option<(&Path, bool)>) -> SharedSettings {
     let workers = config.r#loop.worker_count();
-    SharedSettings { workers, dumps: data_folder("differences").join(name) }
+    let begun_with = Settings {
+        rate_hz: config.r#loop.rate_hz,
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: config.undo.bytes,
+        camera: config.camera.camera(),
+        brush: config.brush,
+        hands: config.hand,
+    };
+    let session = session.map(|(path, taken)| SharedSession::new(path, begun_with, taken));
+    SharedSettings { workers, dumps: data_folder("differences").join(name), session }
 }
 
 /// A folder in the user's data folder.

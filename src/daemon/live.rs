@@ -20,6 +20,7 @@ use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
+use crate::session::writer::WriterThread;
 use crate::shared_input::{NextTick, SharedInput};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
@@ -55,6 +56,8 @@ pub struct Ended {
     pub world: World,
     pub figures: TickStatistics,
     pub receiver: Receiver,
+    /// Sessions that were begun while the loop ran, to be waited for.
+    pub writing: Vec<WriterThread>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -129,6 +132,7 @@ impl Live {
             garbage,
             pages,
             shared,
+            writing: Vec::new(),
             trail,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
             joiner: BooleanJobs::start(published.clone(), commands.clone()).ok(),
@@ -166,6 +170,8 @@ struct Ticking {
     garbage: GarbageThread,
     pages: PageSupply,
     shared: Option<Box<dyn SharedInput>>,
+    /// Of the journals that took the place of the first one.
+    writing: Vec<WriterThread>,
     trail: PenTrailSender,
 }
 
@@ -290,7 +296,8 @@ impl Ticking {
             pacer.done(self.clock.now_us());
             now.figures.overruns = pacer.overruns;
         }
-        Ended { world: self.world, figures: now.figures, receiver: self.receiver }
+        let Ticking { world, receiver, writing, .. } = self;
+        Ended { world, figures: now.figures, receiver, writing }
     }
 
     /// One tick with the input in `now`. `asks`: what the step asks for is started.
@@ -350,7 +357,15 @@ impl Ticking {
         loop {
             match shared.next(&self.world) {
                 NextTick::Wait => break,
-                NextTick::World(mut world) => {
+                NextTick::World(mut world, journal) => {
+                    // The old file ends here: it records another world.
+                    if let Some(old) = self.journal.take() {
+                        garbage.discard_owned(old);
+                    }
+                    if let Some((writer, thread)) = journal {
+                        self.journal = Some(Box::new(writer));
+                        self.writing.push(thread);
+                    }
                     world.set_garbage_sink(garbage.clone());
                     world.set_page_supply(self.pages.clone());
                     world.warm();

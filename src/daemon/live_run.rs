@@ -117,7 +117,7 @@ pub struct FinishedRun {
     pub world: World,
     /// Without the name of a file: nothing was written yet.
     pub summary: Summary,
-    writing: Option<WriterThread>,
+    writing: Vec<WriterThread>,
     /// Others are answered until the session is closed.
     #[cfg(unix)]
     _served: Served,
@@ -128,7 +128,9 @@ impl FinishedRun {
     pub fn close_session(self) -> Option<String> {
         // What the world holds is freed before the last wait.
         drop(self.world);
-        self.writing.and_then(WriterThread::finish)
+        let troubles: Vec<String> =
+            self.writing.into_iter().filter_map(WriterThread::finish).collect();
+        (!troubles.is_empty()).then(|| troubles.join("; "))
     }
 }
 
@@ -294,7 +296,7 @@ impl LiveRun {
         Ok(FinishedRun {
             world: ended.world,
             summary,
-            writing: self.writing,
+            writing: self.writing.into_iter().chain(ended.writing).collect(),
             #[cfg(unix)]
             _served: self._served,
         })

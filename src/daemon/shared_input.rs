@@ -2,6 +2,8 @@
 //! back, and the world steps nothing else. Who implements it orders the input over a network.
 
 use crate::command_queue::QueuedCommand;
+use crate::session::SessionWriter;
+use crate::session::writer::WriterThread;
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
@@ -19,6 +21,9 @@ pub struct SharedTick {
     pub own: Vec<usize>,
 }
 
+/// A session that records a shared world from where it was taken over.
+pub type SharedJournal = (SessionWriter, WriterThread);
+
 /// What the loop does next.
 #[derive(Debug)]
 pub enum NextTick {
@@ -26,8 +31,9 @@ pub enum NextTick {
     Wait,
     /// A tick is stepped.
     Step(SharedTick),
-    /// Another world takes the place of this one: the replica has joined anew.
-    World(Box<World>),
+    /// Another world takes the place of this one: the replica has joined anew. Where the session
+    /// is written, it goes on in another file, which begins with that world.
+    World(Box<World>, Option<SharedJournal>),
 }
 
 /// A sculpture that several daemons share. Called by the tick thread; nothing of it waits.

@@ -13,6 +13,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 pub mod camera;
+pub mod checkpoint;
 pub mod command;
 pub mod desktop_layout;
 pub mod hand;

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::checkpoint::Captured;
 use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::hands::with_unit_lengths;
 use sculptd_clay::{PageHashes, Snapshot};
 use sculptd_devices::{DeviceId, Sample};
+use sculptd_engine::checkpoint::Captured;
 use sculptd_engine::command::{Command, OfPerson};
 use sculptd_engine::scene::{ObjectId, SceneView};
 use sculptd_engine::world::World;

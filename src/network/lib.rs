@@ -23,7 +23,6 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod acknowledgement;
-pub mod checkpoint;
 pub mod comparison;
 pub mod core;
 pub mod executor;
@@ -43,6 +42,8 @@ pub mod random;
 pub mod rate_limit;
 pub mod replica_log;
 pub mod seal;
+#[cfg(feature = "zenoh")]
+pub mod shared_session;
 pub mod station;
 #[cfg(feature = "zenoh")]
 pub mod transport;

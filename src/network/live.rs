@@ -13,19 +13,20 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use crate::checkpoint::{Captured, Restoring};
 use crate::core::Event;
 use crate::executor::{Asked, Executor, HashView, KnownHashes};
 use crate::local_echo::LocalEcho;
 use crate::policy;
+use crate::shared_session::SharedSession;
 use crate::station::Station;
 use crate::transport::Transport;
 use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::samples::rounded;
 use sculptd_clay::Workers;
 use sculptd_daemon::command_queue::QueuedCommand;
-use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedTick};
+use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
+use sculptd_engine::checkpoint::{Captured, Restoring};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 use sculptd_geometry::io::write_mesh;
@@ -50,7 +51,7 @@ enum FromLoop {
 /// To the tick thread.
 enum ToLoop {
     Frame(Arc<Frame>),
-    World(Box<World>, Executor),
+    World(Box<World>, Executor, Option<SharedJournal>),
     Entered(PersonId, u32),
 }
 
@@ -58,8 +59,12 @@ enum ToLoop {
 enum Job {
     Hash(HashView),
     Checkpoint(u64, Box<Captured>),
-    RestorePart { first: bool, bytes: Vec<u8> },
-    Restore,
+    RestorePart {
+        first: bool,
+        bytes: Vec<u8>,
+    },
+    /// All bytes are there; ticks a second.
+    Restore(u32),
     Dump(Box<HashView>, PathBuf),
 }
 
@@ -68,7 +73,8 @@ enum Done {
     Hash(HashView, u64),
     /// The next part of a checkpoint, and whether it is the last.
     CheckpointPart(u64, Vec<u8>, bool),
-    Restored(Option<Box<World>>),
+    /// The world; and its session, where one is written, or why it is not.
+    Restored(Option<(Box<World>, Result<Option<SharedJournal>, String>)>),
 }
 
 /// What a run is told of its shared sculpture.
@@ -78,7 +84,12 @@ pub enum Told {
     Note(String),
     /// The host lets nobody in here any more.
     Refused(String),
+    /// The sculpture cannot be recorded.
+    NoSession(String),
 }
+
+/// A world of the others, and the session that records it.
+pub type EnteredWorld = (Box<World>, Option<SharedJournal>);
 
 /// Settings of a shared run.
 #[derive(Debug)]
@@ -87,6 +98,8 @@ pub struct SharedSettings {
     pub workers: usize,
     /// Where both worlds are written when they differ.
     pub dumps: PathBuf,
+    /// Where each world that comes as a checkpoint is recorded from there on.
+    pub session: Option<SharedSession>,
 }
 
 /// The tick thread's end.
@@ -145,6 +158,9 @@ pub enum SharedError {
     /// The host says no.
     #[error("not let in: {0}")]
     Refused(String),
+    /// The session's file cannot be made.
+    #[error("the sculpture cannot be recorded: {0}")]
+    Session(String),
     /// Nobody answers.
     #[error("nobody hosts '{name}' here, or nobody answers: {last}")]
     Silent {
@@ -182,10 +198,10 @@ impl Shared {
         let (tell, told) = cc::bounded(1024);
         let (jobs, work) = cc::unbounded();
         let (finished, done) = cc::bounded(64);
-        let workers = settings.workers;
+        let (workers, session) = (settings.workers, settings.session);
         std::thread::Builder::new()
             .name("sculptd-replica".into())
-            .spawn(move || work_on(&work, &finished, workers))
+            .spawn(move || work_on(&work, &finished, workers, session))
             .map_err(failed)?;
         let (stop, hosting) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
         let running = Running {
@@ -234,7 +250,7 @@ impl Shared {
         name: &str,
         sees: bool,
         patience: Duration,
-    ) -> Result<(Option<Box<World>>, u32), SharedError> {
+    ) -> Result<(Option<EnteredWorld>, u32), SharedError> {
         let clock = Clock::monotonic();
         let passed = || Duration::from_micros(clock.now_us());
         let enough = |last: &str| last.starts_with("not let in") && passed() > ENOUGH;
@@ -244,6 +260,7 @@ impl Shared {
                 match told {
                     Told::Note(text) => last = text,
                     Told::Refused(why) => return Err(SharedError::Refused(why)),
+                    Told::NoSession(why) => return Err(SharedError::Session(why)),
                 }
             }
             match self.link.from.recv_timeout(Duration::from_millis(50)) {
@@ -256,9 +273,16 @@ impl Shared {
                         return Ok((None, rate));
                     }
                 }
-                Ok(ToLoop::World(world, executor)) => {
+                Ok(ToLoop::World(world, executor, journal)) => {
+                    // What stands in a session's way was told before.
+                    let told = self.told.try_iter();
+                    let no_session =
+                        |t| if let Told::NoSession(why) = t { Some(why) } else { None };
+                    if let Some(why) = told.filter_map(no_session).next() {
+                        return Err(SharedError::Session(why));
+                    }
                     self.link.executor = executor;
-                    return Ok((Some(world), rate));
+                    return Ok((Some((world, journal)), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
                 Err(_) if passed() >= patience || enough(&last) => {
@@ -335,10 +359,10 @@ impl SharedInput for SharedLink {
             }
             match self.from.try_recv() {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
-                Ok(ToLoop::World(world, executor)) => {
+                Ok(ToLoop::World(world, executor, journal)) => {
                     self.executor = executor;
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
-                    return NextTick::World(world);
+                    return NextTick::World(world, journal);
                 }
                 Ok(ToLoop::Entered(person, rate_hz)) => {
                     self.executor.set_person(person, rate_hz);
@@ -470,7 +494,7 @@ impl Running {
                 self.restoring = None;
                 self.station.restore_failed(self.clock.now_us());
             }
-            Done::Restored(Some(mut world)) => {
+            Done::Restored(Some((mut world, journal))) => {
                 if let Some(index) = self.differs.take() {
                     let (scene, active) = (world.scene_view(), world.snapshot());
                     let view = HashView { index, tick: world.tick(), scene, active };
@@ -479,7 +503,12 @@ impl Running {
                     let _ = self.jobs.send(job);
                 }
                 let executor = Executor::new(self.station.rate_hz(), self.station.person());
-                let _ = self.to_loop.send(ToLoop::World(world, executor));
+                let journal = journal.unwrap_or_else(|why| {
+                    tracing::error!("the sculpture is not recorded from here on: {why}");
+                    let _ = self.tell.try_send(Told::NoSession(why));
+                    None
+                });
+                let _ = self.to_loop.send(ToLoop::World(world, executor, journal));
                 for frame in self.restoring.take().unwrap_or_default() {
                     let _ = self.to_loop.send(ToLoop::Frame(frame));
                 }
@@ -506,7 +535,7 @@ impl Running {
                 }
                 Event::Restore { .. } => {
                     self.restoring = Some(Vec::new());
-                    let _ = self.jobs.send(Job::Restore);
+                    let _ = self.jobs.send(Job::Restore(self.station.rate_hz()));
                 }
                 Event::Entered { person, rate_hz } => {
                     let _ = self.to_loop.send(ToLoop::Entered(person, rate_hz));
@@ -541,7 +570,12 @@ impl Running {
 }
 
 /// The worker's thread.
-fn work_on(jobs: &cc::Receiver<Job>, done: &cc::Sender<Done>, workers: usize) {
+fn work_on(
+    jobs: &cc::Receiver<Job>,
+    done: &cc::Sender<Done>,
+    workers: usize,
+    mut session: Option<SharedSession>,
+) {
     let mut known = KnownHashes::default();
     let mut restoring = Ok(Restoring::default());
     for job in jobs {
@@ -567,10 +601,13 @@ fn work_on(jobs: &cc::Receiver<Job>, done: &cc::Sender<Done>, workers: usize) {
                 }
                 continue;
             }
-            Job::Restore => {
+            Job::Restore(rate_hz) => {
                 let whole = std::mem::replace(&mut restoring, Ok(Restoring::default()));
                 let world = whole.and_then(|some| some.finish(Workers::new(workers)));
-                Done::Restored(world.ok().map(Box::new))
+                Done::Restored(world.ok().map(|mut world| {
+                    let journal = session.as_mut().map(|s| s.begin(&mut world, rate_hz));
+                    (Box::new(world), journal.transpose())
+                }))
             }
             Job::Dump(view, path) => {
                 let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);

@@ -8,7 +8,6 @@
 //! turn becomes a member again. Where the network is split, each part goes on; when it heals, the
 //! smaller turn's stations join the greater's, and send again what of their own input it lacks.
 
-
 use crate::core::{Core, DOWN, Event, GREETING, HEIRS, HeirsSeal, LOST_US, To, UP};
 use crate::host::Host;
 use crate::keyring::{Entropy, Invitation, Keyring, fresh};

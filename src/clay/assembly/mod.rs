@@ -33,6 +33,9 @@ pub enum BuildError {
     /// The mesh has no triangles.
     #[error("there are no triangles")]
     Empty,
+    /// A stored work is not whole.
+    #[error("what was stored of the work is not whole")]
+    Stored,
     /// A triangle names a vertex that does not exist.
     #[error("triangle {triangle} names vertex {vertex}, but there are {count}")]
     Index {

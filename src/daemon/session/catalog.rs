@@ -73,7 +73,7 @@ pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
     let (facts, damage) = match open(path) {
         Ok(o) => {
             let facts = SessionFacts {
-                start_vertices: o.start.positions.len() as u64,
+                start_vertices: o.start.vertices(),
                 rate_hz: o.settings.rate_hz,
                 ticks: o.input.len() as u64,
                 last_tick: o.input.last().map_or(0, |t| t.tick),

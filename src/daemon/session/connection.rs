@@ -6,7 +6,7 @@ use rusqlite::types::Type;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::format::META_START;
-use sculptd_geometry::TriMesh;
+use super::start::SessionStart;
 
 /// An SQLite file's companion.
 pub(super) fn companion(path: &Path, ending: &str) -> PathBuf {
@@ -47,18 +47,17 @@ pub(super) fn connect(path: &Path, alone: bool) -> rusqlite::Result<Connection> 
     Connection::open_with_flags(uri, plain | OpenFlags::SQLITE_OPEN_URI)
 }
 
-/// The start mesh alone, for one who holds the session open for writing: no other handle of the
+/// The start alone, for one who holds the session open for writing: no other handle of the
 /// file is opened, for closing it would give back SQLite's own locks.
 ///
 /// # Errors
 /// Where it cannot be read.
-pub(super) fn read_start(path: &Path) -> rusqlite::Result<TriMesh> {
+pub(super) fn read_start(path: &Path) -> rusqlite::Result<SessionStart> {
     let db = connect(path, false)?;
     let sql = "SELECT value FROM meta WHERE key = ?1";
     let bytes: Vec<u8> = db.query_row(sql, [META_START], |r| r.get(0))?;
-    let start: TriMesh = postcard::from_bytes(&bytes)
-        .map_err(|e| rusqlite::Error::FromSqlConversionFailure(0, Type::Blob, Box::new(e)))?;
-    Ok(start)
+    SessionStart::from_bytes(&bytes, &[])
+        .map_err(|e| rusqlite::Error::FromSqlConversionFailure(0, Type::Blob, Box::new(e)))
 }
 
 /// Whether a daemon writes it: the writer holds a lock as long as it runs.

@@ -16,8 +16,8 @@ use super::format::{
     chain_start, spare_blob,
 };
 use super::shared_memory_log::new_creation_number;
+use super::start::SessionStart;
 use super::{APPLICATION_ID, VERSION};
-use sculptd_geometry::TriMesh;
 
 /// A half-made file is at most this long: what older versions left when they were killed while
 /// they made a session.
@@ -117,7 +117,7 @@ impl SessionDraft {
     /// Where the folder or the disk does not take it.
     pub fn begin(
         path: &Path,
-        start: &TriMesh,
+        start: &SessionStart,
         settings: &Settings,
     ) -> Result<SessionDraft, CreateError> {
         static SERIAL: AtomicU32 = AtomicU32::new(0);
@@ -143,7 +143,7 @@ impl SessionDraft {
         let blob = |value: Result<Vec<u8>, postcard::Error>| {
             value.map_err(|e| store(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
         };
-        let mesh = blob(postcard::to_stdvec(start))?;
+        let mesh = blob(start.to_bytes())?;
         let settings = blob(postcard::to_stdvec(settings))?;
         let sums = (crc32fast::hash(&mesh), crc32fast::hash(&settings));
         let sums = blob(postcard::to_stdvec(&sums))?;

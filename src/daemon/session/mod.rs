@@ -25,6 +25,7 @@ mod reopen;
 pub mod replay;
 pub mod salvage;
 pub mod shared_memory_log;
+mod start;
 pub mod stored_polygons;
 mod syncer;
 pub mod writer;
@@ -34,6 +35,7 @@ pub use create::{CreateError, is_half_made};
 pub use reader::{Loss, OpenError, Opened, open};
 pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
+pub use start::SessionStart;
 pub use writer::{Fault, Health, SessionWriter, create, resume};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms

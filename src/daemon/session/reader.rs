@@ -14,6 +14,7 @@ use super::format::{
 };
 use super::history::Store;
 use super::shared_memory_log::{FileIdentity, following, logs_of, read as read_log};
+use super::start::SessionStart;
 use super::{APPLICATION_ID, VERSION};
 use sculptd_engine::old_layout::from_bytes;
 use sculptd_geometry::TriMesh;
@@ -61,7 +62,7 @@ pub struct Opened {
     pub path: PathBuf,
     /// The layout of the file, [`VERSION`] or an older one.
     pub layout: u32,
-    pub start: TriMesh,
+    pub start: SessionStart,
     pub settings: Settings,
     pub input: Vec<TickInput>,
     /// Present where a replay from the start is refused.
@@ -200,8 +201,9 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
             }
         }
     }
-    let start: TriMesh = from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;
-    if !indices_hold(&start) {
+    let start =
+        SessionStart::from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;
+    if !indices_hold(&start.mesh) {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
     let settings = from_bytes(&settings, counts).map_err(|e| damaged(META_SETTINGS, e.into()))?;

@@ -12,7 +12,7 @@ use super::history::keeper::assemble;
 use super::history::{Store, StoreError, Tree};
 use super::reader::Opened;
 use super::replay::{Replayed, Run};
-use sculptd_clay::{Clay, ObjectState, Snapshot, Workers};
+use sculptd_clay::{ObjectState, Snapshot, Workers};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 
@@ -42,8 +42,7 @@ pub fn reopen(
     let last = opened.input.last().map_or(0, |t| t.tick).max(earliest.unwrap_or(0));
     let last = last.min(until.unwrap_or(u64::MAX));
     let tree = store.tree().ok()?;
-    let mut base = Clay::build(&opened.start, job).ok()?;
-    let base = base.snapshot();
+    let base = opened.start.clay(job).ok()?;
     // Where nothing else serves, every checkpoint is tried.
     let tried = if earliest.is_some() { usize::MAX } else { TRIED };
     for id in store.checkpoints(last).ok()?.into_iter().take(tried) {

@@ -3,10 +3,10 @@
 use super::history::Store;
 use super::history::keeper::assemble;
 use super::reader::Opened;
-use sculptd_clay::{BuildError, Clay, Snapshot, Workers};
+use sculptd_clay::{BuildError, Snapshot, Workers};
 use sculptd_engine::command::{Command, Jump, SceneJump};
 use sculptd_engine::payload::Payload;
-use sculptd_engine::world::{World, WorldOptions};
+use sculptd_engine::world::World;
 use sculptd_geometry::job::Job;
 
 /// A session that was replayed to its end, or to the tick asked for.
@@ -43,12 +43,8 @@ pub fn replay_seen(
     job: &Job,
     see: &mut dyn FnMut(u64, &mut World),
 ) -> Result<Replayed, BuildError> {
-    let mut mesh = Clay::build(&opened.start, job)?;
-    let s = &opened.settings;
-    let options =
-        WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
-    let base = mesh.snapshot();
-    let world = World::new(mesh, s.camera, s.brush, workers, options);
+    let mut world = opened.start.begin(&opened.settings, workers, job)?;
+    let base = world.snapshot();
     let store = Store::read(&opened.path).ok();
     Ok(Run { opened, base: &base, store: store.as_ref(), until }.from(world, job, see))
 }

@@ -24,10 +24,9 @@ use super::history::{Node, Store, StoreError};
 use super::reader::{Loss, OpenError, Opened, indices_hold, open, salts_are_foreign};
 use super::reopen::from_checkpoint;
 use super::shared_memory_log::{self, LogEntry};
+use super::start::SessionStart;
 use super::stored_polygons;
-use sculptd_clay::Clay;
 use sculptd_engine::old_layout::from_bytes;
-use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
 /// Names that are tried for the new file.
@@ -92,7 +91,7 @@ struct InputRun {
 
 /// What was read of a damaged file.
 struct Readable {
-    start: TriMesh,
+    start: SessionStart,
     settings: Settings,
     start_changed: bool,
     runs: Vec<InputRun>,
@@ -204,12 +203,13 @@ fn read(
         best(META_START, &|s| s.0).ok_or_else(|| damaged(META_START, "it is missing".into()))?;
     let settings = best(META_SETTINGS, &|s| s.1)
         .ok_or_else(|| damaged(META_SETTINGS, "it is missing".into()))?;
-    let start: TriMesh = from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;
-    if !indices_hold(&start) {
+    let start =
+        SessionStart::from_bytes(&start, counts).map_err(|e| damaged(META_START, e.into()))?;
+    if !indices_hold(&start.mesh) {
         return Err(damaged(META_START, "an index is out of range".into()));
     }
-    // A start that cannot be built is no start.
-    Clay::build(&start, &Job::default()).map_err(|e| damaged(META_START, e.into()))?;
+    // A start that nothing can begin with is no start.
+    start.clay(&Job::default()).map_err(|e| damaged(META_START, e.into()))?;
     let settings = from_bytes(&settings, counts).map_err(|e| damaged(META_SETTINGS, e.into()))?;
     let replay_from: Option<ReplayFrom> = carved
         .meta
@@ -475,7 +475,7 @@ fn choose(
 /// Whether a checkpoint's sculpture can be put together.
 fn serves(store: &Store, readable: &Readable, id: u64) -> Result<bool, StoreError> {
     let damaged = |_| StoreError::Damaged("the start".into());
-    let mut base = Clay::build(&readable.start, &Job::default()).map_err(damaged)?;
+    let base = readable.start.clay(&Job::default()).map_err(damaged)?;
     let opened = Opened {
         path: PathBuf::new(),
         layout: VERSION,
@@ -486,7 +486,7 @@ fn serves(store: &Store, readable: &Readable, id: u64) -> Result<bool, StoreErro
         loss: None,
     };
     let tree = store.tree()?;
-    let parts = (store, &tree, &base.snapshot());
+    let parts = (store, &tree, &base);
     Ok(from_checkpoint(parts, &opened, id, None, 1, &Job::default())?.is_some())
 }
 

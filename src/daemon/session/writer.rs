@@ -21,6 +21,7 @@ use super::format::{Settings, append};
 use super::history::{Handle, keeper::Keeper};
 use super::input_end::{InputEnd, begin_log, upgrade};
 use super::shared_memory_log::LogName;
+use super::start::SessionStart;
 use super::syncer::Syncer;
 use crate::live::raise_priority_below;
 use crate::session::shared_memory_log;
@@ -29,7 +30,6 @@ use crate::tick::Journal;
 use sculptd_devices::{Clock, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
-use sculptd_geometry::TriMesh;
 
 /// Buffers between the tick thread and the writer: at 1,000 ticks a second a quarter of a second of
 /// arrears.
@@ -123,14 +123,14 @@ enum InputMessage {
 /// [`CreateError`]
 pub fn create(
     path: &Path,
-    start: &TriMesh,
+    start: impl Into<SessionStart>,
     settings: &Settings,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
     let over = path.exists();
     if over && !is_half_made(path) {
         return Err(CreateError::Exists { path: path.display().to_string() });
     }
-    SessionDraft::begin(path, start, settings)?.publish(path, over)?;
+    SessionDraft::begin(path, &start.into(), settings)?.publish(path, over)?;
     resume(path)
 }
 

@@ -458,8 +458,7 @@ fn described(
 fn base(path: &Path) -> Result<Snapshot, StoreError> {
     let damaged = |e: &dyn std::fmt::Display| StoreError::Damaged(format!("the start ({e})"));
     let start = crate::session::connection::read_start(path)?;
-    let mut mesh = Clay::build(&start, &Job::default()).map_err(|e| damaged(&e))?;
-    Ok(mesh.snapshot())
+    start.clay(&Job::default()).map_err(|e| damaged(&e))
 }
 
 /// A whole work out of the file.

@@ -12,12 +12,11 @@ use serde::{Deserialize, Serialize};
 
 use sculptd_clay::brush::Picture;
 use sculptd_clay::{Clay, Levels, ObjectState, Page, Snapshot, Workers};
-use sculptd_engine::hand::HandSettings;
-use sculptd_engine::scene::SceneView;
-use sculptd_engine::world::{Saved, World, WorldOptions};
 use sculptd_geometry::TriMesh;
 
-use crate::wire::bytes::{ByteReader, put_bytes};
+use crate::hand::HandSettings;
+use crate::scene::SceneView;
+use crate::world::{Saved, World, WorldOptions};
 
 /// Bytes that a page may become, and the head.
 const MAX_PAGE: u64 = 16 << 20;
@@ -89,14 +88,14 @@ impl Captured {
             objects: objects.collect(),
         };
         let mut out = Vec::new();
-        put_bytes(&mut out, &compressed(&postcard::to_stdvec(&head).unwrap_or_default()));
+        put_part(&mut out, &compressed(&postcard::to_stdvec(&head).unwrap_or_default()));
         put(&out, false);
         for clay in each() {
             let pages: Vec<&Arc<Page>> = clay.pages().collect();
             for some in pages.chunks(BLOCK * AT_ONCE) {
                 let blocks: Vec<Vec<u8>> = some.par_chunks(BLOCK).map(block_of).collect();
                 out.clear();
-                blocks.iter().for_each(|b| put_bytes(&mut out, b));
+                blocks.iter().for_each(|b| put_part(&mut out, b));
                 put(&out, false);
             }
         }
@@ -135,11 +134,12 @@ impl Restoring {
     /// [`BadCheckpoint`]
     pub fn take(&mut self, bytes: &[u8]) -> Result<(), BadCheckpoint> {
         self.rest.extend_from_slice(bytes);
-        let mut from = ByteReader::new(&self.rest);
         let mut used = 0;
         // What is not whole yet is read again with what follows.
-        while let Ok(part) = from.bytes(usize::MAX) {
-            used = self.rest.len() - from.left();
+        while let Some((length, rest)) = self.rest[used..].split_first_chunk::<4>()
+            && let Some(part) = rest.get(..u32::from_le_bytes(*length) as usize)
+        {
+            used += 4 + part.len();
             match &self.head {
                 Some(_) => self.blocks.push(part.to_vec()),
                 None => {
@@ -213,6 +213,12 @@ pub fn restore(bytes: &[u8], workers: Workers) -> Result<World, BadCheckpoint> {
     let mut restoring = Restoring::default();
     restoring.take(bytes)?;
     restoring.finish(workers)
+}
+
+/// Appends a part: its length, then its bytes.
+fn put_part(out: &mut Vec<u8>, part: &[u8]) {
+    out.extend_from_slice(&(part.len() as u32).to_le_bytes());
+    out.extend_from_slice(part);
 }
 
 /// Some pages, compressed.

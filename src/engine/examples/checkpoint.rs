@@ -5,11 +5,11 @@ use std::time::Instant;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_clay::{Clay, Workers};
 use sculptd_engine::camera::Camera;
+use sculptd_engine::checkpoint::{Captured, restore};
 use sculptd_engine::hand::HandSettings;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
-use sculptd_network::checkpoint::{Captured, restore};
 
 fn main() {
     let vertices = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(1_000_000);

@@ -1,0 +1,23 @@
+//! What a session's file holds of each device's input: `transitions FILE`. One line of JSON: samples
+//! and those that did more than move, by the device's number; a person of a shared sculpture has
+//! the numbers from 256 times their own.
+
+use std::collections::BTreeMap;
+
+fn main() {
+    let path = std::env::args().nth(1).expect("a session's file");
+    let opened = sculptd_daemon::session::open(path.as_ref()).expect("a session");
+    let mut last = BTreeMap::new();
+    let mut counts: BTreeMap<u16, [u64; 2]> = BTreeMap::new();
+    for sample in opened.input.iter().flat_map(|tick| &tick.samples) {
+        let moved = last.get(&sample.device).is_some_and(|l| sample.only_moved_since(l));
+        let count = counts.entry(sample.device.0).or_default();
+        count[0] += 1;
+        count[1] += u64::from(!moved);
+        last.insert(sample.device, *sample);
+    }
+    let of = |(device, [samples, transitions]): (&u16, &[u64; 2])| {
+        format!("\"{device}\":{{\"samples\":{samples},\"transitions\":{transitions}}}")
+    };
+    println!("{{{}}}", counts.iter().map(of).collect::<Vec<_>>().join(","));
+}

@@ -1,0 +1,56 @@
+//! The files of one who joins: a session for each world that came as a checkpoint, recorded from
+//! there on. What was done before is in the files of others.
+
+use std::path::{Path, PathBuf};
+
+use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::session::{self, SessionStart};
+use sculptd_daemon::shared_input::SharedJournal;
+use sculptd_engine::world::World;
+
+/// Names that are tried.
+const NAMES: u32 = 10_000;
+
+/// Where the sessions go.
+#[derive(Debug)]
+pub struct SharedSession {
+    path: PathBuf,
+    settings: Settings,
+    /// The name itself is had by an earlier session.
+    taken: bool,
+}
+
+impl SharedSession {
+    /// The first session has this name, those after it `NAME-2.sculpt` and so on. `taken`: somebody
+    /// writes the first one already.
+    pub fn new(path: &Path, settings: Settings, taken: bool) -> SharedSession {
+        SharedSession { path: path.into(), settings, taken }
+    }
+
+    /// Begins a file with a world that is at rest. The history of single steps is not kept: undo
+    /// in a shared sculpture goes as far back as memory does.
+    ///
+    /// # Errors
+    /// Where the file cannot be made, as a text.
+    pub fn begin(&mut self, world: &mut World, rate_hz: u32) -> Result<SharedJournal, String> {
+        let start = SessionStart::of_world(world).ok_or("the world is not at rest")?;
+        let path = match self.taken {
+            false => self.path.clone(),
+            true => (2..=NAMES)
+                .map(|n| numbered(&self.path, n))
+                .find(|p| !p.exists())
+                .ok_or_else(|| format!("{}: too many of that name", self.path.display()))?,
+        };
+        let settings = Settings { rate_hz, ..self.settings.clone() };
+        let journal = session::create(&path, start, &settings).map_err(|e| e.to_string())?;
+        self.taken = true;
+        tracing::info!("recorded from here on in {}", path.display());
+        Ok(journal)
+    }
+}
+
+fn numbered(path: &Path, n: u32) -> PathBuf {
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let ending = path.extension().map_or("sculpt".into(), |e| e.to_string_lossy().into_owned());
+    path.with_file_name(format!("{stem}-{n}.{ending}"))
+}
