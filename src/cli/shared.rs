@@ -17,7 +17,7 @@ use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::Role;
 use sculptd_network::zenoh_link::{Endpoints, ZenohLink, sculpture_name};
 
-/// A first world comes by then, or nobody hosts.
+/// After so long without a word, or a byte of a first world, nobody hosts.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -154,7 +154,14 @@ impl SharedArgs {
         );
         let mut shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
         eprintln!("sculptd: joining '{name}'");
-        let entered = shared.enter(name, role != Role::Device, PATIENCE);
+        let (said, mut next_us) = (Clock::monotonic(), 1_000_000);
+        let coming = |bytes: u64| {
+            if said.now_us() >= next_us {
+                next_us = said.now_us() + 1_000_000;
+                eprintln!("sculptd: {:.1} MB of '{name}' are here", bytes as f64 / 1e6);
+            }
+        };
+        let entered = shared.enter(name, role != Role::Device, PATIENCE, coming);
         let (world, rate) = entered.map_err(|e| match e {
             SharedError::Refused(_) => Fail::Permission(e.to_string()),
             SharedError::Session(_) => Fail::Input(e.to_string()),

@@ -53,6 +53,8 @@ enum ToLoop {
     Frame(Arc<Frame>),
     World(Box<World>, Executor, Option<SharedJournal>),
     Entered(PersonId, u32),
+    /// Bytes of a checkpoint that have come.
+    Coming(u64),
 }
 
 /// To the worker.
@@ -214,6 +216,7 @@ impl Shared {
             jobs,
             done,
             restoring: None,
+            came: 0,
             views: BTreeMap::new(),
             differs: None,
             dumps: settings.dumps,
@@ -241,7 +244,8 @@ impl Shared {
     }
 
     /// Waits until the station was let in, and gives its first world and the host's rate; without a
-    /// world (a device sees none), as soon as it has a number.
+    /// world (a device sees none), as soon as it has a number. `coming` is told the bytes of the world
+    /// that have come.
     ///
     /// # Errors
     /// [`SharedError::Refused`], [`SharedError::Silent`]
@@ -250,12 +254,15 @@ impl Shared {
         name: &str,
         sees: bool,
         patience: Duration,
+        mut coming: impl FnMut(u64),
     ) -> Result<(Option<EnteredWorld>, u32), SharedError> {
         let clock = Clock::monotonic();
-        let passed = || Duration::from_micros(clock.now_us());
-        let enough = |last: &str| last.starts_with("not let in") && passed() > ENOUGH;
+        let mut last_us = 0;
+        let enough = |last: &str, passed| last.starts_with("not let in") && passed > ENOUGH;
         let (mut last, mut rate) = (String::from("no word"), 0);
         loop {
+            // As long as something comes, more is waited for.
+            let passed = Duration::from_micros(clock.now_us().saturating_sub(last_us));
             while let Ok(told) = self.told.try_recv() {
                 match told {
                     Told::Note(text) => last = text,
@@ -285,7 +292,11 @@ impl Shared {
                     return Ok((Some((world, journal)), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
-                Err(_) if passed() >= patience || enough(&last) => {
+                Ok(ToLoop::Coming(bytes)) => {
+                    last_us = clock.now_us();
+                    coming(bytes);
+                }
+                Err(_) if passed >= patience || enough(&last, passed) => {
                     return Err(SharedError::Silent { name: name.into(), last });
                 }
                 Err(_) => {}
@@ -368,6 +379,7 @@ impl SharedInput for SharedLink {
                     self.executor.set_person(person, rate_hz);
                     self.echo.reset(rate_hz, person);
                 }
+                Ok(ToLoop::Coming(_)) => {}
                 Err(_) => return NextTick::Wait,
             }
         }
@@ -406,6 +418,8 @@ struct Running {
     done: cc::Receiver<Done>,
     /// Frames that wait for the world that they follow.
     restoring: Option<Vec<Arc<Frame>>>,
+    /// Bytes of the newest checkpoint.
+    came: u64,
     views: BTreeMap<u64, HashView>,
     /// A state differed: the host's is written when it is there.
     differs: Option<u64>,
@@ -531,6 +545,9 @@ impl Running {
                     }
                 },
                 Event::RestorePart { first, bytes } => {
+                    let before = if first { 0 } else { self.came };
+                    self.came = before + bytes.len() as u64;
+                    let _ = self.to_loop.send(ToLoop::Coming(self.came));
                     let _ = self.jobs.send(Job::RestorePart { first, bytes });
                 }
                 Event::Restore { .. } => {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::core::{Core, Event, IDLE_US, RoundTrip, SEND_US, To, ms};
 use crate::keyring::{Invitation, Keyring};
 use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
@@ -18,6 +18,9 @@ use crate::wire::message::{
 const GREET_US: u64 = 200_000;
 /// Chunks that are on their way at once: 8 MiB.
 const WINDOW: u32 = 256;
+/// While a checkpoint comes, a word at least so often, and silence for so long is an end: what
+/// carries it may stand still for a while.
+const FETCHING_US: (u64, u64) = (1_000_000, 5_000_000);
 /// Gaps that are asked for again at once.
 const MAX_GAPS: usize = 16;
 /// A chunk that did not come is asked for again.
@@ -52,6 +55,8 @@ struct Fetch {
     last: Option<u32>,
     /// When something came, or was asked for again.
     progress_us: u64,
+    /// When the host last heard of this.
+    spoke_us: u64,
 }
 
 /// A member's state.
@@ -65,6 +70,8 @@ pub struct Member {
     seals: Option<(Seal, Seal)>,
     heard_us: u64,
     early: BTreeMap<u64, Arc<Frame>>,
+    /// A checkpoint that was broken off: it goes on where the host has it still.
+    broken_off: Option<Box<Fetch>>,
     received: u64,
     trip: RoundTrip,
     next_us: u64,
@@ -89,6 +96,7 @@ impl Member {
             seals: None,
             heard_us: now_us,
             early: BTreeMap::new(),
+            broken_off: None,
             received: 0,
             trip: RoundTrip::default(),
             next_us: now_us,
@@ -107,7 +115,10 @@ impl Member {
 
     /// Begins anew with a greeting.
     pub fn greet(&mut self, core: &mut Core, now_us: u64) {
-        self.phase = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
+        let greets = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
+        if let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, greets) {
+            self.broken_off = Some(fetch);
+        }
         self.seals = None;
         self.early.clear();
         self.heard_us = now_us;
@@ -208,14 +219,20 @@ impl Member {
             }
             Some(index) => {
                 self.level = false;
+                // Another host's checkpoint of that frame has other bytes.
+                let same = |f: &Fetch| f.index == index && f.entry.term == entry.term;
+                let known = self.broken_off.take().filter(|f| same(f));
+                let (next, early, last) =
+                    known.map(|f| (f.next, f.early, f.last)).unwrap_or_default();
                 let fetch = Fetch {
                     entry: *entry,
                     index,
-                    next: 0,
-                    early: BTreeMap::new(),
-                    asked: 0,
-                    last: None,
+                    next,
+                    early,
+                    asked: next,
+                    last,
                     progress_us: now_us,
+                    spoke_us: now_us,
                 };
                 self.phase = MemberPhase::Fetches(Box::new(fetch));
                 self.advance(core, now_us);
@@ -302,7 +319,7 @@ impl Member {
 
     /// Sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
-        let silent = now_us >= self.heard_us + LOST_US;
+        let silent = now_us >= self.heard_us + self.trip.lost_us();
         match &mut self.phase {
             MemberPhase::Greets { nonce, next_us } if now_us >= *next_us => {
                 *next_us = now_us + GREET_US;
@@ -333,7 +350,7 @@ impl Member {
                 }
             }
             MemberPhase::Fetches(fetch) => {
-                if silent {
+                if now_us >= self.heard_us + FETCHING_US.1 {
                     return self.greet(core, now_us);
                 }
                 let Some((up, _)) = &mut self.seals else { return };
@@ -343,9 +360,11 @@ impl Member {
                     core.up(self.host, up, &FromMember::Want { index, first, count });
                 };
                 let end = fetch.last.map_or(u32::MAX, |last| last + 1).min(fetch.next + WINDOW);
-                if end >= fetch.asked + WINDOW / 4 {
-                    ask(fetch.asked..end);
-                    fetch.asked = end;
+                if end >= fetch.asked + WINDOW / 4 || now_us >= fetch.spoke_us + FETCHING_US.0 {
+                    // Of none, too: a sign of life.
+                    ask(fetch.asked..end.max(fetch.asked));
+                    fetch.asked = end.max(fetch.asked);
+                    fetch.spoke_us = now_us;
                 }
                 if now_us >= fetch.progress_us + CHUNK_US {
                     fetch.progress_us = now_us;

@@ -3,7 +3,7 @@
 packets all pass through this program, which delays, loses, reorders and bounds them.
 
     cargo build --release --no-default-features --features network
-    cargo build --release -p sculptd-daemon --example transitions
+    cargo build --release --no-default-features --features network --example transitions
     tests/netns/run.py strokes --people 8 --minutes 10 RECORDING...
     tests/netns/run.py join --vertices 10000000 --mbit 100
     tests/netns/run.py kills --times 100
@@ -229,14 +229,19 @@ def strokes(args, folder, claim):
         subprocess.run([args.binary, "run", "--headless", "--play-device", to, "--session", alone], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         expected.append(sum(transitions(args, alone).values()))
+    mesh = folder / "ball.ply"
+    # A join takes about as long as its bytes at what TCP makes of such a network: 300 kbit/s.
+    for words in [["run", "--headless", "--for", "0.1", "--export", folder / "fine.ply"],
+                  ["decimate", folder / "fine.ply", "--faces", "40000", "-o", mesh]]:
+        subprocess.run([args.binary, *words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     air = Air(count, args.delay_ms / 1e3, args.loss, args.reorder, 0, args.seed)
     air.start()
     try:
         # Devices play from when a daemon has its world.
         all_of = begin(args, air, folder, count,
-                       ["--session", folder / "host.sculpt", "--play-device", folder / "0.hid"],
+                       ["--mesh", mesh, "--session", folder / "host.sculpt", "--play-device", folder / "0.hid"],
                        lambda k: ["--play-device", folder / f"{k}.hid"])
-        claim(until("all are there", lambda: all(d.hash() for d in all_of), 180), f"{count} daemons are in one sculpture")
+        claim(until("all are there", lambda: all(d.hash() for d in all_of), 300), f"{count} daemons are in one sculpture")
         begun, sent, received = time.monotonic(), air.sent[:], air.received[:]
         outages = [] if args.steady else [(0.25, {count - 1}), (0.5, set(range(count))), (0.75, {0})]
         for share, cut in outages:
