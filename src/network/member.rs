@@ -23,8 +23,9 @@ const WINDOW: u32 = 256;
 const FETCHING_US: (u64, u64) = (1_000_000, 5_000_000);
 /// Gaps that are asked for again at once.
 const MAX_GAPS: usize = 16;
-/// A chunk that did not come is asked for again.
-const CHUNK_US: u64 = 700_000;
+/// After so long without any chunk, those that did not come are asked for again. What carries them
+/// loses few, and slowly begins.
+const CHUNK_US: u64 = 3_000_000;
 /// Frames that wait for one before them.
 const MAX_EARLY: usize = 4096;
 

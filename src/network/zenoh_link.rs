@@ -92,6 +92,8 @@ pub(crate) fn open_session(
         set("connect/timeout_ms", "-1")?;
         set("connect/exit_on_failure", "false")?;
     }
+    // A checkpoint over a slow way: who is gone is known by the lease.
+    set("transport/link/tx/queue/congestion_control/block/wait_before_close", "120000000")?;
     if let Some(lease_ms) = lease_ms {
         set("transport/link/tx/lease", &lease_ms.to_string())?;
     }

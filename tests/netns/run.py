@@ -234,16 +234,21 @@ def strokes(args, folder, claim):
     for words in [["run", "--headless", "--for", "0.1", "--export", folder / "fine.ply"],
                   ["decimate", folder / "fine.ply", "--faces", "40000", "-o", mesh]]:
         subprocess.run([args.binary, *words], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    air = Air(count, args.delay_ms / 1e3, args.loss, args.reorder, 0, args.seed)
+    air = Air(count + 1, args.delay_ms / 1e3, args.loss, args.reorder, 0, args.seed)
     air.start()
     try:
         # Devices play from when a daemon has its world.
         all_of = begin(args, air, folder, count,
                        ["--mesh", mesh, "--session", folder / "host.sculpt", "--play-device", folder / "0.hid"],
                        lambda k: ["--play-device", folder / f"{k}.hid"])
-        claim(until("all are there", lambda: all(d.hash() for d in all_of), 300), f"{count} daemons are in one sculpture")
+        # A viewer takes nothing over: its file holds what all agree on, where it need not join anew.
+        archive = Daemon(args.binary, air, count, folder / "archive", "--join", "rig", "--key", folder / "keys/viewer.key",
+                         "--role", "viewer", "--as", "archive", "--connect", "tcp/10.77.0.1:7447", "--connect",
+                         "tcp/10.77.0.2:7447", "--session", folder / "archive.sculpt")
+        all_of.append(archive)
+        claim(until("all are there", lambda: all(d.hash() for d in all_of), 300), f"{count} daemons and a viewer share a sculpture")
         begun, sent, received = time.monotonic(), air.sent[:], air.received[:]
-        outages = [] if args.steady else [(0.25, {count - 1}), (0.5, set(range(count))), (0.75, {0})]
+        outages = [] if args.steady else [(0.25, {count - 1}), (0.5, set(range(count + 1))), (0.75, {0})]
         for share, cut in outages:
             time.sleep(max(0, begun + share * seconds - time.monotonic()))
             air.cut = cut
@@ -263,8 +268,9 @@ def strokes(args, folder, claim):
         takeovers = sum(d.told("takes over") for d in all_of)
         print(f"     {takeovers} takeovers; {air.lost} packets lost", flush=True)
         codes = [d.end() for d in all_of]
-        claim(codes == [0] * count, f"all end with {codes}")
-        files = sorted(folder.glob("host*.sculpt"))
+        claim(not any(codes), f"all end with {codes}")
+        files = sorted(folder.glob("archive*.sculpt"))
+        claim(len(files) == 1, f"the viewer has {len(files)} file: it never joined anew")
         found = {}
         for file in files:
             for device, n in transitions(args, file).items():
