@@ -13,7 +13,7 @@ use crate::wire::message::{Address, AmongHeirs, FromHost, FromMember, Greeting, 
 pub const SEND_US: u64 = 50_000;
 /// The same while nothing does.
 pub const IDLE_US: u64 = 250_000;
-/// After so long without a word from the host it is gone, where the way is short.
+/// After so long without a word from the host it is gone, where nobody else hears it.
 pub const LOST_US: u64 = 1_000_000;
 
 /// Whom a datagram is for.
@@ -217,12 +217,6 @@ impl RoundTrip {
             0 => 0,
             at => self.theirs_ms.wrapping_add(ms(now_us.saturating_sub(at))),
         }
-    }
-
-    /// After so long without a word the other side is gone: messages that are lost on a long way are
-    /// there again after three times the way and back.
-    pub fn lost_us(&self) -> u64 {
-        LOST_US + (self.smooth_us * 3.0) as u64
     }
 
     /// What was sent longer ago and is not confirmed is sent again.

@@ -109,6 +109,11 @@ impl Host {
         host
     }
 
+    /// Tells at once that it is here.
+    pub fn present(&mut self) {
+        self.present_us = 0;
+    }
+
     /// What a successor needs.
     pub fn succession(&self) -> (Keyring, Secret) {
         (self.keyring.clone(), self.group.clone())

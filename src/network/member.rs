@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::core::{Core, Event, IDLE_US, RoundTrip, SEND_US, To, ms};
+use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
 use crate::keyring::{Invitation, Keyring};
 use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
@@ -112,6 +112,11 @@ impl Member {
     /// Whether it follows a host.
     pub fn follows(&self) -> bool {
         matches!(self.phase, MemberPhase::Follows)
+    }
+
+    /// Whether the host is there for certain: it was heard just now.
+    pub fn hears_host(&self, now_us: u64) -> bool {
+        self.follows() && now_us < self.heard_us + LOST_US / 2
     }
 
     /// Begins anew with a greeting.
@@ -320,7 +325,7 @@ impl Member {
 
     /// Sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
-        let silent = now_us >= self.heard_us + self.trip.lost_us();
+        let silent = now_us >= self.heard_us + LOST_US;
         match &mut self.phase {
             MemberPhase::Greets { nonce, next_us } if now_us >= *next_us => {
                 *next_us = now_us + GREET_US;

@@ -247,6 +247,17 @@ impl Station {
             }
             AmongHeirs::Candidate { known, reached, by } => {
                 self.known = self.known.max(known);
+                match &mut self.phase {
+                    StationPhase::Hosts(host) => host.present(),
+                    // One way of several stands still: who hears the host vouches for it.
+                    StationPhase::Follows(member) if member.hears_host(now_us) => {
+                        let term = member.term;
+                        let core = &mut self.core;
+                        let heirs = self.heirs.get_or_insert_with(|| HeirsSeal::new(&group, core));
+                        core.among_heirs(heirs, AmongHeirs::Host { term });
+                    }
+                    StationPhase::Follows(_) => {}
+                }
                 if let Some(election) = self.election.as_mut().filter(|e| !e.decided)
                     && better((reached, by), election.best)
                 {

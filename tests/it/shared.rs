@@ -115,3 +115,54 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     assert!(comes(|| bob.hash().is_some_and(|h| h != before)));
     bob.follows(&wall, &before);
 }
+
+/// The hash that a session's file gives.
+fn replayed(file: &Path) -> Option<String> {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_sculptd"));
+    let out = command.args(["--json", "replay"]).arg(file).output().expect("runs");
+    let reply: serde_json::Value = serde_json::from_slice(&out.stdout).ok()?;
+    reply["hash"].as_str().map(String::from)
+}
+
+#[test]
+fn everybody_has_a_file_that_gives_the_same_clay() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (keys, at) = (folder.path().join("keys"), free_endpoint());
+    let keys_text = keys.display().to_string();
+    let name = format!("files-{}", std::process::id());
+    let file = |name: &str| folder.path().join(name);
+    let text = |name: &str| file(name).display().to_string();
+    let (ada_file, bob_file) = (text("ada.sculpt"), text("bob.sculpt"));
+    let host = ["--host", &name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
+    let mut ada = Daemon::run(&[&host[..], &["--session", &ada_file]].concat());
+    until("the host answers", || ada.hash().is_some());
+    // Bob's file begins with this.
+    ada.stroke(0.45);
+    let sculptor = key(&keys, "sculptor");
+    let bob_joins = [&join(&name, &sculptor, &at, "Bob")[..], &["--session", &bob_file]].concat();
+    let mut bob = Daemon::run(&bob_joins);
+    until("Bob is there", || bob.hash().is_some());
+    bob.follows(&ada, "");
+    for (n, by) in [&bob, &ada, &bob].into_iter().enumerate() {
+        let before = ada.hash().expect("a hash");
+        by.stroke(0.5 + 0.04 * n as f32);
+        bob.follows(&ada, &before);
+    }
+    let clay = bob.hash();
+    for daemon in [&mut bob, &mut ada] {
+        daemon.ctl("shutdown", None);
+        until("it has ended", || daemon.child.try_wait().expect("waited for").is_some());
+    }
+    assert_eq!(replayed(&file("ada.sculpt")), clay);
+    assert_eq!(replayed(&file("bob.sculpt")), clay);
+
+    // The file is Bob's own: it opens, and goes on alone.
+    let alone = Daemon::run(&["--session", &bob_file]);
+    until("Bob goes on alone", || alone.hash() == clay);
+    alone.stroke(0.7);
+    until("the clay is other clay", || alone.hash() != clay);
+    // Nobody joins into a file that is there.
+    let mut again = Daemon::run(&bob_joins);
+    until("it is refused", || again.child.try_wait().expect("waited for").is_some());
+    assert!(again.has_told("name a file that is not there"));
+}
