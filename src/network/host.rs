@@ -54,7 +54,8 @@ pub struct Host {
     wanted_us: Option<u64>,
     /// The frame of the checkpoint that is being made.
     making: Option<u64>,
-    checkpoint: Option<HeldCheckpoint>,
+    /// The newest last; older ones as long as somebody fetches them.
+    checkpoints: Vec<HeldCheckpoint>,
     at_rest: bool,
     alone_since_us: Option<u64>,
     present_us: u64,
@@ -86,7 +87,7 @@ impl Host {
             comparison: HashComparison::default(),
             wanted_us: None,
             making: None,
-            checkpoint: None,
+            checkpoints: Vec::new(),
             at_rest: true,
             // The first host has nobody to wait for.
             alone_since_us: first.then_some(0),
@@ -267,7 +268,7 @@ impl Host {
         if resumes {
             let people = core.log.people();
             self.enter(core, from, None, people);
-        } else if let Some(held) = self.checkpoint.as_ref().filter(|held| is_recent(core, held)) {
+        } else if let Some(held) = self.checkpoints.last().filter(|held| is_recent(core, held)) {
             let (offer, people) = (Some(held.index), held.people.clone());
             self.enter(core, from, offer, people);
         } else {
@@ -311,12 +312,12 @@ impl Host {
                 member.trip.take(sent_ms, echo_ms, now_us);
                 if have == NOT_ENTERED {
                     // Its entry was lost.
-                    let offer = self.checkpoint.as_ref().map(|c| c.index);
+                    let held = self.checkpoints.iter().find(|c| c.index == member.first);
                     return match (member.waits, member.have) {
                         (true, _) => {}
                         (false, Some(_)) => self.enter(core, from, None, core.log.people()),
                         (false, None) => {
-                            let people = self.checkpoint.as_ref().map(|c| c.people.clone());
+                            let (offer, people) = held.map(|c| (c.index, c.people.clone())).unzip();
                             self.enter(core, from, offer, people.unwrap_or_default());
                         }
                     };
@@ -325,8 +326,8 @@ impl Host {
                     return self.violation(core, from, "has frames that never were", now_us);
                 }
                 if member.role != Role::Device && member.have.is_none_or(|h| have > h) {
-                    let offered = self.checkpoint.as_ref().is_some_and(|c| have >= c.index);
-                    if member.have.is_some() || offered {
+                    // Before that it has the checkpoint that it was let in with, or less.
+                    if member.have.is_some() || !member.waits && have >= member.first {
                         (member.have, member.progress_us) = (Some(have), now_us);
                         member.sent = member.sent.max(have);
                     }
@@ -342,7 +343,7 @@ impl Host {
                 self.take_batches(core, from, batches, now_us);
             }
             FromMember::Want { index, first, count } => {
-                let Some(held) = self.checkpoint.as_ref().filter(|c| c.index == index) else {
+                let Some(held) = self.checkpoints.iter().find(|c| c.index == index) else {
                     return self.dismiss(core, from, "the checkpoint is gone: join again");
                 };
                 member.wanted.extend(first..first.saturating_add(count.min(MAX_WANTED)));
@@ -418,12 +419,13 @@ impl Host {
         if self.making != Some(index) {
             return;
         }
-        if self.checkpoint.as_ref().is_none_or(|held| held.index != index) {
+        if self.checkpoints.last().is_none_or(|held| held.index != index) {
             self.begin_checkpoint(core, index);
         }
-        let Some(held) = &mut self.checkpoint else { return };
+        let Some(held) = self.checkpoints.last_mut() else { return };
         held.push(part, last);
-        for (to, member) in self.members.iter_mut().filter(|m| !m.1.wanted.is_empty()) {
+        let wants = |m: &JoinedMember| m.first == index && !m.wanted.is_empty();
+        for (to, member) in self.members.iter_mut().filter(|m| wants(m.1)) {
             send_chunks(core, *to, member, held);
         }
         if last {
@@ -442,8 +444,7 @@ impl Host {
                 *applied = first.number - 1;
             }
         }
-        self.checkpoint = Some(HeldCheckpoint::new(index, people.clone()));
-        self.members.values_mut().for_each(|m| m.wanted.clear());
+        self.checkpoints.push(HeldCheckpoint::new(index, people.clone()));
         let waiting: Vec<Address> =
             self.members.iter().filter(|(_, m)| m.waits).map(|(a, _)| *a).collect();
         for to in waiting {
@@ -485,10 +486,12 @@ impl Host {
             self.send_next(core, to, now_us);
         }
         let offered = self.members.values().filter(|m| m.have.is_none() && !m.waits);
-        let held = self.checkpoint.as_ref().filter(|held| held.is_whole());
-        if held.is_some_and(|held| !is_recent(core, held)) && offered.clone().next().is_none() {
-            self.checkpoint = None;
-        }
+        let fetched = |index| offered.clone().any(|m| m.first == index);
+        let newest = self.checkpoints.last().map(|held| held.index);
+        self.checkpoints.retain(|held| {
+            let serves = newest == Some(held.index) && (!held.is_whole() || is_recent(core, held));
+            serves || fetched(held.index)
+        });
         let slowest = self.replicas().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
         let slowest = offered.map(|m| m.sent).min().unwrap_or(u64::MAX).min(slowest);
         core.log.trim(slowest.max(core.log.last().saturating_sub(200_000)));

@@ -23,5 +23,6 @@ pub const REST_US: u64 = 2_000_000;
 pub const BUSY_US: u64 = 1_000_000;
 /// Chunks that one request may ask for.
 pub const MAX_WANTED: u32 = 256;
-/// Frames after which a checkpoint is not given to who joins: another is made.
-pub const RECENT: u64 = 600;
+/// Frames after which a checkpoint is not given to who joins: another is made. Half a minute of
+/// frames takes less time to come than another checkpoint.
+pub const RECENT: u64 = 3600;
