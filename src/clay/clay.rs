@@ -15,7 +15,8 @@ use super::publish::{SpinePool, Stale};
 use super::ray::{Hit, Ray};
 use super::reach::Reach;
 use super::snapshot::{Snapshot, Totals, hash, to_tri};
-use super::undo::History;
+use super::step_authors::Author;
+use super::undo::{History, StepPages, StepPlace};
 use crate::assembly::{BuildError, Built, PAGE_VERTICES, build};
 use crate::multires::Levels;
 use crate::retopology::TopologyBuffers;
@@ -285,6 +286,45 @@ impl Clay {
     /// Closes the open undo step; one that changed nothing is forgotten. Whether there is one more.
     pub fn end_step(&mut self) -> bool {
         self.history.end()
+    }
+
+    /// Says who changes the clay from now on, for steps of several people.
+    pub fn set_author(&mut self, author: Author) {
+        self.history.authors.now = author;
+    }
+
+    /// Closes the open undo step of several people: people who changed no page in common get a step
+    /// each. A part stays open where an owner's strokes have not `ended`. The owners of each new
+    /// step, oldest first; what can be done again stays, for whoever keeps the order of several
+    /// people's steps.
+    pub fn end_step_of_people(&mut self, ended: impl Fn(u8) -> bool) -> Vec<Vec<u8>> {
+        let pages = &self.pages;
+        self.history.end_of_people(ended, |i, was| {
+            let now = &pages[i as usize];
+            let stack = |page: &Page| page.layers().and_then(|l| l.stack.as_ref().map(Arc::as_ptr));
+            !Arc::ptr_eq(&was.topology, &now.topology) || stack(was) != stack(now)
+        })
+    }
+
+    /// Whether a person changes the clay in the open step.
+    pub fn is_step_of(&self, person: u8) -> bool {
+        self.history.is_open() && self.history.authors.holds(person)
+    }
+
+    /// Which pages a step changed; `None`: there is no such step.
+    pub fn step_pages(&self, place: StepPlace) -> Option<StepPages> {
+        self.history.pages_of(place)
+    }
+
+    /// Makes a step the newest of its kind. Only for one that shares no page with those that came
+    /// after it ([`StepPages::shares`]): then the clay is the same in either order.
+    pub fn raise_step(&mut self, place: StepPlace) {
+        self.history.raise(place);
+    }
+
+    /// Lets one step go that could be done again; the newest is 0.
+    pub fn forget_one_redo(&mut self, k: usize) {
+        self.history.forget_one_redo(k);
     }
 
     /// Whether an undo step is open.

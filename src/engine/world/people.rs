@@ -2,17 +2,20 @@
 //!
 //! A world of one person knows nobody else, and costs and does what it did. A command of a person
 //! comes as [`Command::OfPerson`], and a device of a person has the person's number in the upper
-//! byte of its id. Whoever is new begins with what the world began with. One undo runs over the
-//! steps of all, and the hands are followed in the view of the person whose tracker spoke last.
+//! byte of its id. Whoever is new begins with what the world began with. Each takes back the own
+//! steps ([`crate::scene`] keeps them in one timeline), and the hands are followed in the view of
+//! the person whose tracker spoke last.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::World;
+use super::{HistoryEvent, World};
 use crate::camera::Camera;
 use crate::command::{Command, OfPerson};
 use crate::desktop_layout::DesktopLayout;
+use crate::scene::OwnStep;
+use sculptd_clay::Author;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
 
@@ -33,10 +36,29 @@ pub(super) struct People {
     /// Whose settings are the world's own fields.
     current: u8,
     /// Whose tracker spoke last.
-    hands: u8,
+    pub(super) hands: u8,
     /// Whom the world is shown to; no part of what is stepped.
     #[serde(skip)]
     shown: u8,
+    /// Whose strokes go on, and whose did in the tick before; a checkpoint ends all.
+    #[serde(skip)]
+    sculpt: Vec<u8>,
+    #[serde(skip)]
+    sculpted: Vec<u8>,
+    /// Of the person that the world is shown to: the newest undo or redo that was refused.
+    #[serde(skip)]
+    refused: Option<UndoRefusal>,
+}
+
+/// An undo or redo that was refused, as a step of somebody else is in the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UndoRefusal {
+    /// When it was asked for.
+    pub tick: u64,
+    /// It was a redo.
+    pub redo: bool,
+    /// An owner of the step that is in the way.
+    pub by: u8,
 }
 
 impl People {
@@ -76,6 +98,70 @@ impl World {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown
     }
 
+    /// Who acts now; `None`: the world is of one person.
+    pub(super) fn person(&self) -> Option<u8> {
+        (!self.people.is_nobody()).then_some(self.people.current)
+    }
+
+    /// Whom the world is shown to; `None`: it is of one person.
+    pub(super) fn shown_person(&self) -> Option<u8> {
+        (!self.people.is_nobody()).then_some(self.people.shown)
+    }
+
+    /// Whose changes of the active object's clay follow: one person's, or `None`: what follows from
+    /// what several did. Nothing in a world of one person.
+    pub(super) fn author(&mut self, person: Option<u8>) {
+        if !self.people.is_nobody() {
+            let author = person.map_or(Author::Everybody, Author::Person);
+            self.scene.active_mut().clay.set_author(author);
+        }
+    }
+
+    /// While somebody's strokes go on: closes the steps of people whose own have ended in this tick,
+    /// where they changed nothing in common with those who go on.
+    pub(super) fn close_ended(&mut self) {
+        if self.people.is_nobody() {
+            return;
+        }
+        let mut now = std::mem::take(&mut self.people.sculpted);
+        now.clear();
+        let going_on = self.pens.iter().filter(|s| s.track.is_open() || !s.track.is_idle());
+        now.extend(going_on.map(|s| self.people.of_device(s.device)));
+        now.extend(self.hands.is_touching().then_some(self.people.hands));
+        self.people.sculpted = std::mem::replace(&mut self.people.sculpt, now);
+        let World { timeline, scene, garbage, options, people, topology, .. } = self;
+        let clay = &scene.active().clay;
+        let goes_on = |p: u8| people.sculpt.contains(&p);
+        let some_ended = people.sculpted.iter().any(|p| !goes_on(*p));
+        let alone = topology.is_empty() && clay.layer_count() == 0 && clay.is_in_step();
+        if some_ended
+            && alone
+            && timeline.end_steps_of(|p| !goes_on(p), scene, options.undo_bytes, garbage)
+        {
+            self.note(HistoryEvent::Step);
+        }
+    }
+
+    /// Nobody's strokes go on.
+    pub(super) fn all_ended(&mut self) {
+        self.people.sculpt.clear();
+    }
+
+    /// What became of an undo or a redo. False: nothing.
+    pub(super) fn told_of_undo(&mut self, way: OwnStep, redo: bool) -> bool {
+        if let OwnStep::InTheWay(by) = way
+            && self.people.current == self.people.shown
+        {
+            self.people.refused = Some(UndoRefusal { tick: self.tick, redo, by });
+        }
+        way == OwnStep::Done
+    }
+
+    /// The newest undo or redo of the person that the world is shown to that was refused.
+    pub fn undo_refused(&self) -> Option<UndoRefusal> {
+        self.people.refused
+    }
+
     /// Whether several people have shared the world.
     pub fn has_people(&self) -> bool {
         !self.people.is_nobody()
@@ -87,13 +173,18 @@ impl World {
             self.act_as(1);
         }
         self.people = People::default();
+        self.timeline.set_person(None);
+        self.scene.objects_mut().iter_mut().for_each(|o| o.clay.set_author(Author::Nobody));
     }
 
     /// A command of a person.
     pub(super) fn apply_of_person(&mut self, of: &OfPerson) {
         if !matches!(of.command, Command::OfPerson(_)) {
             self.act_as(of.person);
+            self.timeline.set_person(self.person());
+            self.author(self.person());
             self.apply_command(&of.command);
+            self.author(None);
         }
     }
 
