@@ -299,11 +299,13 @@ impl Clay {
     /// people's steps.
     pub fn end_step_of_people(&mut self, ended: impl Fn(u8) -> bool) -> Vec<Vec<u8>> {
         let pages = &self.pages;
-        self.history.end_of_people(ended, |i, was| {
-            let now = &pages[i as usize];
-            let stack = |page: &Page| page.layers().and_then(|l| l.stack.as_ref().map(Arc::as_ptr));
-            !Arc::ptr_eq(&was.topology, &now.topology) || stack(was) != stack(now)
-        })
+        self.history.end_of_people(ended, |i, was| is_more_than_surface(was, &pages[i as usize]))
+    }
+
+    /// Which pages the open step of several people has changed so far, and somebody whose it is.
+    pub fn open_step(&self) -> Option<(StepPages, u8)> {
+        let whole = |i: u32, was: &Page| is_more_than_surface(was, &self.pages[i as usize]);
+        self.history.open_pages(whole).zip(self.history.authors.first())
     }
 
     /// Whether a person changes the clay in the open step.
@@ -332,16 +334,24 @@ impl Clay {
         self.history.is_open()
     }
 
-    /// Takes back the newest step. False when there is none.
+    /// Takes back the newest step. False when there is none. An open step is closed before, but for
+    /// one of several people: that shares no page with what is taken back.
     pub fn undo(&mut self) -> bool {
-        self.history.end();
+        self.end_alone();
         self.travel(|history, swap| history.undo(swap))
     }
 
-    /// Does the step again that was taken back last. False when there is none.
+    /// Does the step again that was taken back last. False when there is none. An open step is as
+    /// with [`Clay::undo`].
     pub fn redo(&mut self) -> bool {
-        self.history.end();
+        self.end_alone();
         self.travel(|history, swap| history.redo(swap))
+    }
+
+    fn end_alone(&mut self) {
+        if !self.history.authors.is_told() {
+            self.history.end();
+        }
     }
 
     fn travel(
@@ -494,4 +504,11 @@ impl Clay {
             undo: self.history.bytes() as usize,
         }
     }
+}
+
+/// Whether a page differs from what it was by more than the surface: by its topology, or by the
+/// list of layers.
+fn is_more_than_surface(was: &Page, now: &Page) -> bool {
+    let stack = |page: &Page| page.layers().and_then(|l| l.stack.as_ref().map(Arc::as_ptr));
+    !Arc::ptr_eq(&was.topology, &now.topology) || stack(was) != stack(now)
 }

@@ -59,6 +59,16 @@ impl StepAuthors {
         self.bit();
     }
 
+    /// Whether people are told apart.
+    pub(super) fn is_told(&self) -> bool {
+        self.now != Author::Nobody
+    }
+
+    /// Somebody of the step.
+    pub(super) fn first(&self) -> Option<u8> {
+        self.people.iter().flatten().copied().next()
+    }
+
     /// Whether something holds of all people of the step.
     pub(super) fn all(&self, of: impl Fn(u8) -> bool) -> bool {
         self.people.iter().flatten().all(|p| of(*p))

@@ -200,6 +200,23 @@ impl History {
         parts.into_iter().map(|p| p.owners).collect()
     }
 
+    /// Which pages the open step has changed so far; `None`: there is none, or it changed nothing.
+    pub(super) fn open_pages(&self, whole: impl Fn(u32, &Page) -> bool) -> Option<StepPages> {
+        let pages = self.open.as_ref().filter(|p| !p.is_empty())?;
+        Some(StepPages {
+            whole: pages.iter().any(|(i, page)| whole(*i, page)),
+            bits: self.bits(pages),
+        })
+    }
+
+    fn bits(&self, pages: &Pages) -> Vec<u64> {
+        let mut bits = vec![0; self.touched.len().div_ceil(64)];
+        for (i, _) in pages {
+            bits[*i as usize / 64] |= 1 << (i % 64);
+        }
+        bits
+    }
+
     fn step(&self, place: StepPlace) -> Option<&Step> {
         match place {
             StepPlace::Undo(k) => self.undo.get(self.undo.len().checked_sub(k + 1)?),
@@ -210,11 +227,7 @@ impl History {
     /// Which pages a step changed.
     pub(super) fn pages_of(&self, place: StepPlace) -> Option<StepPages> {
         let step = self.step(place)?;
-        let mut bits = vec![0; self.touched.len().div_ceil(64)];
-        for (i, _) in &step.pages {
-            bits[*i as usize / 64] |= 1 << (i % 64);
-        }
-        Some(StepPages { whole: step.whole, bits })
+        Some(StepPages { whole: step.whole, bits: self.bits(&step.pages) })
     }
 
     /// Makes a step the newest, as if it had come after those that it shares no page with.

@@ -16,6 +16,7 @@ mod in_hand;
 mod layers;
 mod local_camera;
 mod others;
+mod own_undo;
 mod people;
 mod saved;
 mod scene_arrange;
@@ -279,14 +280,14 @@ impl World {
                 }
             }
             Command::Undo => {
-                self.lift_all();
+                self.lift_for_undo(false);
                 match self.undo_step() {
                     true => self.note(HistoryEvent::Undo),
                     false => self.report.missed -= i32::from(!self.has_people()),
                 }
             }
             Command::Redo => {
-                self.lift_all();
+                self.lift_for_undo(true);
                 match self.redo_step() {
                     true => self.note(HistoryEvent::Redo),
                     false => self.report.missed += i32::from(!self.has_people()),

@@ -11,6 +11,8 @@
 //! * What was taken back can be done again as long as all that it changed is as it was left. A step
 //!   of somebody else in common with it is in the way; where that one is taken back in its turn, it
 //!   is no longer. A new step of the same person lets it go, as in a world of one person.
+//! * Strokes of others that are under way go on. One that has changed something in common is in the
+//!   way like a step.
 //! * What is in common is asked of the steps alone: every replica answers alike.
 
 use super::timeline::{SceneStep, Timeline, TimelineEntry};
@@ -72,9 +74,9 @@ fn share(a: &[Changed], b: &[Changed]) -> bool {
 
 /// The places of a clay's steps, counted from the newest.
 #[derive(Debug, Default)]
-struct Counted(Vec<(u32, usize)>);
+struct PlaceCount(Vec<(u32, usize)>);
 
-impl Counted {
+impl PlaceCount {
     /// The place of the next older step of a clay.
     fn next(&mut self, name: u32) -> usize {
         let at = self.0.iter().position(|c| c.0 == name).unwrap_or_else(|| {
@@ -89,7 +91,7 @@ impl Counted {
 
 impl SceneStep {
     /// What the step changed, newest first.
-    fn changed(&self, scene: &Scene, side: Side, counted: &mut Counted, out: &mut Vec<Changed>) {
+    fn changed(&self, scene: &Scene, side: Side, counted: &mut PlaceCount, out: &mut Vec<Changed>) {
         let in_place = |id: ObjectId| scene.object(id).map_or(u32::MAX, |o| o.clay.object_id());
         match self {
             SceneStep::Clay(name) => {
@@ -150,7 +152,7 @@ impl Timeline {
 
     /// What each step changed from the newest back to `last`, newest first.
     fn changed_down_to(&self, scene: &Scene, side: Side, last: usize) -> Vec<Vec<Changed>> {
-        let mut counted = Counted::default();
+        let mut counted = PlaceCount::default();
         let newest_first = self.entries(side).into_iter().skip(last).rev();
         let of = |entry: &TimelineEntry| {
             let mut out = Vec::new();
@@ -162,7 +164,7 @@ impl Timeline {
 
     /// Puts a step after all that came later, with which it shares nothing.
     fn raise(&mut self, side: Side, at: usize, scene: &mut Scene) {
-        let (mut later, mut own) = (Counted::default(), Vec::new());
+        let (mut later, mut own) = (PlaceCount::default(), Vec::new());
         let entries = self.entries(side);
         for entry in entries.iter().skip(at + 1) {
             entry.step.each_name(&mut |name| {
@@ -195,12 +197,32 @@ impl Timeline {
         }
     }
 
+    /// Whether what a person would take back next, or do again, is a stroke, or nothing.
+    pub(crate) fn next_is_stroke(&self, person: u8, redo: bool) -> bool {
+        let own = |e: &&TimelineEntry| e.owners.contains(&person);
+        let next = match redo {
+            false => self.past.iter().rev().find(own),
+            true => self.future.iter().rev().find(own),
+        };
+        next.is_none_or(|e| matches!(e.step, SceneStep::Clay(_)))
+    }
+
+    /// Whose strokes are under way where a step changed something.
+    fn under_way(scene: &Scene, step: &[Changed]) -> Option<u8> {
+        let clay = &scene.active().clay;
+        let (pages, person) = clay.open_step()?;
+        share(&[Changed::Pages(clay.object_id(), Some(pages))], step).then_some(person)
+    }
+
     /// Takes the newest step of a person back.
     pub(crate) fn undo_own(&mut self, person: u8, scene: &mut Scene) -> OwnStep {
         let own = |e: &TimelineEntry| e.owners.contains(&person);
         let Some(at) = self.past.iter().rposition(own) else { return OwnStep::Nothing };
         let changed = self.changed_down_to(scene, Side::Past, at);
         let Some((step, later)) = changed.split_last() else { return OwnStep::Nothing };
+        if let Some(person) = Timeline::under_way(scene, step) {
+            return OwnStep::InTheWay(person);
+        }
         if let Some(k) = later.iter().position(|l| share(l, step)) {
             let entry = &self.past[self.past.len() - 1 - k];
             return OwnStep::InTheWay(entry.owners.first().copied().unwrap_or_default());
@@ -218,6 +240,10 @@ impl Timeline {
         let Some(at) = self.future.iter().rposition(own) else { return OwnStep::Nothing };
         if let Some((_, owner)) = self.future[at].blocks.last() {
             return OwnStep::InTheWay(*owner);
+        }
+        let changed = self.changed_down_to(scene, Side::Future, at);
+        if let Some(person) = changed.last().and_then(|step| Timeline::under_way(scene, step)) {
+            return OwnStep::InTheWay(person);
         }
         self.raise(Side::Future, at, scene);
         self.redo(scene);
@@ -277,7 +303,7 @@ impl Timeline {
         let made = self.past.iter().rev().take_while(|e| e.id >= first);
         let owners: Vec<u8> = made.flat_map(|e| e.owners.iter().copied()).collect();
         let count = self.past.iter().rev().take_while(|e| e.id >= first).count();
-        let mut counted = Counted::default();
+        let mut counted = PlaceCount::default();
         let mut at = self.future.len();
         while at > 0 {
             at -= 1;

@@ -321,3 +321,35 @@ fn who_rests_takes_the_own_strokes_back_one_by_one_while_another_goes_on() {
     assert_eq!(shared.world.undo_steps(), 2, "each was closed when it ended");
     shared.verify();
 }
+
+#[test]
+fn a_stroke_of_somebody_else_goes_on_through_an_undo() {
+    // The undo in the middle of the other's stroke, and after it.
+    let hashes = [7, 25].map(|when| {
+        let mut shared = Shared::new(1);
+        shared.stroke(1, 0.4, 0.45);
+        for k in 0..30u64 {
+            let at = Vec2::new(0.5, 0.4) + Vec2::splat(0.002) * k as f32;
+            let undo = of(1, Command::Undo);
+            let commands = if k == when { std::slice::from_ref(&undo) } else { &[] };
+            shared.step(&[pen(3, k < 20, at)], commands);
+        }
+        shared.verify();
+        shared.world.show_to(1);
+        assert_eq!((shared.world.undo_steps(), shared.world.undo_refused()), (0, None));
+        shared.world.show_to(3);
+        assert_eq!(shared.world.undo_steps(), 1, "the stroke is whole");
+        shared.world.hash()
+    });
+    assert_eq!(hashes[0], hashes[1]);
+    // One that lies on the same place is in the way while it goes on.
+    let mut shared = Shared::new(1);
+    shared.stroke(1, 0.5, 0.5);
+    for k in 0..6 {
+        shared.step(&[pen(2, true, Vec2::new(0.44 + 0.005 * k as f32, 0.5))], &[]);
+    }
+    shared.world.show_to(1);
+    shared.step(&[], &[of(1, Command::Undo)]);
+    assert_eq!(shared.refused(1).map(|r| r.by), Some(2));
+    shared.verify();
+}

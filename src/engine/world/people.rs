@@ -10,11 +10,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{HistoryEvent, World};
+use super::World;
 use crate::camera::Camera;
 use crate::command::{Command, OfPerson};
 use crate::desktop_layout::DesktopLayout;
-use crate::scene::OwnStep;
 use sculptd_clay::Author;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
@@ -42,9 +41,9 @@ pub(super) struct People {
     shown: u8,
     /// Whose strokes go on, and whose did in the tick before; a checkpoint ends all.
     #[serde(skip)]
-    sculpt: Vec<u8>,
+    pub(super) sculpt: Vec<u8>,
     #[serde(skip)]
-    sculpted: Vec<u8>,
+    pub(super) sculpted: Vec<u8>,
     /// Of the person that the world is shown to: the newest undo or redo that was refused.
     #[serde(skip)]
     refused: Option<UndoRefusal>,
@@ -75,6 +74,18 @@ impl People {
     /// Whether it is a device of the person whose input is applied.
     pub(super) fn is_current(&self, device: DeviceId) -> bool {
         self.of_device(device) == self.current
+    }
+
+    /// Something was refused to whoever acts now.
+    pub(super) fn refuse(&mut self, refusal: UndoRefusal) {
+        if self.current == self.shown {
+            self.refused = Some(refusal);
+        }
+    }
+
+    /// The newest that was refused to the person that the world is shown to.
+    pub(super) fn refused(&self) -> Option<UndoRefusal> {
+        self.refused
     }
 
     /// The settings of another person than the current one; `None`: of the current one.
@@ -115,51 +126,6 @@ impl World {
             let author = person.map_or(Author::Everybody, Author::Person);
             self.scene.active_mut().clay.set_author(author);
         }
-    }
-
-    /// While somebody's strokes go on: closes the steps of people whose own have ended in this tick,
-    /// where they changed nothing in common with those who go on.
-    pub(super) fn close_ended(&mut self) {
-        if self.people.is_nobody() {
-            return;
-        }
-        let mut now = std::mem::take(&mut self.people.sculpted);
-        now.clear();
-        let going_on = self.pens.iter().filter(|s| s.track.is_open() || !s.track.is_idle());
-        now.extend(going_on.map(|s| self.people.of_device(s.device)));
-        now.extend(self.hands.is_touching().then_some(self.people.hands));
-        self.people.sculpted = std::mem::replace(&mut self.people.sculpt, now);
-        let World { timeline, scene, garbage, options, people, topology, .. } = self;
-        let clay = &scene.active().clay;
-        let goes_on = |p: u8| people.sculpt.contains(&p);
-        let some_ended = people.sculpted.iter().any(|p| !goes_on(*p));
-        let alone = topology.is_empty() && clay.layer_count() == 0 && clay.is_in_step();
-        if some_ended
-            && alone
-            && timeline.end_steps_of(|p| !goes_on(p), scene, options.undo_bytes, garbage)
-        {
-            self.note(HistoryEvent::Step);
-        }
-    }
-
-    /// Nobody's strokes go on.
-    pub(super) fn all_ended(&mut self) {
-        self.people.sculpt.clear();
-    }
-
-    /// What became of an undo or a redo. False: nothing.
-    pub(super) fn told_of_undo(&mut self, way: OwnStep, redo: bool) -> bool {
-        if let OwnStep::InTheWay(by) = way
-            && self.people.current == self.people.shown
-        {
-            self.people.refused = Some(UndoRefusal { tick: self.tick, redo, by });
-        }
-        way == OwnStep::Done
-    }
-
-    /// The newest undo or redo of the person that the world is shown to that was refused.
-    pub fn undo_refused(&self) -> Option<UndoRefusal> {
-        self.people.refused
     }
 
     /// Whether several people have shared the world.
