@@ -16,7 +16,8 @@ use crate::host_limits::{
     ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, SenderLimits, bounded, fitting,
+    BatchQueue, Greeted, HeldCheckpoint, JoinedMember, PER_MESSAGE, SenderLimits, bounded,
+    drop_silent, fitting, note_departures,
 };
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
@@ -99,7 +100,7 @@ impl Host {
         if first {
             let (name, role) = (core.name.clone(), core.role);
             core.person = 1;
-            host.arrivals.push(Arrival { person: 1, name, role });
+            host.arrivals.push(Arrival { person: 1, name, role, here: true });
         }
         core.outbox.begin_after(core.log.applied(core.person));
         core.events.push_back(Event::Entered { person: core.person, rate_hz: core.rate_hz });
@@ -232,8 +233,9 @@ impl Host {
         let person = number.unwrap_or_default();
         self.members.retain(|_, m| m.name != name);
         core.note(format!("'{name}' joins as {}", role.name()));
-        let arrival = Arrival { person, name: name.clone(), role };
-        if core.log.person(person) != Some(&arrival) && !self.arrivals.contains(&arrival) {
+        let arrival = Arrival { person, name: name.clone(), role, here: true };
+        self.arrivals.retain(|a| a.person != person);
+        if core.log.person(person) != Some(&arrival) {
             self.arrivals.push(arrival);
         }
         let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
@@ -448,16 +450,14 @@ impl Host {
     /// Makes the frames that are due, and sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         self.order(core, now_us);
-        self.members.retain(|_, m| {
-            let here = now_us < m.heard_us + GONE_US;
-            if !here {
-                core.note(format!("'{}' is gone", m.name));
-            }
-            here
-        });
+        drop_silent(&mut self.members, core, now_us);
         self.acknowledge(core, now_us);
         if now_us >= self.present_us {
             self.present_us = now_us + IDLE_US;
+            // Those who were with an earlier host have some time to join this one.
+            if now_us >= self.epoch.1 + GONE_US {
+                note_departures(&mut self.arrivals, &self.members, core);
+            }
             core.among_heirs(&mut self.heirs, AmongHeirs::Host { term: self.term });
         }
         let due: Vec<Address> =

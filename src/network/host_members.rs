@@ -3,15 +3,15 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
-use crate::core::RoundTrip;
-use crate::host_limits::{BYTES, ENTRIES, MAX_WAITING};
+use crate::core::{Core, RoundTrip};
+use crate::host_limits::{BYTES, ENTRIES, GONE_US, MAX_WAITING};
 use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
 use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
 use crate::wire::frame_codec::frames_to_bytes;
-use crate::wire::message::Nonce;
+use crate::wire::message::{Address, Nonce};
 
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
@@ -117,6 +117,30 @@ pub fn bounded(mut frames: Vec<Arc<Frame>>) -> Vec<Arc<Frame>> {
     }
     frames.truncate(count);
     frames
+}
+
+/// Lets those go who have been silent for too long.
+pub fn drop_silent(members: &mut BTreeMap<Address, JoinedMember>, core: &mut Core, now_us: u64) {
+    members.retain(|_, m| {
+        let here = now_us < m.heard_us + GONE_US;
+        if !here {
+            core.note(format!("'{}' is gone", m.name));
+        }
+        here
+    });
+}
+
+/// Those who are connected no longer, to be told with those who came.
+pub fn note_departures(
+    arrivals: &mut Vec<Arrival>,
+    members: &BTreeMap<Address, JoinedMember>,
+    core: &Core,
+) {
+    let joined = |a: &Arrival| members.values().any(|m| m.person == a.person);
+    let told = |a: &Arrival| arrivals.iter().any(|p| p.person == a.person);
+    let gone = core.log.here().filter(|a| a.person != core.person && !joined(a) && !told(a));
+    let gone: Vec<Arrival> = gone.map(|a| Arrival { here: false, ..a.clone() }).collect();
+    arrivals.extend(gone);
 }
 
 /// How many of a person's next batches one frame takes, so that a frame of all people fits into a

@@ -31,12 +31,15 @@ pub mod fleet;
 pub mod host;
 pub mod host_limits;
 pub mod host_members;
+pub mod join_link;
 pub mod keyring;
 #[cfg(feature = "zenoh")]
 pub mod live;
 pub mod local_echo;
 pub mod member;
 pub mod outbox;
+#[cfg(feature = "zenoh")]
+pub mod people_here;
 pub mod policy;
 pub mod random;
 pub mod rate_limit;

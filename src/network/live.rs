@@ -17,6 +17,7 @@ use crate::checkpoint::Captured;
 use crate::core::Event;
 use crate::executor::{Asked, Executor, HashView, KnownHashes};
 use crate::local_echo::LocalEcho;
+use crate::people_here::{changes_people, people_here};
 use crate::policy;
 use crate::station::Station;
 use crate::transport::Transport;
@@ -24,6 +25,7 @@ use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::samples::rounded;
 use sculptd_clay::Workers;
 use sculptd_daemon::command_queue::QueuedCommand;
+use sculptd_daemon::people::PeopleHere;
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
 use sculptd_engine::command::Command;
@@ -50,6 +52,7 @@ enum ToLoop {
     Frame(Arc<Frame>),
     World(Box<World>, Executor),
     Entered(PersonId, u32),
+    People(Arc<PeopleHere>),
 }
 
 /// To the worker.
@@ -98,6 +101,7 @@ pub struct SharedLink {
     /// The frame whose own tick is being stepped.
     stepping: Option<Arc<Frame>>,
     hosting: Arc<AtomicBool>,
+    people: Arc<PeopleHere>,
     /// Frames come here: a device is sent none, and its world stands still.
     sees: bool,
     lost: u64,
@@ -213,6 +217,7 @@ impl Shared {
             frames: VecDeque::new(),
             stepping: None,
             hosting,
+            people: Arc::default(),
             sees: true,
             lost: 0,
             _thread: SharedThread { stop, thread: Some(thread) },
@@ -257,6 +262,7 @@ impl Shared {
                     return Ok((Some(world), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
+                Ok(ToLoop::People(people)) => self.link.people = people,
                 Err(_) if passed() >= patience || enough(&last) => {
                     return Err(SharedError::Silent { name: name.into(), last });
                 }
@@ -331,6 +337,7 @@ impl SharedInput for SharedLink {
             }
             match self.from.try_recv() {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
+                Ok(ToLoop::People(people)) => self.people = people,
                 Ok(ToLoop::World(world, executor)) => {
                     self.executor = executor;
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
@@ -359,6 +366,10 @@ impl SharedInput for SharedLink {
     fn ahead(&mut self, world: &World) -> Option<&mut World> {
         self.echo.advance(world);
         self.echo.ahead()
+    }
+
+    fn people(&self) -> Arc<PeopleHere> {
+        self.people.clone()
     }
 
     fn hosts(&self) -> bool {
@@ -487,7 +498,9 @@ impl Running {
     }
 
     fn tell_events(&mut self) {
+        let mut people = false;
         while let Some(event) = self.station.take_event() {
+            people |= changes_people(&event);
             match event {
                 Event::Frame(frame) => match &mut self.restoring {
                     Some(waiting) => waiting.push(frame),
@@ -527,6 +540,9 @@ impl Running {
                     let _ = self.tell.try_send(Told::Refused(why));
                 }
             }
+        }
+        if people {
+            let _ = self.to_loop.send(ToLoop::People(Arc::new(people_here(&self.station))));
         }
     }
 }

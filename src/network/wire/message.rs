@@ -6,7 +6,7 @@ use super::frame::{Arrival, Batch, MAX_NAME, PersonId, Role};
 use super::frame_codec::{put_batches, take_batches};
 
 /// The version of the messages; a host refuses others by name.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 /// Bytes of one chunk of a checkpoint.
 pub const CHUNK: usize = 32 << 10;
 /// Bytes of a reason.
@@ -512,7 +512,7 @@ mod tests {
 
     fn messages() -> Vec<Vec<u8>> {
         let term = Term { number: 3, base: 900, host: 77 };
-        let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer };
+        let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer, here: false };
         let frames = vec![9; 40];
         let entry = Entry {
             person: 2,
