@@ -293,7 +293,9 @@ impl World {
                     false => self.report.missed += i32::from(!self.has_people()),
                 }
             }
-            Command::LiftAll => self.lift_all(),
+            Command::LiftAll => {
+                self.lift_own();
+            }
             Command::TakeUp(plain) => self.take_up(plain.clone()),
             Command::PutDown => self.put_down(),
             Command::CalibrateReach => self.hands.calibrate(),

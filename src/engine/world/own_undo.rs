@@ -5,31 +5,40 @@ use super::{HistoryEvent, World};
 use crate::scene::OwnStep;
 
 impl World {
-    /// Before an undo or a redo: the strokes of whoever acts now end, and are a step. Those of
-    /// others go on, unless they cannot be told apart from these, or a step is at hand that is not
-    /// a stroke: then all end.
-    pub(super) fn lift_for_undo(&mut self, redo: bool) {
-        let Some(person) = self.person() else { return self.lift_all() };
+    /// The strokes of whoever acts now end, and are a step. Those of others go on, unless they
+    /// cannot be told apart from these: then all end. Whether they go on.
+    pub(super) fn lift_own(&mut self) -> bool {
+        let person = self.person();
         let hands = self.hands.is_touching() || self.in_hand.is_held();
         let edits = self.surface.is_under_way() || self.layers.is_edit();
-        if hands || edits || !self.surface_alone() {
-            return self.lift_all();
-        }
+        let alone = |w: &World| w.surface_alone() && !hands && !edits;
+        let Some(person) = person.filter(|_| alone(self)) else {
+            self.lift_all();
+            return false;
+        };
         self.author(None);
         self.own_pens().for_each(|s| s.track.lift());
         self.advance_strokes(u64::MAX);
-        if !self.surface_alone() {
-            return self.lift_all();
-        }
-        let World { timeline, scene, garbage, options, .. } = self;
-        if timeline.end_steps_of(|p| p == person, scene, options.undo_bytes, garbage) {
+        let World { timeline, scene, garbage, options, topology, .. } = self;
+        if topology.is_empty()
+            && timeline.end_steps_of(|p| p == person, scene, options.undo_bytes, garbage)
+        {
             self.note(HistoryEvent::Step);
         }
-        let joint = self.scene.active().clay.is_step_of(person);
-        if joint || !self.timeline.next_is_stroke(person, redo) {
-            return self.lift_all();
+        let apart = self.surface_alone() && !self.scene.active().clay.is_step_of(person);
+        if !apart {
+            self.lift_all();
         }
         self.author(Some(person));
+        apart
+    }
+
+    /// The same before an undo or a redo: where that is of something else than a stroke, all end.
+    pub(super) fn lift_for_undo(&mut self, redo: bool) {
+        let stroke = |w: &World| w.person().is_some_and(|p| w.timeline.next_is_stroke(p, redo));
+        if self.lift_own() && !stroke(self) {
+            self.lift_all();
+        }
     }
 
     /// While somebody's strokes go on: closes the steps of people whose own have ended in this

@@ -353,3 +353,21 @@ fn a_stroke_of_somebody_else_goes_on_through_an_undo() {
     assert_eq!(shared.refused(1).map(|r| r.by), Some(2));
     shared.verify();
 }
+
+#[test]
+fn the_pens_of_one_person_are_lifted_alone() {
+    let mut shared = Shared::new(1);
+    let both =
+        |k: f32| [pen(1, true, Vec2::new(0.4 + 0.01 * k, 0.45)), pen(3, true, Vec2::splat(0.5))];
+    (0..5u8).for_each(|k| shared.step(&both(f32::from(k)), &[]));
+    shared.world.show_to(2);
+    assert_eq!(shared.world.pens_of_others().count(), 2);
+    shared.step(&[], &[of(1, Command::LiftAll)]);
+    let left: Vec<(u8, bool)> = shared.world.pens_of_others().map(|p| (p.person, p.down)).collect();
+    assert_eq!(left, [(3, true)]);
+    shared.world.show_to(1);
+    assert_eq!(shared.world.undo_steps(), 1);
+    shared.world.show_to(3);
+    assert_eq!(shared.world.undo_steps(), 0, "it goes on");
+    shared.verify();
+}

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
+use crate::look::linear;
 use sculptd_clay::Ray;
 use sculptd_daemon::Published;
 use sculptd_daemon::people::colour_of;
@@ -43,7 +44,7 @@ pub struct Ring {
 pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec3, ring: &Ring) {
     let radius = ring.radius;
     let mut colour = match (ring.of, ring.mirrored, ring.carve) {
-        (Some([r, g, b]), ..) => [r, g, b, 255],
+        (Some(colour), ..) => of_person(colour, 255),
         (None, true, _) => MIRRORED,
         (None, false, true) => CARVING,
         (None, false, false) => RING,
@@ -70,6 +71,12 @@ pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec
         last = next;
     }
     segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// The colour of a person as lines have it: light adds up linearly where they are drawn.
+fn of_person(colour: [u8; 3], alpha: u8) -> [u8; 4] {
+    let [r, g, b, _] = linear(colour).map(|c| (c * 255.0).round() as u8);
+    [r, g, b, alpha]
 }
 
 /// The rings of the others who share the sculpture, each in the colour of its person.
@@ -152,7 +159,7 @@ pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale:
 
 /// A hand's bones, in the world. `of`: the colour of another person, whose hands they are.
 pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume, of: Option<[u8; 3]>) {
-    let bone = of.map_or(BONE, |[r, g, b]| [r, g, b, BONE[3]]);
+    let bone = of.map_or(BONE, |colour| of_person(colour, BONE[3]));
     for hand in hands.as_slice() {
         let mut knuckles: Vec<Vec3> = Vec::with_capacity(5);
         for finger in hand.fingers.iter().flatten() {

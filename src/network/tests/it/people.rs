@@ -16,13 +16,18 @@ fn everybody_knows_who_is_here_and_who_has_gone() {
     for replica in [0, bob, cyd] {
         assert_eq!(here(&s, replica), ["person 0", "person 1", "person 2"]);
     }
-    // One says goodbye, and is killed afterwards.
+    // One says goodbye in the middle of a stroke, and is killed afterwards.
+    s.stroke_s = 1e6;
+    s.run(0.5, |i| i == cyd);
+    let rests = |s: &Simulation| s.replicas[0].world.as_ref().is_some_and(|w| w.is_at_rest());
+    assert!(!rests(&s));
     s.replicas[cyd].station.leave();
     s.run(0.02, |_| false);
     s.replicas[cyd].alive = false;
     s.run(6.0, |_| false);
     assert_eq!(here(&s, 0), ["person 0", "person 1"]);
     assert_eq!(here(&s, bob), here(&s, 0));
+    assert!(rests(&s), "a pen that is gone is lifted");
     // The same person comes back.
     let key = s.keyring.0[0].clone();
     let again = s.join("person 2", sculptd_network::wire::frame::Role::Sculptor, key);
