@@ -76,7 +76,7 @@ mod tests {
     fn those_who_come_first_are_told_apart() {
         for a in 1..=12 {
             for b in a + 1..=12 {
-                let far = colour_of(a).iter().zip(colour_of(b));
+                let far = colour_of(a).into_iter().zip(colour_of(b));
                 let far: u32 = far.map(|(x, y)| u32::from(x.abs_diff(y))).sum();
                 assert!(far >= 60, "{a} and {b} differ by {far} of 765 only");
             }

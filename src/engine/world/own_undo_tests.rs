@@ -8,8 +8,8 @@ use crate::camera::Camera;
 use crate::command::{Command, OfPerson};
 use crate::hand::HandSettings;
 use crate::scene::{ObjectId, SceneCommand};
-use sculptd_clay::brush::{BrushKind, BrushSettings};
-use sculptd_clay::{Clay, Workers};
+use sculptd_clay::brush::{BrushKind, BrushSettings, Measure};
+use sculptd_clay::{Clay, LayerEdit, Workers};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -78,22 +78,32 @@ impl Shared {
     }
 
     /// Strokes at once, and in the middle of them somebody's command; then all rest.
-    fn strokes(&mut self, strokes: &[(u8, Vec2)], meanwhile: Option<(u8, Command)>) {
+    fn strokes(&mut self, strokes: &[(u8, Vec2)], meanwhile: Option<(u8, &Command)>) {
         for k in 0..10 {
             let at = |from: Vec2| from + Vec2::new(0.008, 0.005) * k as f32;
             // Who comes first ends first.
             let tip = |i: usize| k < 8 - i;
             let pens = strokes.iter().enumerate();
             let samples: Vec<Sample> = pens.map(|(i, s)| pen(s.0, tip(i), at(s.1))).collect();
-            match &meanwhile {
+            match meanwhile {
                 Some((person, command)) if k == 4 => {
-                    self.step(&samples, &[of(*person, command.clone())]);
+                    self.step(&samples, &[of(person, command.clone())]);
                 }
                 _ => self.step(&samples, &[]),
             }
         }
-        self.step(&[], &[]);
-        assert!(self.world.is_at_rest());
+        self.rest();
+    }
+
+    /// What pages and triangles have to follow is done.
+    fn rest(&mut self) {
+        for _ in 0..200 {
+            self.step(&[], &[]);
+            if self.world.is_at_rest() {
+                return;
+            }
+        }
+        panic!("never at rest");
     }
 
     fn stroke(&mut self, person: u8, x: f32, y: f32) {
@@ -142,6 +152,10 @@ enum Op {
     Undo(u8),
     Redo(u8),
     Rename(u8),
+    /// The brush cuts triangles from now on, or no longer.
+    Topology(u8, bool),
+    /// A layer is added, or all are removed.
+    Layer(u8, bool),
 }
 
 fn ops() -> impl Strategy<Value = Vec<Op>> {
@@ -158,6 +172,8 @@ fn ops() -> impl Strategy<Value = Vec<Op>> {
         4 => person().prop_map(Op::Undo),
         3 => person().prop_map(Op::Redo),
         1 => person().prop_map(Op::Rename),
+        1 => (person(), any::<bool>()).prop_map(|(p, on)| Op::Topology(p, on)),
+        1 => (person(), any::<bool>()).prop_map(|(p, on)| Op::Layer(p, on)),
     ];
     proptest::collection::vec(op, 4..24)
 }
@@ -169,7 +185,8 @@ fn way(undo: bool) -> Command {
 fn apply(shared: &mut Shared, op: &Op) {
     match op {
         Op::Strokes(strokes, meanwhile) => {
-            shared.strokes(strokes, meanwhile.map(|(person, undo)| (person, way(undo))));
+            let asked = meanwhile.map(|(person, undo)| (person, way(undo)));
+            shared.strokes(strokes, asked.as_ref().map(|(person, way)| (*person, way)));
         }
         Op::Undo(person) => shared.asks(*person, Command::Undo),
         Op::Redo(person) => shared.asks(*person, Command::Redo),
@@ -177,6 +194,18 @@ fn apply(shared: &mut Shared, op: &Op) {
             let name = format!("of {person} at {}", shared.tick);
             let rename = SceneCommand::Rename(ObjectId(0), name);
             shared.asks(*person, Command::Scene(rename));
+        }
+        Op::Topology(person, on) => {
+            shared.world.show_to(*person);
+            let mut brush = *shared.world.brush();
+            brush.kind = BrushKind::Draw;
+            brush.topology.by = if *on { Measure::Brush } else { Measure::Off };
+            shared.asks(*person, Command::Brush(brush));
+        }
+        Op::Layer(person, on) => {
+            let edit = if *on { LayerEdit::Add("of one".into()) } else { LayerEdit::Bake };
+            shared.asks(*person, Command::Scene(SceneCommand::Layers(edit)));
+            shared.rest();
         }
     }
 }
