@@ -15,7 +15,8 @@ use super::publish::{SpinePool, Stale};
 use super::ray::{Hit, Ray};
 use super::reach::Reach;
 use super::snapshot::{Snapshot, Totals, hash, to_tri};
-use super::undo::History;
+use super::step_authors::Author;
+use super::undo::{History, StepPages, StepPlace};
 use crate::assembly::{BuildError, Built, PAGE_VERTICES, build};
 use crate::multires::Levels;
 use crate::retopology::TopologyBuffers;
@@ -287,21 +288,70 @@ impl Clay {
         self.history.end()
     }
 
+    /// Says who changes the clay from now on, for steps of several people.
+    pub fn set_author(&mut self, author: Author) {
+        self.history.authors.now = author;
+    }
+
+    /// Closes the open undo step of several people: people who changed no page in common get a step
+    /// each. A part stays open where an owner's strokes have not `ended`. The owners of each new
+    /// step, oldest first; what can be done again stays, for whoever keeps the order of several
+    /// people's steps.
+    pub fn end_step_of_people(&mut self, ended: impl Fn(u8) -> bool) -> Vec<Vec<u8>> {
+        let pages = &self.pages;
+        self.history.end_of_people(ended, |i, was| is_more_than_surface(was, &pages[i as usize]))
+    }
+
+    /// Which pages the open step of several people has changed so far, and somebody whose it is.
+    pub fn open_step(&self) -> Option<(StepPages, u8)> {
+        let whole = |i: u32, was: &Page| is_more_than_surface(was, &self.pages[i as usize]);
+        self.history.open_pages(whole).zip(self.history.authors.first())
+    }
+
+    /// Whether a person changes the clay in the open step.
+    pub fn is_step_of(&self, person: u8) -> bool {
+        self.history.is_open() && self.history.authors.holds(person)
+    }
+
+    /// Which pages a step changed; `None`: there is no such step.
+    pub fn step_pages(&self, place: StepPlace) -> Option<StepPages> {
+        self.history.pages_of(place)
+    }
+
+    /// Makes a step the newest of its kind. Only for one that shares no page with those that came
+    /// after it ([`StepPages::shares`]): then the clay is the same in either order.
+    pub fn raise_step(&mut self, place: StepPlace) {
+        self.history.raise(place);
+    }
+
+    /// Lets one step go that could be done again; the newest is 0.
+    pub fn forget_one_redo(&mut self, k: usize) {
+        self.history.forget_one_redo(k);
+    }
+
     /// Whether an undo step is open.
     pub fn is_in_step(&self) -> bool {
         self.history.is_open()
     }
 
-    /// Takes back the newest step. False when there is none.
+    /// Takes back the newest step. False when there is none. An open step is closed before, but for
+    /// one of several people: that shares no page with what is taken back.
     pub fn undo(&mut self) -> bool {
-        self.history.end();
+        self.end_alone();
         self.travel(|history, swap| history.undo(swap))
     }
 
-    /// Does the step again that was taken back last. False when there is none.
+    /// Does the step again that was taken back last. False when there is none. An open step is as
+    /// with [`Clay::undo`].
     pub fn redo(&mut self) -> bool {
-        self.history.end();
+        self.end_alone();
         self.travel(|history, swap| history.redo(swap))
+    }
+
+    fn end_alone(&mut self) {
+        if !self.history.authors.is_told() {
+            self.history.end();
+        }
     }
 
     fn travel(
@@ -454,4 +504,11 @@ impl Clay {
             undo: self.history.bytes() as usize,
         }
     }
+}
+
+/// Whether a page differs from what it was by more than the surface: by its topology, or by the
+/// list of layers.
+fn is_more_than_surface(was: &Page, now: &Page) -> bool {
+    let stack = |page: &Page| page.layers().and_then(|l| l.stack.as_ref().map(Arc::as_ptr));
+    !Arc::ptr_eq(&was.topology, &now.topology) || stack(was) != stack(now)
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::garbage::{Garbage, GarbageSink};
 use super::page::Page;
+use super::step_authors::StepAuthors;
 
 /// Pages by number, as they were before a step (or, on the redo side, after it).
 type Pages = Vec<(u32, Arc<Page>)>;
@@ -14,6 +15,33 @@ type Pages = Vec<(u32, Arc<Page>)>;
 struct Step {
     pages: Pages,
     bytes: u64,
+    /// It changed more than the surface of its pages: see [`StepPages::shares`].
+    whole: bool,
+}
+
+/// A step of a history: the newest that can be taken back, or done again, is at 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepPlace {
+    /// One that can be taken back.
+    Undo(usize),
+    /// One that can be done again.
+    Redo(usize),
+}
+
+/// Which pages a step changed.
+#[derive(Debug, Clone, Default)]
+pub struct StepPages {
+    whole: bool,
+    bits: Vec<u64>,
+}
+
+impl StepPages {
+    /// Whether two steps changed a page in common, halos included: then neither can be taken back
+    /// without the one that came after it. A step that changed topology or the list of layers
+    /// shares with every other.
+    pub fn shares(&self, other: &StepPages) -> bool {
+        self.whole || other.whole || self.bits.iter().zip(&other.bits).any(|(a, b)| a & b != 0)
+    }
 }
 
 /// Steps remembered at most, whatever they weigh.
@@ -32,6 +60,8 @@ pub(super) struct History {
     /// For each page the step that touched it last, and where in the step's list it lies.
     touched: Vec<(u32, u32)>,
     stamp: u32,
+    /// Whose the pages of the open step are, where several people change the clay.
+    pub(super) authors: StepAuthors,
     /// Takes the steps that are forgotten.
     pub(super) sink: GarbageSink,
 }
@@ -47,6 +77,7 @@ impl History {
             bytes: 0,
             touched: vec![(0, 0); pages],
             stamp: 0,
+            authors: StepAuthors::default(),
             sink: GarbageSink::default(),
         }
     }
@@ -57,6 +88,7 @@ impl History {
         self.open_bytes = other.open_bytes;
         self.touched.clone_from(&other.touched);
         self.stamp = other.stamp;
+        self.authors.clone_from(&other.authors);
     }
 
     /// Makes room for so many pages in the clay.
@@ -73,7 +105,9 @@ impl History {
             self.open = Some(Vec::with_capacity(1024));
             self.open_bytes = 0;
             self.stamp += 1;
+            self.authors.begin();
         }
+        self.authors.join();
     }
 
     /// Keeps the page if the open step has not touched it before; else (or without a step) hands it
@@ -82,9 +116,11 @@ impl History {
         let Some(step) = &mut self.open else { return Some(page) };
         let touched = &mut self.touched[index as usize];
         if touched.0 == self.stamp {
+            self.authors.mark(touched.1 as usize);
             return Some(page);
         }
         *touched = (self.stamp, step.len() as u32);
+        self.authors.mark(step.len());
         let weight = page.weight() as u64;
         self.bytes += weight;
         self.open_bytes += weight;
@@ -112,9 +148,110 @@ impl History {
             return false;
         }
         self.forget_redo();
-        self.undo.push_back(Step { pages, bytes: self.open_bytes });
+        self.undo.push_back(Step { pages, bytes: self.open_bytes, whole: false });
         self.trim();
         true
+    }
+
+    /// Closes the step of several people, parted as [`StepAuthors`] says: the parts whose owners
+    /// have all `ended`. What is left stays open; nothing of it, where everybody has. The owners of
+    /// each closed part, in the order of the steps. What can be done again stays. `whole`: what a
+    /// page was differs from what it is by more than its surface.
+    pub(super) fn end_of_people(
+        &mut self,
+        ended: impl Fn(u8) -> bool,
+        whole: impl Fn(u32, &Page) -> bool,
+    ) -> Vec<Vec<u8>> {
+        let all_ended = self.authors.all(&ended);
+        let Some(pages) = self.open.take() else { return Vec::new() };
+        if pages.is_empty() {
+            self.open = (!all_ended).then_some(pages);
+            return Vec::new();
+        }
+        let whole = pages.iter().any(|(i, page)| whole(*i, page));
+        let mut parts = self.authors.parts(pages.len(), whole);
+        parts.retain(|p| all_ended || !p.owners.is_empty() && p.owners.iter().all(|o| ended(*o)));
+        let step = || Step { pages: Vec::new(), bytes: 0, whole };
+        let mut steps: Vec<Step> = parts.iter().map(|_| step()).collect();
+        let (mut left, mut marks_left) = (Vec::new(), Vec::new());
+        for (place, (i, page)) in pages.into_iter().enumerate() {
+            let marks = self.authors.marks(place);
+            match parts.iter().position(|p| p.holds(marks)) {
+                Some(at) => {
+                    let bytes = page.weight() as u64;
+                    steps[at].bytes += bytes;
+                    self.open_bytes -= bytes;
+                    self.touched[i as usize] = (0, 0);
+                    steps[at].pages.push((i, page));
+                }
+                None => {
+                    self.touched[i as usize] = (self.stamp, left.len() as u32);
+                    marks_left.push(marks);
+                    left.push((i, page));
+                }
+            }
+        }
+        if !all_ended {
+            self.authors.go_on_with(marks_left, &ended);
+            self.open = Some(left);
+        }
+        self.undo.extend(steps);
+        self.trim();
+        parts.into_iter().map(|p| p.owners).collect()
+    }
+
+    /// Which pages the open step has changed so far; `None`: there is none, or it changed nothing.
+    pub(super) fn open_pages(&self, whole: impl Fn(u32, &Page) -> bool) -> Option<StepPages> {
+        let pages = self.open.as_ref().filter(|p| !p.is_empty())?;
+        Some(StepPages {
+            whole: pages.iter().any(|(i, page)| whole(*i, page)),
+            bits: self.bits(pages),
+        })
+    }
+
+    fn bits(&self, pages: &Pages) -> Vec<u64> {
+        let mut bits = vec![0; self.touched.len().div_ceil(64)];
+        for (i, _) in pages {
+            bits[*i as usize / 64] |= 1 << (i % 64);
+        }
+        bits
+    }
+
+    fn step(&self, place: StepPlace) -> Option<&Step> {
+        match place {
+            StepPlace::Undo(k) => self.undo.get(self.undo.len().checked_sub(k + 1)?),
+            StepPlace::Redo(k) => self.redo.get(self.redo.len().checked_sub(k + 1)?),
+        }
+    }
+
+    /// Which pages a step changed.
+    pub(super) fn pages_of(&self, place: StepPlace) -> Option<StepPages> {
+        let step = self.step(place)?;
+        Some(StepPages { whole: step.whole, bits: self.bits(&step.pages) })
+    }
+
+    /// Makes a step the newest, as if it had come after those that it shares no page with.
+    pub(super) fn raise(&mut self, place: StepPlace) {
+        match place {
+            StepPlace::Undo(k) if k < self.undo.len() => {
+                let step = self.undo.remove(self.undo.len() - 1 - k);
+                self.undo.extend(step);
+            }
+            StepPlace::Redo(k) if k < self.redo.len() => {
+                let step = self.redo.remove(self.redo.len() - 1 - k);
+                self.redo.push(step);
+            }
+            StepPlace::Undo(_) | StepPlace::Redo(_) => {}
+        }
+    }
+
+    /// One step can no longer be done again; the newest is 0.
+    pub(super) fn forget_one_redo(&mut self, k: usize) {
+        if k < self.redo.len() {
+            let gone = self.redo.remove(self.redo.len() - 1 - k);
+            self.bytes -= gone.bytes;
+            self.sink.discard(Garbage::Pages(gone.pages));
+        }
     }
 
     pub(super) fn is_open(&self) -> bool {
@@ -181,7 +318,7 @@ impl History {
         });
         let pages = swapped.collect();
         self.bytes += bytes;
-        Step { pages, bytes }
+        Step { pages, bytes, whole: step.whole }
     }
 
     pub(super) fn undo_steps(&self) -> usize {

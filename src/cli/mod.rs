@@ -24,6 +24,8 @@ pub mod ending;
 pub mod fleet;
 #[cfg(feature = "network")]
 pub mod fleet_part;
+#[cfg(feature = "network")]
+pub mod invite;
 pub mod library;
 mod live;
 #[cfg(feature = "network")]
@@ -100,6 +102,9 @@ pub enum Command {
     /// roll settings out.
     #[cfg(feature = "network")]
     Fleet(fleet::FleetArgs),
+    /// An invitation to a shared sculpture, as a link and a QR code.
+    #[cfg(feature = "network")]
+    Invite(invite::InviteArgs),
     /// Whether this machine can sculpt, and what to type where it cannot.
     Doctor(doctor::DoctorArgs),
     /// The session files: list them, look at one, remove old ones, save a damaged one.
@@ -173,6 +178,8 @@ pub fn run() -> u8 {
         }
         #[cfg(feature = "network")]
         Some(Command::Fleet(args)) => fleet::run(&args, cli.json),
+        #[cfg(feature = "network")]
+        Some(Command::Invite(args)) => invite::run(&args, cli.json),
         #[cfg(unix)]
         Some(Command::Window) => window::run(cli.json),
         Some(Command::Config { command }) => config::run(&command, cli.json),

@@ -1,5 +1,6 @@
 //! `sculptd run --host NAME` and `--join NAME`: one sculpture, several daemons (feature `network`).
 
+use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,13 +10,14 @@ use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::shared_input::SharedInput;
 use sculptd_daemon::startup::Begun;
 use sculptd_devices::Clock;
+use sculptd_network::join_link::{JoinLink, MAX_LINK, is_link, sculpture_name};
 use sculptd_network::keyring::{Entropy, Invitation, Keyring};
 use sculptd_network::live::{Shared, SharedError, SharedSettings};
 use sculptd_network::random::system_entropy;
 use sculptd_network::shared_session::SharedSession;
 use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::Role;
-use sculptd_network::zenoh_link::{Endpoints, ZenohLink, sculpture_name};
+use sculptd_network::zenoh_link::{Endpoints, ZenohLink};
 
 /// After so long without a word, or a byte of a first world, nobody hosts.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -26,10 +28,11 @@ pub struct SharedArgs {
     #[arg(long, value_name = "NAME", value_parser = sculpture_name,
         conflicts_with_all = ["join", "kiosk"])]
     pub host: Option<String>,
-    /// Join the sculpture of this name, with the invitation --key.
-    #[arg(long, value_name = "NAME", value_parser = sculpture_name, requires = "key",
-        conflicts_with_all = ["mesh", "kiosk"])]
-    pub join: Option<String>,
+    /// Join the sculpture of this name, with the invitation --key; or the one of a link that
+    /// `sculptd invite` made; `-` reads the link from standard input, as others on this computer
+    /// see what is typed here.
+    #[arg(long, value_name = "NAME|LINK|-", conflicts_with_all = ["mesh", "kiosk"])]
+    pub join: Option<JoinText>,
     /// The folder of a host's invitations, a file each; one for each role is made where there is
     /// none. Without it, `invitations/NAME` in the user's data folder.
     #[arg(long, value_name = "FOLDER", requires = "host")]
@@ -38,10 +41,10 @@ pub struct SharedArgs {
     #[arg(long, value_name = "FILE", requires = "join")]
     pub key: Option<PathBuf>,
     /// As what to join: a sculptor; a viewer, who does nothing; a device, whose samples go to the
-    /// others, and which shows nothing of theirs.
-    #[arg(long, value_enum, value_name = "ROLE", default_value_t, requires = "join")]
-    pub role: JoinRole,
-    /// What the others call you; without it, the name of your account.
+    /// others, and which shows nothing of theirs. Without it, what the link says, or a sculptor.
+    #[arg(long, value_enum, value_name = "ROLE", requires = "join")]
+    pub role: Option<JoinRole>,
+    /// What the others call you; without it, what the link says, or the name of your account.
     #[arg(long = "as", value_name = "NAME")]
     pub person: Option<String>,
     /// Where to listen for others, as tcp/0.0.0.0:7447. May be repeated; without it, any port.
@@ -61,7 +64,59 @@ pub enum JoinRole {
     Device,
 }
 
+impl JoinRole {
+    /// The same for the network.
+    pub fn role(self) -> Role {
+        match self {
+            JoinRole::Sculptor => Role::Sculptor,
+            JoinRole::Viewer => Role::Viewer,
+            JoinRole::Device => Role::Device,
+        }
+    }
+}
+
+/// A name or a link. A link holds a key: it is not shown.
+#[derive(Clone)]
+pub struct JoinText(String);
+
+impl From<String> for JoinText {
+    fn from(text: String) -> JoinText {
+        JoinText(text)
+    }
+}
+
+impl std::fmt::Debug for JoinText {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("JoinText(..)")
+    }
+}
+
 impl SharedArgs {
+    /// What is joined. Nothing of a link is in an error.
+    fn target(&self) -> Result<JoinLink, Fail> {
+        let text = self.join.as_ref().map_or("", |j| &j.0);
+        let mut read = String::new();
+        if text == "-" {
+            let most = 2 * MAX_LINK as u64;
+            let line = std::io::stdin().lock().take(most).read_line(&mut read);
+            line.map_err(|e| Fail::Usage(format!("no link on standard input: {e}")))?;
+        }
+        let link = if text == "-" { &read } else { text };
+        if text != "-" && !is_link(text) {
+            let name = sculpture_name(text).map_err(|e| Fail::Usage(format!("--join: {e}")))?;
+            let key = self.key.as_deref().ok_or_else(|| {
+                let text = "--join NAME needs the invitation, --key FILE; a link brings its own";
+                Fail::Usage(text.into())
+            })?;
+            let invitation = Invitation::read(key).map_err(|e| Fail::Config(e.to_string()))?;
+            return Ok(JoinLink { name, invitation, connect: Vec::new() });
+        }
+        if self.key.is_some() {
+            return Err(Fail::Usage("a link brings its own key: leave out --key".into()));
+        }
+        JoinLink::read(link).map_err(|e| Fail::Usage(format!("--join: not a link to join: {e}")))
+    }
+
     /// Whether anything is shared.
     pub fn is_on(&self) -> bool {
         self.host.is_some() || self.join.is_some()
@@ -69,18 +124,19 @@ impl SharedArgs {
 
     /// Whether this is the screen or the tablet of others' work: nothing of it is kept here.
     pub fn looks_on(&self) -> bool {
-        self.join.is_some() && self.role != JoinRole::Sculptor
+        self.join.is_some() && self.role.is_some_and(|role| role != JoinRole::Sculptor)
     }
 
-    fn link(&self, name: &str) -> Result<ZenohLink, Fail> {
-        let (listen, connect) = (self.listen.clone(), self.connect.clone());
+    fn link(&self, name: &str, connect: &[String]) -> Result<ZenohLink, Fail> {
+        let (listen, connect) = (self.listen.clone(), [connect, &self.connect].concat());
         let endpoints = Endpoints { listen, connect, multicast: true };
         ZenohLink::open(name, &endpoints).map_err(|e| Fail::Usage(format!("the network: {e}")))
     }
 
     fn identity(&self, role: Role, invitation: Invitation, entropy: Entropy) -> Identity {
         let account = ["USER", "LOGNAME", "USERNAME"].iter().find_map(|k| std::env::var(k).ok());
-        let name = self.person.clone().or(account).unwrap_or_else(|| "somebody".into());
+        let own = self.person.clone().or_else(|| invitation.name.clone());
+        let name = own.or(account).unwrap_or_else(|| "somebody".into());
         Identity { name, role, invitation, entropy }
     }
 
@@ -105,7 +161,8 @@ impl SharedArgs {
             eprintln!("sculptd: invitations were made in {}", folder.display());
         }
         eprintln!(
-            "sculptd: '{name}' is shared; others join with: sculptd run --join {name} --key {}",
+            "sculptd: '{name}' is shared; others join with: sculptd run --join {name} --key {}, or \
+             by a link or QR code from: sculptd invite {name}",
             folder.join("sculptor.key").display()
         );
         let clock = Clock::monotonic();
@@ -114,7 +171,7 @@ impl SharedArgs {
         let station = Station::host(identity, keyring, rate, tick, clock.now_us());
         let shared = Shared::start(
             station,
-            Box::new(self.link(name)?),
+            Box::new(self.link(name, &[])?),
             clock,
             settings(config, name, session.map(|s| (s, true))),
         );
@@ -130,25 +187,21 @@ impl SharedArgs {
         session: Option<&Path>,
         alone: impl FnOnce(&Config) -> Result<Begun, Fail>,
     ) -> Result<(Begun, Box<dyn SharedInput>), Fail> {
-        let name = self.join.as_deref().unwrap_or_default();
         if let Some(path) = session.filter(|path| path.exists()) {
             let path = path.display();
             let text = "who joins begins a new session: name a file that is not there";
             return Err(Fail::Usage(format!("{path}: {text}")));
         }
-        let key = self.key.as_deref().unwrap_or(Path::new(""));
-        let invitation = Invitation::read(key).map_err(|e| Fail::Config(e.to_string()))?;
-        let role = match self.role {
-            JoinRole::Sculptor => Role::Sculptor,
-            JoinRole::Viewer => Role::Viewer,
-            JoinRole::Device => Role::Device,
-        };
+        let JoinLink { name, invitation, connect } = self.target()?;
+        let (name, is_by_link) = (&*name, self.key.is_none());
+        let said = if is_by_link { invitation.role } else { Role::Sculptor };
+        let role = self.role.map_or(said, JoinRole::role);
         let clock = Clock::monotonic();
         let identity = self.identity(role, invitation, system_entropy());
         let station = Station::join(identity, clock.now_us());
         let shared = Shared::start(
             station,
-            Box::new(self.link(name)?),
+            Box::new(self.link(name, &connect)?),
             clock,
             settings(config, name, session.map(|s| (s, false))),
         );

@@ -37,6 +37,7 @@ pub mod event;
 pub mod face_sets;
 pub mod layers;
 pub mod method;
+pub mod people;
 pub mod range;
 pub mod retopology;
 pub mod scene;

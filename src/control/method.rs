@@ -28,6 +28,7 @@ use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
     LayerReply, LayerSetParams, LayersReply,
 };
+use crate::people::PeopleReply;
 use crate::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
     RemeshQuadsReply,
@@ -201,11 +202,14 @@ methods! {
     "curve" Curve curve(CurveParams) -> CurveReply;
     /// Makes a stroke, as a pen would.
     "stroke" Stroke stroke(StrokeParams) -> StrokeReply;
+    /// Who shares the sculpture: names, roles, colours, and where their pens meet the clay.
+    "people" People people(NoParams) -> PeopleReply;
     /// Changes the named settings of the camera, and answers with all.
     "camera" Camera camera(CameraSettings) -> CameraSettings;
-    /// Takes back one step.
+    /// Takes back one step; of a shared sculpture the newest of the own person, unless somebody
+    /// else has changed the same since: `people` says who.
     "undo" Undo undo(NoParams) -> SentReply;
-    /// Does the step that was taken back again.
+    /// Does the step that was taken back again; of a shared sculpture as `undo`.
     "redo" Redo redo(NoParams) -> SentReply;
     /// Every node of the history, branches too, as the session file keeps them.
     "history" History history(NoParams) -> HistoryReply;

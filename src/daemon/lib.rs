@@ -34,6 +34,7 @@ pub mod metrics;
 pub mod pacer;
 pub mod page_thread;
 pub mod pen_trail;
+pub mod people;
 pub mod polygons;
 pub mod present_latency;
 pub mod published;

@@ -283,8 +283,11 @@ impl Ticking {
             shown.garbage_overflows = self.garbage.overflowed();
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = now.newest;
             let mut state = Published::of(&mut self.world, shown);
-            if let Some(ahead) = self.shared.as_mut().and_then(|s| s.ahead(&self.world)) {
-                state.show_ahead(ahead);
+            if let Some(shared) = &mut self.shared {
+                state.people = Some(shared.people());
+                if let Some(ahead) = shared.ahead(&self.world) {
+                    state.show_ahead(ahead);
+                }
             }
             self.publisher.publish(state, &garbage);
             // After the state that they are about is to be seen.

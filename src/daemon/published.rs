@@ -8,6 +8,7 @@ use std::sync::Arc;
 use arc_swap::ArcSwap;
 use glam::Vec3;
 
+use crate::people::PeopleHere;
 use crate::tick_statistics::{Losses, Percentiles};
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{GarbageSink, Hit, Ray, Snapshot};
@@ -18,7 +19,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::{HeldObject, Pose, Volume};
 use sculptd_engine::scene::{ObjectId, ObjectTransform, SceneView};
 use sculptd_engine::stroke::{CurveStroke, PenPoint};
-use sculptd_engine::world::World;
+use sculptd_engine::world::{MAX_OTHERS, OthersPen, UndoRefusal, World};
 
 /// Pens shown to a viewer.
 pub const SHOWN_PENS: usize = 4;
@@ -56,6 +57,8 @@ pub struct Published {
     pub hands: Option<Hands>,
     /// What each hand that is followed is doing.
     pub poses: [Option<Pose>; MAX_HANDS],
+    /// Whose hands they are, of those who share the sculpture; `None`: nothing is shared.
+    pub hands_of: Option<u8>,
     /// The tracker of each.
     pub hand_devices: [Option<DeviceId>; MAX_HANDS],
     /// What the hands hold, and where.
@@ -73,6 +76,13 @@ pub struct Published {
     /// Steps that an undo can take back, with the edit under way where it is one.
     pub undo_steps: usize,
     pub redo_steps: usize,
+    /// Who shares the sculpture; `None`: nothing is shared.
+    pub people: Option<Arc<PeopleHere>>,
+    /// The newest undo or redo of the own person that was refused: a step of somebody else is in
+    /// the way.
+    pub undo_refused: Option<UndoRefusal>,
+    /// Where the pens of the others meet the clay.
+    pub others: [Option<OthersPen>; MAX_OTHERS],
     pub figures: PublishedFigures,
 }
 
@@ -131,6 +141,10 @@ impl Published {
         {
             (*pose, *by) = (Some(now), Some(device));
         }
+        let mut others = [None; MAX_OTHERS];
+        for (slot, pen) in others.iter_mut().zip(world.pens_of_others()) {
+            *slot = Some(pen);
+        }
         let mesh = world.snapshot();
         let scene = world.scene_view();
         let tools = world.hand_tools();
@@ -152,6 +166,7 @@ impl Published {
             draft: world.curve_stroke().cloned().unwrap_or_default(),
             hands: world.hands().copied(),
             poses,
+            hands_of: world.person_of_hands(),
             hand_devices,
             thing: world.thing().cloned(),
             picking: world.is_picking(),
@@ -161,6 +176,9 @@ impl Published {
             calibrating: tools.is_calibrating(),
             undo_steps: world.undo_steps() + usize::from(world.is_taken_back_by(&Command::Undo)),
             redo_steps: world.redo_steps(),
+            people: None,
+            undo_refused: world.undo_refused(),
+            others,
             figures,
         }
     }
@@ -173,6 +191,12 @@ impl Published {
         self.brush_radius = ahead.brush_radius();
         self.draft = ahead.curve_stroke().cloned().unwrap_or_default();
         (self.pens, self.last_dabs, self.tablets) = shown_pens(ahead);
+    }
+
+    /// Whose hands are followed, where they are another person's than the own.
+    pub fn others_hands(&self) -> Option<u8> {
+        let own = self.people.as_ref()?.own;
+        self.hands_of.filter(|of| *of != own && *of != 0)
     }
 
     /// Where the active object stands.
@@ -216,9 +240,11 @@ impl Published {
 
     /// Whether this state holds memory that `newer` does not share.
     fn holds_other(&self, newer: &Published) -> bool {
+        let people = |state: &Published| state.people.as_ref().map(Arc::as_ptr);
         let held = |state: &Published| state.thing.as_ref().map(|held| Arc::as_ptr(&held.plain));
         self.mesh.object_id() != newer.mesh.object_id()
             || !Arc::ptr_eq(&self.scene, &newer.scene)
+            || people(self) != people(newer)
             || held(self) != held(newer)
     }
 }

@@ -1,7 +1,10 @@
 //! The loop's door to a shared sculpture: the own input goes out, the ordered input of all comes
 //! back, and the world steps nothing else. Who implements it orders the input over a network.
 
+use std::sync::Arc;
+
 use crate::command_queue::QueuedCommand;
+use crate::people::PeopleHere;
 use crate::session::SessionWriter;
 use crate::session::writer::WriterThread;
 use sculptd_devices::Sample;
@@ -49,6 +52,8 @@ pub trait SharedInput: Send + std::fmt::Debug {
     /// The world that is shown in the place of the loop's, as it has the own input that is still on
     /// its way; once a tick, after all of its steps.
     fn ahead(&mut self, world: &World) -> Option<&mut World>;
+    /// Who shares the sculpture; the same list as before, where nobody came or went.
+    fn people(&self) -> Arc<PeopleHere>;
     /// Whether this daemon orders the input. It alone starts what a step asks for once.
     fn hosts(&self) -> bool;
 }

@@ -33,7 +33,8 @@ pub enum Command {
     Undo,
     /// Does again the step that was taken back last.
     Redo,
-    /// Ends every open stroke as a lifted pen does.
+    /// Ends every open stroke as a lifted pen does; of several people, those of whoever asks, where
+    /// the others' can be told apart from them.
     LiftAll,
     /// Changes the mask of the whole object: one step of undo.
     Mask(MaskAction),

@@ -15,6 +15,8 @@ mod images;
 mod in_hand;
 mod layers;
 mod local_camera;
+mod others;
+mod own_undo;
 mod people;
 mod saved;
 mod scene_arrange;
@@ -29,7 +31,9 @@ use serde::{Deserialize, Serialize};
 
 use self::in_hand::ObjectsInHand;
 use self::local_camera::LocalCamera;
+pub use self::others::{MAX_OTHERS, OthersPen};
 use self::people::People;
+pub use self::people::UndoRefusal;
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
 pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext};
@@ -44,7 +48,7 @@ use crate::stroke::{CurveAction, PenTrack};
 use crate::surface_edit::SurfaceWork;
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
-use sculptd_clay::{Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
+use sculptd_clay::{Author, Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
@@ -225,6 +229,8 @@ impl World {
         self.surface.next_tick();
         self.let_entries_go();
         self.act_as_hands();
+        self.timeline.set_person(self.person());
+        self.author(None);
         for command in commands {
             self.apply_command(command);
         }
@@ -274,20 +280,22 @@ impl World {
                 }
             }
             Command::Undo => {
-                self.lift_all();
+                self.lift_for_undo(false);
                 match self.undo_step() {
                     true => self.note(HistoryEvent::Undo),
-                    false => self.report.missed -= 1,
+                    false => self.report.missed -= i32::from(!self.has_people()),
                 }
             }
             Command::Redo => {
-                self.lift_all();
+                self.lift_for_undo(true);
                 match self.redo_step() {
                     true => self.note(HistoryEvent::Redo),
-                    false => self.report.missed += 1,
+                    false => self.report.missed += i32::from(!self.has_people()),
                 }
             }
-            Command::LiftAll => self.lift_all(),
+            Command::LiftAll => {
+                self.lift_own();
+            }
             Command::TakeUp(plain) => self.take_up(plain.clone()),
             Command::PutDown => self.put_down(),
             Command::CalibrateReach => self.hands.calibrate(),
@@ -390,6 +398,7 @@ impl World {
     /// see the strokes ended. So is topology that was carried over, as a part of the stroke's undo
     /// step: a stroke that is taken back and done again is whole.
     fn lift_all(&mut self) {
+        self.author(None);
         self.end_surface_edit();
         self.end_layer_edit();
         for seat in &mut self.pens {
@@ -400,6 +409,7 @@ impl World {
         self.let_go();
         self.topology.finish(&mut self.scene.active_mut().clay, &self.workers);
         self.close();
+        self.author(self.person());
     }
 
     /// Closes the open step, with all that is still to be done to layers.
@@ -445,7 +455,10 @@ impl World {
                 self.hands.take(sample.device, sample.t_us, hands);
                 self.last_hands = Some(*hands);
                 if let Some(choice) = self.hands.take_choice() {
+                    self.timeline.set_person(self.person());
+                    self.author(self.person());
                     self.choose(choice);
+                    self.author(None);
                 }
                 if before != self.hands.settings.reach {
                     self.set_reach(self.hands.settings.reach);
@@ -471,12 +484,17 @@ impl World {
         let active = self.pens.iter().any(|s| s.track.is_open() || !s.track.is_idle())
             || self.hands.is_touching()
             || !self.topology.is_empty();
+        match active {
+            true => self.close_ended(),
+            false => self.all_ended(),
+        }
         self.settle_layers(active);
     }
 
     /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
     /// visited. Returns what is left of it.
     fn advance_strokes(&mut self, budget: u64) -> u64 {
+        let shared = self.has_people();
         let object = self.scene.active_mut();
         let transform = object.settings.transform;
         let mut clay = StrokeContext {
@@ -499,7 +517,11 @@ impl World {
                 seat.stroke.begin(self.strokes);
             }
             // Each with the view and the brush of the person whose pen it is.
-            let other = self.people.other(self.people.of_device(seat.device));
+            let person = self.people.of_device(seat.device);
+            let other = self.people.other(person);
+            if shared {
+                clay.mesh.set_author(Author::Person(person));
+            }
             clay.brush = other.map_or(&self.brush, |o| &o.brush);
             let camera = other.map_or(&self.camera, |o| &o.camera);
             clay.camera = LocalCamera::new(camera, &transform);
@@ -526,6 +548,7 @@ impl World {
             seat.stroke = clay.stroke;
         }
         let mut left = clay.left;
+        self.author(None);
         while left > 0 {
             let Some(act) = self.hands.next_act() else { return left };
             left = self.by_hand(&act, left);
@@ -550,6 +573,8 @@ mod face_set_tests;
 mod layer_tests;
 #[cfg(test)]
 mod local_remesh_tests;
+#[cfg(test)]
+mod own_undo_tests;
 #[cfg(test)]
 mod people_tests;
 #[cfg(test)]

@@ -118,6 +118,11 @@ impl Executor {
         let tick = frame.tick.max(world.tick());
         let mut input = TickInput { tick, ..TickInput::default() };
         let t_us = (frame.tick as u128 * 1_000_000 / u128::from(self.rate_hz.max(1))) as u64;
+        // The pens of those who have gone will tell nothing any more.
+        for gone in frame.arrivals.iter().filter(|a| !a.here) {
+            let of = OfPerson { person: gone.person, command: Command::LiftAll };
+            input.commands.push(Command::OfPerson(Box::new(of)));
+        }
         for batch in &frame.batches {
             for sample in &batch.samples {
                 let device = world_device(batch.person, sample.device);

@@ -1,7 +1,12 @@
 //! The checkpoint that a host gives to those who join, from when its first bytes are made.
 
+use std::collections::BTreeMap;
+
+use crate::core::{Core, DOWN, To};
+use crate::host_limits::RECENT;
+use crate::host_members::JoinedMember;
 use crate::wire::frame::Arrival;
-use crate::wire::message::CHUNK;
+use crate::wire::message::{Address, CHUNK, FromHost};
 
 /// A checkpoint, or as much of it as is made.
 #[derive(Debug)]
@@ -26,11 +31,6 @@ impl HeldCheckpoint {
         self.whole |= last;
     }
 
-    /// Whether nothing more is made.
-    pub fn is_whole(&self) -> bool {
-        self.whole
-    }
-
     /// A chunk, and whether it is the last; `None`: it is not made yet, or there is none.
     pub fn chunk(&self, number: u32) -> Option<(&[u8], bool)> {
         let first = number as usize * CHUNK;
@@ -45,6 +45,54 @@ impl HeldCheckpoint {
             None => None,
         }
     }
+
+    /// Sends the chunks that a member wants, as far as they are made.
+    pub fn send(&self, core: &mut Core, to: Address, member: &mut JoinedMember) {
+        while let Some(number) = member.wanted.first().copied()
+            && let Some((bytes, last)) = self.chunk(number)
+        {
+            member.wanted.pop_first();
+            let (index, bytes) = (self.index, bytes.to_vec());
+            let chunk = FromHost::Chunk { index, number, last, bytes };
+            let sealed = member.down.seal(&chunk.to_bytes());
+            core.send(To::Bulk(to), DOWN, &sealed);
+        }
+    }
+
+    /// The same for all who fetch it.
+    pub fn send_to(&self, core: &mut Core, members: &mut BTreeMap<Address, JoinedMember>) {
+        let fetches = |m: &JoinedMember| m.first == self.index && !m.wanted.is_empty();
+        for (to, member) in members.iter_mut().filter(|m| fetches(m.1)) {
+            self.send(core, *to, member);
+        }
+    }
+}
+
+/// Whether who joins now may begin with a checkpoint that is there.
+pub fn is_recent(core: &Core, held: &HeldCheckpoint) -> bool {
+    core.log.from(held.index + 1, 1).is_some() && core.log.last() < held.index + RECENT
+}
+
+/// Lets checkpoints go that nobody fetches, but the newest as long as it serves.
+pub fn drop_old(all: &mut Vec<HeldCheckpoint>, core: &Core, fetched: impl Fn(u64) -> bool) {
+    let newest = all.last().map(|held| held.index);
+    all.retain(|held| {
+        let serves = newest == Some(held.index) && (!held.whole || is_recent(core, held));
+        serves || fetched(held.index)
+    });
+}
+
+/// Everybody, and the last batch of each, as the log was after a frame.
+pub fn people_at(core: &Core, index: u64) -> Vec<(Arrival, u64)> {
+    let mut people = core.log.people();
+    let after = core.log.from(index + 1, usize::MAX).unwrap_or_default();
+    for (person, applied) in &mut people {
+        let first = after.iter().flat_map(|f| &f.batches).find(|b| b.person == person.person);
+        if let Some(first) = first {
+            *applied = first.number - 1;
+        }
+    }
+    people
 }
 
 #[cfg(test)]

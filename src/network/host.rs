@@ -11,14 +11,14 @@ use std::sync::Arc;
 
 use crate::acknowledgement::Acknowledgements;
 use crate::comparison::HashComparison;
-use crate::core::{Core, DOWN, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
-use crate::held_checkpoint::HeldCheckpoint;
+use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, To, ms};
+use crate::held_checkpoint::{HeldCheckpoint, drop_old, is_recent, people_at};
 use crate::host_limits::{
-    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, MAX_WANTED, PATIENCE, RECENT,
-    REST_US,
+    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, JoinedMember, PER_MESSAGE, SenderLimits, bounded, fitting,
+    BatchQueue, Greeted, JoinedMember, PER_MESSAGE, SenderLimits, bounded, drop_silent, fitting,
+    note_departures, until_next,
 };
 use crate::keyring::Keyring;
 use crate::rate_limit::RateLimit;
@@ -102,7 +102,7 @@ impl Host {
         if first {
             let (name, role) = (core.name.clone(), core.role);
             core.person = 1;
-            host.arrivals.push(Arrival { person: 1, name, role });
+            host.arrivals.push(Arrival { person: 1, name, role, here: true });
         }
         core.outbox.begin_after(core.log.applied(core.person));
         core.events.push_back(Event::Entered { person: core.person, rate_hz: core.rate_hz });
@@ -240,8 +240,9 @@ impl Host {
         let person = number.unwrap_or_default();
         self.members.retain(|_, m| m.name != name);
         core.note(format!("'{name}' joins as {}", role.name()));
-        let arrival = Arrival { person, name: name.clone(), role };
-        if core.log.person(person) != Some(&arrival) && !self.arrivals.contains(&arrival) {
+        let arrival = Arrival { person, name: name.clone(), role, here: true };
+        self.arrivals.retain(|a| a.person != person);
+        if core.log.person(person) != Some(&arrival) {
             self.arrivals.push(arrival);
         }
         let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
@@ -346,11 +347,8 @@ impl Host {
                 let Some(held) = self.checkpoints.iter().find(|c| c.index == index) else {
                     return self.dismiss(core, from, "the checkpoint is gone: join again");
                 };
-                member.wanted.extend(first..first.saturating_add(count.min(MAX_WANTED)));
-                while member.wanted.len() > 2 * MAX_WANTED as usize {
-                    member.wanted.pop_last();
-                }
-                send_chunks(core, from, member, held);
+                member.want(first, count);
+                held.send(core, from, member);
             }
             FromMember::Hash { index, hash } => {
                 if let Some(own) = self.comparison.take(index, from, hash) {
@@ -424,10 +422,7 @@ impl Host {
         }
         let Some(held) = self.checkpoints.last_mut() else { return };
         held.push(part, last);
-        let wants = |m: &JoinedMember| m.first == index && !m.wanted.is_empty();
-        for (to, member) in self.members.iter_mut().filter(|m| wants(m.1)) {
-            send_chunks(core, *to, member, held);
-        }
+        held.send_to(core, &mut self.members);
         if last {
             self.making = None;
         }
@@ -435,15 +430,7 @@ impl Host {
 
     /// Those who wait are let in: they fetch the checkpoint while it is made.
     fn begin_checkpoint(&mut self, core: &mut Core, index: u64) {
-        // As the log was then.
-        let mut people = core.log.people();
-        let after = core.log.from(index + 1, usize::MAX).unwrap_or_default();
-        for (person, applied) in &mut people {
-            let first = after.iter().flat_map(|f| &f.batches).find(|b| b.person == person.person);
-            if let Some(first) = first {
-                *applied = first.number - 1;
-            }
-        }
+        let people = people_at(core, index);
         self.checkpoints.push(HeldCheckpoint::new(index, people.clone()));
         let waiting: Vec<Address> =
             self.members.iter().filter(|(_, m)| m.waits).map(|(a, _)| *a).collect();
@@ -468,16 +455,14 @@ impl Host {
     /// Makes the frames that are due, and sends what is to be sent.
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         self.order(core, now_us);
-        self.members.retain(|_, m| {
-            let here = now_us < m.heard_us + GONE_US;
-            if !here {
-                core.note(format!("'{}' is gone", m.name));
-            }
-            here
-        });
+        drop_silent(&mut self.members, core, now_us);
         self.acknowledge(core, now_us);
         if now_us >= self.present_us {
             self.present_us = now_us + IDLE_US;
+            // Those who were with an earlier host have some time to join this one.
+            if now_us >= self.epoch.1 + GONE_US {
+                note_departures(&mut self.arrivals, &self.members, core);
+            }
             core.among_heirs(&mut self.heirs, AmongHeirs::Host { term: self.term });
         }
         let due: Vec<Address> =
@@ -486,12 +471,7 @@ impl Host {
             self.send_next(core, to, now_us);
         }
         let offered = self.members.values().filter(|m| m.have.is_none() && !m.waits);
-        let fetched = |index| offered.clone().any(|m| m.first == index);
-        let newest = self.checkpoints.last().map(|held| held.index);
-        self.checkpoints.retain(|held| {
-            let serves = newest == Some(held.index) && (!held.is_whole() || is_recent(core, held));
-            serves || fetched(held.index)
-        });
+        drop_old(&mut self.checkpoints, core, |index| offered.clone().any(|m| m.first == index));
         let slowest = self.replicas().filter_map(|m| m.have).min().unwrap_or(u64::MAX);
         let slowest = offered.map(|m| m.sent).min().unwrap_or(u64::MAX).min(slowest);
         core.log.trim(slowest.max(core.log.last().saturating_sub(200_000)));
@@ -601,12 +581,7 @@ impl Host {
         }
         let behind = wants && member.sent < last;
         let busy = now_us < self.last_input_us + BUSY_US;
-        member.next_us = now_us
-            + match (behind, busy) {
-                (true, _) => SEND_US / 10,
-                (_, true) => SEND_US,
-                _ => IDLE_US,
-            };
+        member.next_us = now_us + until_next(behind, busy);
         self.send_frames(core, to, &frames, now_us);
     }
 
@@ -621,22 +596,5 @@ impl Host {
             frames,
         };
         core.down(to, &mut member.down, &down);
-    }
-}
-
-/// Whether who joins now may begin with a checkpoint that is there.
-fn is_recent(core: &Core, held: &HeldCheckpoint) -> bool {
-    core.log.from(held.index + 1, 1).is_some() && core.log.last() < held.index + RECENT
-}
-
-/// Sends the chunks that a member wants, as far as they are made.
-fn send_chunks(core: &mut Core, to: Address, member: &mut JoinedMember, held: &HeldCheckpoint) {
-    while let Some(number) = member.wanted.first().copied()
-        && let Some((bytes, last)) = held.chunk(number)
-    {
-        member.wanted.pop_first();
-        let chunk = FromHost::Chunk { index: held.index, number, last, bytes: bytes.to_vec() };
-        let sealed = member.down.seal(&chunk.to_bytes());
-        core.send(To::Bulk(to), DOWN, &sealed);
     }
 }

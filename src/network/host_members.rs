@@ -3,15 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use crate::core::RoundTrip;
-use crate::host_limits::{BYTES, ENTRIES, MAX_WAITING};
+use crate::core::{Core, IDLE_US, RoundTrip, SEND_US};
+use crate::host_limits::{BYTES, ENTRIES, GONE_US, MAX_WAITING, MAX_WANTED};
 use crate::keyring::Invitation;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
-use crate::wire::frame::{Batch, Frame, PersonId, Role};
+use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
 use crate::wire::frame_codec::frames_to_bytes;
-use crate::wire::message::Nonce;
+use crate::wire::message::{Address, Nonce};
 
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
@@ -85,6 +85,14 @@ pub struct JoinedMember {
 }
 
 impl JoinedMember {
+    /// Chunks of the checkpoint are wanted; of too many the last ones are not sent.
+    pub fn want(&mut self, first: u32, count: u32) {
+        self.wanted.extend(first..first.saturating_add(count.min(MAX_WANTED)));
+        while self.wanted.len() > 2 * MAX_WANTED as usize {
+            self.wanted.pop_last();
+        }
+    }
+
     /// Frames as bytes for this member, as differences to those that it is known to have.
     pub fn bytes_of(&self, frames: &[Arc<Frame>], log: &ReplicaLog) -> Vec<u8> {
         frames_to_bytes(frames, log, (self.first, self.have.unwrap_or(self.first)))
@@ -98,6 +106,15 @@ pub struct BatchQueue {
     pub received: u64,
     pub ready: VecDeque<Batch>,
     pub early: BTreeMap<u64, Batch>,
+}
+
+/// Microseconds until the next message to a member who lacks frames, while somebody gives input.
+pub fn until_next(behind: bool, busy: bool) -> u64 {
+    match (behind, busy) {
+        (true, _) => SEND_US / 10,
+        (_, true) => SEND_US,
+        _ => IDLE_US,
+    }
 }
 
 /// As many of the frames as one message may hold; one at least.
@@ -116,6 +133,30 @@ pub fn bounded(mut frames: Vec<Arc<Frame>>) -> Vec<Arc<Frame>> {
     }
     frames.truncate(count);
     frames
+}
+
+/// Lets those go who have been silent for too long.
+pub fn drop_silent(members: &mut BTreeMap<Address, JoinedMember>, core: &mut Core, now_us: u64) {
+    members.retain(|_, m| {
+        let here = now_us < m.heard_us + GONE_US;
+        if !here {
+            core.note(format!("'{}' is gone", m.name));
+        }
+        here
+    });
+}
+
+/// Those who are connected no longer, to be told with those who came.
+pub fn note_departures(
+    arrivals: &mut Vec<Arrival>,
+    members: &BTreeMap<Address, JoinedMember>,
+    core: &Core,
+) {
+    let joined = |a: &Arrival| members.values().any(|m| m.person == a.person);
+    let told = |a: &Arrival| arrivals.iter().any(|p| p.person == a.person);
+    let gone = core.log.here().filter(|a| a.person != core.person && !joined(a) && !told(a));
+    let gone: Vec<Arrival> = gone.map(|a| Arrival { here: false, ..a.clone() }).collect();
+    arrivals.extend(gone);
 }
 
 /// How many of a person's next batches one frame takes, so that a frame of all people fits into a

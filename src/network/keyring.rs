@@ -125,7 +125,8 @@ pub(crate) fn write_key<T: Serialize>(path: &Path, what: &str, key: &T) -> Resul
         .map_err(|source| io(path, source))
 }
 
-fn from_hex(text: &str) -> Option<Secret> {
+/// A key from its hexadecimal digits.
+pub(crate) fn from_hex(text: &str) -> Option<Secret> {
     let text = text.as_bytes();
     let mut secret = [0; KEY];
     if text.len() != KEY * 2 {

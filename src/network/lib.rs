@@ -31,16 +31,21 @@ pub mod held_checkpoint;
 pub mod host;
 pub mod host_limits;
 pub mod host_members;
+pub mod join_link;
 pub mod keyring;
 #[cfg(feature = "zenoh")]
 pub mod live;
 pub mod local_echo;
 pub mod member;
 pub mod outbox;
+#[cfg(feature = "zenoh")]
+pub mod people_here;
 pub mod policy;
 pub mod random;
 pub mod rate_limit;
 pub mod replica_log;
+#[cfg(feature = "zenoh")]
+mod replica_worker;
 pub mod seal;
 #[cfg(feature = "zenoh")]
 pub mod shared_session;

@@ -14,22 +14,22 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 
 use crate::core::Event;
-use crate::executor::{Asked, Executor, HashView, KnownHashes};
+use crate::executor::{Asked, Executor, HashView};
 use crate::local_echo::LocalEcho;
+use crate::people_here::{changes_people, people_here};
 use crate::policy;
+use crate::replica_worker::{Done, Job, work_on};
 use crate::shared_session::SharedSession;
 use crate::station::Station;
 use crate::transport::Transport;
 use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::samples::rounded;
-use sculptd_clay::Workers;
 use sculptd_daemon::command_queue::QueuedCommand;
+use sculptd_daemon::people::PeopleHere;
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
-use sculptd_engine::checkpoint::{Captured, Restoring};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
-use sculptd_geometry::io::write_mesh;
 
 /// What waits between the threads at most; the loop's own input beyond it is told as lost.
 const WAITING: usize = 4096;
@@ -55,28 +55,7 @@ enum ToLoop {
     Entered(PersonId, u32),
     /// Bytes of a checkpoint that have come.
     Coming(u64),
-}
-
-/// To the worker.
-enum Job {
-    Hash(HashView),
-    Checkpoint(u64, Box<Captured>),
-    RestorePart {
-        first: bool,
-        bytes: Vec<u8>,
-    },
-    /// All bytes are there; ticks a second.
-    Restore(u32),
-    Dump(Box<HashView>, PathBuf),
-}
-
-/// From the worker.
-enum Done {
-    Hash(HashView, u64),
-    /// The next part of a checkpoint, and whether it is the last.
-    CheckpointPart(u64, Vec<u8>, bool),
-    /// The world; and its session, where one is written, or why it is not.
-    Restored(Option<(Box<World>, Result<Option<SharedJournal>, String>)>),
+    People(Arc<PeopleHere>),
 }
 
 /// What a run is told of its shared sculpture.
@@ -117,6 +96,7 @@ pub struct SharedLink {
     /// The frame whose own tick is being stepped.
     stepping: Option<Arc<Frame>>,
     hosting: Arc<AtomicBool>,
+    people: Arc<PeopleHere>,
     /// Frames come here: a device is sent none, and its world stands still.
     sees: bool,
     lost: u64,
@@ -236,6 +216,7 @@ impl Shared {
             frames: VecDeque::new(),
             stepping: None,
             hosting,
+            people: Arc::default(),
             sees: true,
             lost: 0,
             _thread: SharedThread { stop, thread: Some(thread) },
@@ -292,6 +273,7 @@ impl Shared {
                     return Ok((Some((world, journal)), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
+                Ok(ToLoop::People(people)) => self.link.people = people,
                 Ok(ToLoop::Coming(bytes)) => {
                     last_us = clock.now_us();
                     coming(bytes);
@@ -370,6 +352,7 @@ impl SharedInput for SharedLink {
             }
             match self.from.try_recv() {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
+                Ok(ToLoop::People(people)) => self.people = people,
                 Ok(ToLoop::World(world, executor, journal)) => {
                     self.executor = executor;
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
@@ -399,6 +382,10 @@ impl SharedInput for SharedLink {
     fn ahead(&mut self, world: &World) -> Option<&mut World> {
         self.echo.advance(world);
         self.echo.ahead()
+    }
+
+    fn people(&self) -> Arc<PeopleHere> {
+        self.people.clone()
     }
 
     fn hosts(&self) -> bool {
@@ -536,7 +523,9 @@ impl Running {
     }
 
     fn tell_events(&mut self) {
+        let mut people = false;
         while let Some(event) = self.station.take_event() {
+            people |= changes_people(&event);
             match event {
                 Event::Frame(frame) => match &mut self.restoring {
                     Some(waiting) => waiting.push(frame),
@@ -583,62 +572,8 @@ impl Running {
                 }
             }
         }
-    }
-}
-
-/// The worker's thread.
-fn work_on(
-    jobs: &cc::Receiver<Job>,
-    done: &cc::Sender<Done>,
-    workers: usize,
-    mut session: Option<SharedSession>,
-) {
-    let mut known = KnownHashes::default();
-    let mut restoring = Ok(Restoring::default());
-    for job in jobs {
-        let finished = match job {
-            Job::Hash(view) => {
-                let hash = view.hash(&mut known);
-                Done::Hash(view, hash)
-            }
-            Job::Checkpoint(index, captured) => {
-                captured.write(|part, last| {
-                    let _ = done.send(Done::CheckpointPart(index, part.to_vec(), last));
-                });
-                continue;
-            }
-            Job::RestorePart { first, bytes } => {
-                if first {
-                    restoring = Ok(Restoring::default());
-                }
-                if let Ok(some) = &mut restoring
-                    && let Err(bad) = some.take(&bytes)
-                {
-                    restoring = Err(bad);
-                }
-                continue;
-            }
-            Job::Restore(rate_hz) => {
-                let whole = std::mem::replace(&mut restoring, Ok(Restoring::default()));
-                let world = whole.and_then(|some| some.finish(Workers::new(workers)));
-                Done::Restored(world.ok().map(|mut world| {
-                    let journal = session.as_mut().map(|s| s.begin(&mut world, rate_hz));
-                    (Box::new(world), journal.transpose())
-                }))
-            }
-            Job::Dump(view, path) => {
-                let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
-                let written = written.map_err(|e| e.to_string()).and_then(|()| {
-                    write_mesh(&path, &view.active.to_tri().to_poly()).map_err(|e| e.to_string())
-                });
-                if let Err(e) = written {
-                    tracing::warn!("{}: {e}", path.display());
-                }
-                continue;
-            }
-        };
-        if done.send(finished).is_err() {
-            return;
+        if people {
+            let _ = self.to_loop.send(ToLoop::People(Arc::new(people_here(&self.station))));
         }
     }
 }

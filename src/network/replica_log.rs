@@ -88,6 +88,11 @@ impl ReplicaLog {
         self.people.get(&person).map(|p| &p.0)
     }
 
+    /// Those who are connected as far as the log tells.
+    pub fn here(&self) -> impl Iterator<Item = &Arrival> {
+        self.people.values().map(|p| &p.0).filter(|a| a.here)
+    }
+
     /// The last batch of a person.
     pub fn applied(&self, person: PersonId) -> u64 {
         self.people.get(&person).map_or(0, |p| p.1)

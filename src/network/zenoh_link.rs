@@ -52,18 +52,6 @@ pub struct ZenohLink {
     bulk: cc::Sender<(String, Vec<u8>)>,
 }
 
-/// Whether a sculpture may be called so: it is a part of a key.
-///
-/// # Errors
-/// Says what is expected.
-pub fn sculpture_name(text: &str) -> Result<String, String> {
-    let fine = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    match (1..=64).contains(&text.len()) && text.chars().all(fine) {
-        true => Ok(text.into()),
-        false => Err("expected 1 to 64 letters, digits, '-', '_' or '.'".into()),
-    }
-}
-
 /// Opens a session. `lease_ms`: a silent connection is given up after so long; `None`: as Zenoh has
 /// it, ten seconds.
 ///

@@ -1,7 +1,11 @@
 //! Processes that share a sculpture over Zenoh on the loopback: strokes of both, one hash; a
-//! viewer; a wrong key; the host killed.
+//! viewer; a wrong key; the host killed; invitations as links; who is here, and undo of one's own.
 
 use std::path::Path;
+
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
 
 use crate::daemon_process::{Daemon, free_endpoint};
 use crate::waiting::{comes, until};
@@ -118,9 +122,9 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
 
 /// The hash that a session's file gives.
 fn replayed(file: &Path) -> Option<String> {
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_sculptd"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     let out = command.args(["--json", "replay"]).arg(file).output().expect("runs");
-    let reply: serde_json::Value = serde_json::from_slice(&out.stdout).ok()?;
+    let reply: Value = serde_json::from_slice(&out.stdout).ok()?;
     reply["hash"].as_str().map(String::from)
 }
 
@@ -165,4 +169,162 @@ fn everybody_has_a_file_that_gives_the_same_clay() {
     let mut again = Daemon::run(&bob_joins);
     until("it is refused", || again.child.try_wait().expect("waited for").is_some());
     assert!(again.has_told("name a file that is not there"));
+}
+
+/// `sculptd` with these arguments, in a home of its own, and a text on standard input.
+fn sculptd(home: &Path, args: &[&str], input: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
+    command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    for name in ["XDG_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_STATE_HOME", "HOME"] {
+        command.env(name, home);
+    }
+    let mut child = command.spawn().expect("runs");
+    let mut stdin = child.stdin.take().expect("piped");
+    std::io::Write::write_all(&mut stdin, input.as_bytes()).expect("written");
+    drop(stdin);
+    child.wait_with_output().expect("ends")
+}
+
+/// The invitation that `sculptd invite` prints.
+fn invite(home: &Path, args: &[&str]) -> Value {
+    let out = sculptd(home, &[&["--json", "invite"], args].concat(), "");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_slice(&out.stdout).expect("JSON")
+}
+
+#[test]
+fn guests_join_by_a_link_see_each_other_and_take_back_their_own_steps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (keys, at) = (folder.path().join("keys").display().to_string(), free_endpoint());
+    let dragon = format!("links-{}", std::process::id());
+    let of = ["--keys", &keys, "--connect", &at];
+    // Before the host is started, so that it knows Bob's key.
+    let bobs = invite(folder.path(), &[&[&*dragon, "--as", "Bob"][..], &of].concat());
+    assert_eq!((&bobs["role"], &bobs["person"]), (&"sculptor".into(), &"Bob".into()));
+    let link = bobs["link"].as_str().expect("a link");
+    let again = invite(folder.path(), &[&[&*dragon, "--as", "Bob"][..], &of].concat());
+    assert_eq!(again["link"], bobs["link"], "the same invitation");
+    let host = ["--host", &dragon, "--keys", &keys, "--listen", &at, "--as", "Ada"];
+    let ada = Daemon::run(&host);
+    until("the host answers", || ada.hash().is_some());
+    let bob = Daemon::run(&["--join", link]);
+    until("Bob is there", || bob.hash().is_some());
+    let wall = invite(folder.path(), &[&[&*dragon, "--role", "viewer"][..], &of].concat());
+    let wall = Daemon::run(&["--join", wall["link"].as_str().expect("a link"), "--as", "Wall"]);
+    until("the wall is there", || wall.hash().is_some());
+    let people = |of: &Daemon| of.ctl("people", None).expect("an answer");
+    let listed = |of: &Daemon| {
+        let list = people(of)["people"].as_array().cloned().unwrap_or_default();
+        let text = |p: &Value| {
+            let field = |name: &str| p[name].as_str().unwrap_or_default().to_owned();
+            format!("{} {} {}", field("name"), field("role"), p["here"])
+        };
+        list.iter().map(text).collect::<Vec<_>>()
+    };
+    let all = ["Ada sculptor true", "Bob sculptor true", "Wall viewer true"];
+    for one in [&ada, &bob, &wall] {
+        until("all three are listed", || listed(one) == all);
+    }
+    assert_eq!(people(&bob)["own"], 2);
+    let colours = people(&ada)["people"]
+        .as_array()
+        .map(|p| p.iter().map(|p| p["colour"].clone()).collect::<Vec<_>>());
+    assert_eq!(
+        colours,
+        people(&wall)["people"].as_array().map(|p| p.iter().map(|p| p["colour"].clone()).collect())
+    );
+
+    // Bob's step is taken back by Bob, although Ada has sculpted elsewhere since.
+    let begin = ada.hash().expect("a hash");
+    bob.stroke(0.35);
+    bob.follows(&ada, &begin);
+    let before = ada.hash().expect("a hash");
+    ada.stroke(0.68);
+    bob.follows(&ada, &before);
+    let both = ada.hash().expect("a hash");
+    bob.ctl("undo", None).expect("sent");
+    bob.follows(&ada, &both);
+    let adas = ada.hash().expect("a hash");
+    assert!(adas != begin && adas != before);
+    bob.ctl("redo", None).expect("sent");
+    until("it is done again", || bob.hash().as_deref() == Some(&*both));
+    bob.follows(&ada, &adas);
+    // Where Ada sculpts over it, Bob is told so.
+    ada.stroke(0.35);
+    bob.follows(&ada, &both);
+    let over = ada.hash().expect("a hash");
+    bob.ctl("undo", None).expect("sent");
+    until("Bob is told whose step is in the way", || people(&bob)["undo_refused"]["by"] == 1);
+    assert_eq!((bob.hash(), ada.hash()), (Some(over.clone()), Some(over)));
+
+    // Bob goes.
+    drop(bob);
+    until("Bob is gone", || listed(&ada).get(1).is_some_and(|b| b == "Bob sculptor false"));
+    // Nobody has printed a key.
+    let key = &link[link.find("key=").expect("a key") + 4..][..64];
+    for one in [&ada, &wall] {
+        assert!(!one.has_told(key));
+    }
+}
+
+#[test]
+fn a_broken_link_is_refused_by_what_is_wrong_and_nothing_of_it_is_shown() {
+    let home = tempfile::tempdir().expect("a folder");
+    let keys = home.path().join("keys").display().to_string();
+    let told = invite(home.path(), &["dragon", "--keys", &keys]);
+    let link = told["link"].as_str().expect("a link");
+    let key = &link[link.find("key=").expect("a key") + 4..][..64];
+    let run = |args: &[&str], input: &str| {
+        let out = sculptd(home.path(), &[&["run", "--headless"], args].concat(), input);
+        let said = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(!said.contains(&key[..16]), "{said}");
+        (out.status.code(), said)
+    };
+    let cut = &link[..link.find(&key[40..]).expect("there")];
+    let king = link.replace("role=sculptor", "role=king");
+    let broken = [
+        (cut, "expected key= and 64 hexadecimal digits"),
+        (&king, "expected role=sculptor, role=viewer or role=device"),
+        ("https://join/dragon?key=00", "expected a link that begins with sculptd://join/"),
+    ];
+    for (link, why) in broken {
+        for (args, input) in [(["--join", link], ""), (["--join", "-"], link)] {
+            let (code, said) = run(&args, input);
+            assert_eq!(code, Some(2), "{said}");
+            assert!(said.contains(why), "{said}");
+        }
+    }
+    let file = home.path().join("keys/sculptor.key").display().to_string();
+    assert_eq!(run(&["--join", link, "--key", &file], "").0, Some(2), "two keys");
+    assert_eq!(run(&["--join", "dragon"], "").0, Some(2), "no key");
+    assert_eq!(run(&["--join", "dra gon", "--key", &file], "").0, Some(2), "no name");
+    let (code, said) = run(&["--join", "dragon", "--key", "nothing.key"], "");
+    assert_eq!(code, Some(3), "{said}");
+
+    // The code as files; of another kind there is none.
+    for (name, head) in [("code.svg", &b"<svg"[..]), ("code.png", b"\x89PNG")] {
+        let path = home.path().join(name);
+        let file = path.display().to_string();
+        let told = invite(home.path(), &["dragon", "--keys", &keys, "-o", &file]);
+        assert_eq!((&told["link"], &told["file"]), (&link.into(), &file.clone().into()));
+        assert!(std::fs::read(&path).expect("written").starts_with(head));
+        #[cfg(unix)]
+        {
+            let mode = std::fs::metadata(&path).expect("there").permissions();
+            assert_eq!(std::os::unix::fs::PermissionsExt::mode(&mode) & 0o077, 0, "for the owner");
+        }
+    }
+    let bad: [&[&str]; 4] = [
+        &["dragon", "-o", "code.gif"],
+        &["dra/gon"],
+        &["dragon", "--connect", "studio"],
+        &["dragon", "--role", "king"],
+    ];
+    for args in bad {
+        let out = sculptd(home.path(), &[&["invite"], args].concat(), "");
+        assert_eq!(out.status.code(), Some(2), "{args:?}");
+    }
+    // Without --json: the link alone, where nobody looks at a terminal.
+    let out = sculptd(home.path(), &["invite", "dragon", "--keys", &keys], "");
+    assert_eq!(String::from_utf8_lossy(&out.stdout).trim(), link);
 }

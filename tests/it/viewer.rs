@@ -11,6 +11,7 @@ mod learning;
 mod led;
 mod lights;
 mod panels;
+mod people;
 mod pictures;
 mod preferences;
 mod regions;

@@ -1066,3 +1066,14 @@ task-picture-kept = Behalten als { $path }
 task-preferences-unread = { $path }: die Einstellungen lassen sich nicht lesen: { $error }
 task-preferences-not-kept = { $path }: die Einstellungen sind nicht gespeichert: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = Personen
+people-you = { $name } (du)
+people-gone = Gegangen: { $names }
+people-sculptor = formt
+people-viewer = schaut zu
+people-device = Gerät
+undo-in-the-way = Nicht zurückgenommen: { $name } hat dieselbe Stelle seither verändert. Nimmt { $name } das zurück, geht es.
+redo-in-the-way = Nicht wiederholt: { $name } hat dieselbe Stelle seither verändert. Nimmt { $name } das zurück, geht es.

@@ -1066,3 +1066,14 @@ task-picture-kept = Κρατήθηκε ως { $path }
 task-preferences-unread = { $path }: οι προτιμήσεις δεν διαβάζονται: { $error }
 task-preferences-not-kept = { $path }: οι προτιμήσεις δεν αποθηκεύτηκαν: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = Άτομα
+people-you = { $name } (εσείς)
+people-gone = Έφυγαν: { $names }
+people-sculptor = γλύπτης
+people-viewer = θεατής
+people-device = συσκευή
+undo-in-the-way = Δεν αναιρέθηκε: { $name } άλλαξε έκτοτε το ίδιο σημείο. Όταν { $name } το αναιρέσει, θα γίνεται.
+redo-in-the-way = Δεν επαναλήφθηκε: { $name } άλλαξε έκτοτε το ίδιο σημείο. Όταν { $name } το αναιρέσει, θα γίνεται.

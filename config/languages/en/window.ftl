@@ -1068,3 +1068,14 @@ task-picture-kept = Kept as { $path }
 task-preferences-unread = { $path }: the preferences cannot be read: { $error }
 task-preferences-not-kept = { $path }: the preferences are not kept: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = People
+people-you = { $name } (you)
+people-gone = Gone: { $names }
+people-sculptor = sculptor
+people-viewer = viewer
+people-device = device
+undo-in-the-way = Not taken back: { $name } has changed the same place since. Once { $name } has taken that back, it can be.
+redo-in-the-way = Not done again: { $name } has changed the same place since. Once { $name } has taken that back, it can be.

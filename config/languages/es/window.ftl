@@ -1066,3 +1066,14 @@ task-picture-kept = Guardada como { $path }
 task-preferences-unread = { $path }: no se pueden leer las preferencias: { $error }
 task-preferences-not-kept = { $path }: las preferencias no se guardan: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = Personas
+people-you = { $name } (tú)
+people-gone = Se fueron: { $names }
+people-sculptor = escultor
+people-viewer = espectador
+people-device = dispositivo
+undo-in-the-way = No se deshizo: { $name } ha cambiado después el mismo lugar. Cuando { $name } lo deshaga, se podrá.
+redo-in-the-way = No se rehízo: { $name } ha cambiado después el mismo lugar. Cuando { $name } lo deshaga, se podrá.

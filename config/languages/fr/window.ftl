@@ -1066,3 +1066,14 @@ task-picture-kept = Gardée sous { $path }
 task-preferences-unread = { $path } : les préférences ne peuvent être lues : { $error }
 task-preferences-not-kept = { $path } : les préférences ne sont pas gardées : { $error }
 language-unreadable = { $path } : { $error }
+
+## People who share the sculpture
+
+people-heading = Personnes
+people-you = { $name } (vous)
+people-gone = Partis : { $names }
+people-sculptor = sculpteur
+people-viewer = spectateur
+people-device = appareil
+undo-in-the-way = Non annulé : { $name } a modifié le même endroit depuis. Ce sera possible quand { $name } l'aura annulé.
+redo-in-the-way = Non rétabli : { $name } a modifié le même endroit depuis. Ce sera possible quand { $name } l'aura annulé.

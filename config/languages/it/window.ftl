@@ -1066,3 +1066,14 @@ task-picture-kept = Conservata come { $path }
 task-preferences-unread = { $path }: le preferenze non si possono leggere: { $error }
 task-preferences-not-kept = { $path }: le preferenze non sono salvate: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = Persone
+people-you = { $name } (tu)
+people-gone = Andati via: { $names }
+people-sculptor = scultore
+people-viewer = spettatore
+people-device = dispositivo
+undo-in-the-way = Non annullato: { $name } ha poi cambiato lo stesso punto. Si potrà quando { $name } lo avrà annullato.
+redo-in-the-way = Non ripetuto: { $name } ha poi cambiato lo stesso punto. Si potrà quando { $name } lo avrà annullato.

@@ -1062,3 +1062,14 @@ task-picture-kept = { $path } に保存しました
 task-preferences-unread = { $path }: プリファレンスを読めません: { $error }
 task-preferences-not-kept = { $path }: プリファレンスを保存できません: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = 参加者
+people-you = { $name }(あなた)
+people-gone = 退出: { $names }
+people-sculptor = 造形
+people-viewer = 閲覧
+people-device = デバイス
+undo-in-the-way = 元に戻せません: その後 { $name } が同じ場所を変更しました。{ $name } がそれを元に戻せばできます。
+redo-in-the-way = やり直せません: その後 { $name } が同じ場所を変更しました。{ $name } がそれを元に戻せばできます。

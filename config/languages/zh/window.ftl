@@ -1062,3 +1062,14 @@ task-picture-kept = 已保存为 { $path }
 task-preferences-unread = { $path }: 无法读取偏好设置: { $error }
 task-preferences-not-kept = { $path }: 偏好设置未保存: { $error }
 language-unreadable = { $path }: { $error }
+
+## People who share the sculpture
+
+people-heading = 参与者
+people-you = { $name }(你)
+people-gone = 已离开:{ $names }
+people-sculptor = 雕塑者
+people-viewer = 观看者
+people-device = 设备
+undo-in-the-way = 无法撤销:此后 { $name } 更改了同一处。{ $name } 撤销该更改后即可。
+redo-in-the-way = 无法重做:此后 { $name } 更改了同一处。{ $name } 撤销该更改后即可。

@@ -12,14 +12,11 @@ use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed, locked};
 use super::layers::{self, LayerDone};
-use super::mask;
-use super::measurement;
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
-use super::{retopology, scene, snap};
-
+use super::{mask, measurement, people_reply, retopology, scene, snap};
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
@@ -29,10 +26,10 @@ use sculptd_clay::face_sets::SetsEdit;
 use sculptd_clay::{LayerEdit, LayerId};
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
-use sculptd_control::event;
 use sculptd_control::face_sets as asked_sets;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
+use sculptd_control::people::PeopleReply;
 use sculptd_control::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
     RemeshQuadsReply,
@@ -41,7 +38,7 @@ use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
-use sculptd_control::{Handler, Request, RpcError};
+use sculptd_control::{Handler, Request, RpcError, event};
 use sculptd_devices::Clock;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
@@ -309,6 +306,10 @@ impl Handler for Host {
     fn export(&self, params: asked_scene::ExportParams) -> Result<edit::ExportReply, RpcError> {
         safe(&params.path)?;
         scene::export(self, params)
+    }
+
+    fn people(&self, _: NoParams) -> Result<PeopleReply, RpcError> {
+        Ok(people_reply::people(&self.published.load()))
     }
 
     fn scene_list(&self, _: NoParams) -> Result<asked_scene::SceneReply, RpcError> {

@@ -20,6 +20,7 @@ mod layers;
 pub mod loop_link;
 mod mask;
 mod measurement;
+mod people_reply;
 mod retopology;
 mod scene;
 pub mod server;

@@ -15,6 +15,7 @@ mod commands;
 mod object;
 mod object_settings;
 mod operand;
+mod own_steps;
 mod primitive;
 mod snap;
 mod timeline;
@@ -30,6 +31,7 @@ pub use commands::{
 pub use object::{MAX_NAME, Object, clean_name};
 pub use object_settings::ObjectSettings;
 pub use operand::{LiveBoolean, ObjectId, Operand};
+pub(crate) use own_steps::OwnStep;
 pub use primitive::{BadPrimitive, Primitive, PrimitiveShape};
 pub use snap::{FaceAlignment, FlatFace, flush};
 pub(crate) use timeline::{Presence, ReplacedClay, SceneStep, Timeline};

@@ -1,4 +1,4 @@
-//! One undo timeline over all objects.
+//! One undo timeline over all objects. What several people take back of it: [`super::own_steps`].
 //!
 //! Laws kept here:
 //! * A step names the objects that it changed and holds what they were. A stroke's pages lie in the
@@ -87,7 +87,7 @@ impl SceneStep {
         }
     }
 
-    fn each_name(&self, visit: &mut dyn FnMut(u32)) {
+    pub(super) fn each_name(&self, visit: &mut dyn FnMut(u32)) {
         match self {
             SceneStep::Clay(name) => visit(*name),
             SceneStep::Group(all) => all.iter().for_each(|s| s.each_name(visit)),
@@ -142,7 +142,7 @@ impl SceneStep {
     }
 
     /// Hands over what it holds, each clay on its own.
-    fn discard(self, garbage: &GarbageSink) {
+    pub(super) fn discard(self, garbage: &GarbageSink) {
         match self {
             SceneStep::Replaced(_, other) => garbage.discard_owned(other.clay),
             SceneStep::Present(mut presence) => {
@@ -159,23 +159,38 @@ impl SceneStep {
     }
 }
 
+/// A step of the timeline, and whose it is.
+#[derive(Debug)]
+pub(super) struct TimelineEntry {
+    pub(super) step: SceneStep,
+    /// Counts the steps that were ever made, from 1.
+    pub(super) id: u64,
+    /// Ascending; empty in a world of one person.
+    pub(super) owners: Vec<u8>,
+    /// Of a step that was taken back: the steps that changed the same since, by being made, taken
+    /// back or done again, with an owner of each.
+    pub(super) blocks: Vec<(u64, u8)>,
+}
+
 /// Steps that can be taken back and done again.
 #[derive(Debug)]
 pub(crate) struct Timeline {
-    past: VecDeque<SceneStep>,
-    future: Vec<SceneStep>,
+    pub(super) past: VecDeque<TimelineEntry>,
+    pub(super) future: Vec<TimelineEntry>,
     /// Bytes that the steps of all clays but the active one hold, in the scene and in steps:
     /// strokes change those of the active one alone.
     other_bytes: u64,
     /// How many steps were ever made.
     made: u64,
+    /// Whose the next steps are; `None`: the world is of one person.
+    pub(super) person: Option<u8>,
 }
 
 impl Timeline {
     /// Nothing to take back; there is room for all that may be.
     pub(crate) fn new() -> Timeline {
         let past = VecDeque::with_capacity(STEPS + 1);
-        Timeline { past, future: Vec::new(), other_bytes: 0, made: 0 }
+        Timeline { past, future: Vec::new(), other_bytes: 0, made: 0, person: None }
     }
 
     /// Closes the active clay's open step; true if there is one more. Then what could be done again
@@ -186,12 +201,34 @@ impl Timeline {
         limit: u64,
         garbage: &GarbageSink,
     ) -> bool {
+        if self.person.is_some() {
+            return self.end_steps_of(|_| true, scene, limit, garbage);
+        }
         let clay = &mut scene.active_mut().clay;
         let (more, name) = (clay.end_step(), clay.object_id());
         if more {
             self.push(SceneStep::Clay(name), scene, limit, garbage);
         }
         more
+    }
+
+    /// The same for several people: closes the steps of those whose strokes have `ended`.
+    pub(crate) fn end_steps_of(
+        &mut self,
+        ended: impl Fn(u8) -> bool,
+        scene: &mut Scene,
+        limit: u64,
+        garbage: &GarbageSink,
+    ) -> bool {
+        let clay = &mut scene.active_mut().clay;
+        let name = clay.object_id();
+        let parts = clay.end_step_of_people(ended);
+        if parts.is_empty() {
+            return false;
+        }
+        let step = |owners| (SceneStep::Clay(name), owners);
+        self.push_all(parts.into_iter().map(step), scene, limit, garbage);
+        true
     }
 
     /// A step was made. What could be done again no longer can, and the oldest steps go where there
@@ -203,16 +240,39 @@ impl Timeline {
         limit: u64,
         garbage: &GarbageSink,
     ) {
-        self.forget_future(scene, garbage);
-        let stroke = matches!(step, SceneStep::Clay(_));
-        self.past.push_back(step);
-        self.made += 1;
-        if !stroke {
+        self.push_all([(step, Vec::new())].into_iter(), scene, limit, garbage);
+    }
+
+    /// The same for several steps, with the owners of each: none, where that is whoever acts now.
+    fn push_all(
+        &mut self,
+        steps: impl Iterator<Item = (SceneStep, Vec<u8>)>,
+        scene: &mut Scene,
+        limit: u64,
+        garbage: &GarbageSink,
+    ) {
+        let (mut strokes, first) = (true, self.made + 1);
+        for (step, mut owners) in steps {
+            if owners.is_empty() {
+                owners.extend(self.person);
+            }
+            strokes &= matches!(step, SceneStep::Clay(_));
+            self.made += 1;
+            self.past.push_back(TimelineEntry { step, id: self.made, owners, blocks: Vec::new() });
+        }
+        match self.person {
+            None => self.forget_future(scene, garbage),
+            Some(_) => self.forget_future_of(first, strokes, scene, garbage),
+        }
+        if !strokes {
             self.recount(scene);
             self.bound_clays(scene, limit, garbage);
         }
         let held =
             |all: &Timeline, scene: &Scene| all.other_bytes + scene.active().clay.undo_bytes();
+        if held(self, scene) > limit {
+            self.forget_future(scene, garbage);
+        }
         while !self.past.is_empty() && (self.past.len() > STEPS || held(self, scene) > limit) {
             self.forget_oldest(scene, garbage);
         }
@@ -227,15 +287,17 @@ impl Timeline {
         limit: u64,
         garbage: &GarbageSink,
     ) {
-        let newest = match self.past.pop_back() {
-            None => return self.push(step, scene, limit, garbage),
-            Some(SceneStep::Group(mut all)) => {
-                all.push(step);
-                SceneStep::Group(all)
-            }
-            Some(one) => SceneStep::Group(vec![one, step]),
+        let Some(newest) = self.past.back_mut() else {
+            return self.push(step, scene, limit, garbage);
         };
-        self.past.push_back(newest);
+        match &mut newest.step {
+            SceneStep::Group(all) => all.push(step),
+            one => {
+                let first = std::mem::replace(one, SceneStep::Group(Vec::new()));
+                *one = SceneStep::Group(vec![first, step]);
+            }
+        }
+        self.block_by_newest(scene);
         self.recount(scene);
         self.bound_clays(scene, limit, garbage);
     }
@@ -244,17 +306,17 @@ impl Timeline {
         let active = scene.active().id;
         let others = scene.objects().iter().filter(|o| o.id != active);
         self.other_bytes = others.map(|o| o.clay.undo_bytes()).sum();
-        for step in self.past.iter_mut().chain(&mut self.future) {
-            step.each_clay(&mut |clay| self.other_bytes += clay.undo_bytes());
+        for entry in self.past.iter_mut().chain(&mut self.future) {
+            entry.step.each_clay(&mut |clay| self.other_bytes += clay.undo_bytes());
         }
     }
 
     /// Clays that are not in place: all within the bytes that undo may take.
     fn bound_clays(&mut self, scene: &mut Scene, limit: u64, garbage: &GarbageSink) {
         // Not what the allocator happened to give: a replay must forget the same clay.
-        let weigh = |step: &mut SceneStep| {
+        let weigh = |entry: &mut TimelineEntry| {
             let mut sum = 0;
-            step.each_clay(&mut |clay| sum += clay.weight() as u64);
+            entry.step.each_clay(&mut |clay| sum += clay.weight() as u64);
             sum
         };
         let mut bytes: u64 = self.past.iter_mut().map(weigh).sum();
@@ -266,15 +328,15 @@ impl Timeline {
     }
 
     fn forget_oldest(&mut self, scene: &mut Scene, garbage: &GarbageSink) {
-        let Some(oldest) = self.past.pop_front() else { return };
+        let Some(TimelineEntry { step: oldest, .. }) = self.past.pop_front() else { return };
         let stroke = matches!(oldest, SceneStep::Clay(name)
             if name == scene.active().clay.object_id());
         let past = &mut self.past;
         oldest.each_name(&mut |name| match scene.clay_by_name(name) {
             Some(clay) => clay.forget_oldest_step(),
             // It is of a clay that a later step holds.
-            None => past.iter_mut().for_each(|step| {
-                step.each_clay(&mut |clay| {
+            None => past.iter_mut().for_each(|entry| {
+                entry.step.each_clay(&mut |clay| {
                     if clay.object_id() == name {
                         clay.forget_oldest_step();
                     }
@@ -292,7 +354,7 @@ impl Timeline {
         if self.future.is_empty() {
             return;
         }
-        for step in self.future.drain(..) {
+        for TimelineEntry { step, .. } in self.future.drain(..) {
             step.each_name(&mut |name| {
                 if let Some(clay) = scene.clay_by_name(name) {
                     clay.forget_redo();
@@ -305,24 +367,25 @@ impl Timeline {
 
     /// Takes the newest step back. False: there is none.
     pub(crate) fn undo(&mut self, scene: &mut Scene) -> bool {
-        let Some(mut step) = self.past.pop_back() else { return false };
-        step.travel(scene, Direction::Back);
-        self.travelled(&step, scene);
-        self.future.push(step);
+        let Some(mut entry) = self.past.pop_back() else { return false };
+        entry.step.travel(scene, Direction::Back);
+        self.travelled(&entry.step, scene);
+        self.future.push(entry);
         true
     }
 
     /// Does the step again that was taken back last. False: there is none.
     pub(crate) fn redo(&mut self, scene: &mut Scene) -> bool {
-        let Some(mut step) = self.future.pop() else { return false };
-        step.travel(scene, Direction::Forth);
-        self.travelled(&step, scene);
-        self.past.push_back(step);
+        let Some(mut entry) = self.future.pop() else { return false };
+        entry.step.travel(scene, Direction::Forth);
+        self.travelled(&entry.step, scene);
+        self.past.push_back(entry);
         true
     }
 
     fn travelled(&mut self, step: &SceneStep, scene: &mut Scene) {
-        if !matches!(step, SceneStep::Clay(_)) {
+        // One of several people may be of an object that is no longer the active one.
+        if !matches!(step, SceneStep::Clay(name) if *name == scene.active().clay.object_id()) {
             scene.touch();
             self.recount(scene);
         }
@@ -330,16 +393,19 @@ impl Timeline {
 
     /// Nothing can be taken back or done again; the clays in the scene keep no steps either.
     pub(crate) fn forget(&mut self, scene: &mut Scene, garbage: &GarbageSink) {
-        for step in self.past.drain(..).chain(self.future.drain(..)) {
-            step.discard(garbage);
+        for entry in self.past.drain(..).chain(self.future.drain(..)) {
+            entry.step.discard(garbage);
         }
         scene.objects_mut().iter_mut().for_each(|o| o.clay.forget_steps());
         self.other_bytes = 0;
     }
 
-    /// Names the newest step, as long as it is neither taken back nor followed by another.
+    /// Names the newest step, as long as it is neither taken back nor followed by another, and of
+    /// whoever acts now.
     pub(crate) fn newest_step(&self) -> Option<u64> {
-        (self.future.is_empty() && !self.past.is_empty()).then_some(self.made)
+        let own = |e: &&TimelineEntry| self.person.is_none_or(|p| e.owners.contains(&p));
+        let newest = self.past.back().filter(|e| e.id == self.made);
+        newest.filter(own).map(|e| e.id)
     }
 
     /// Steps that undo can take back.

@@ -94,9 +94,11 @@ impl World {
         if !self.scene.active().takes_strokes() {
             return left;
         }
+        self.author(Some(self.people.hands));
         let clay = &mut self.scene.active_mut().clay;
         clay.begin_step();
         let report = clay.dab(reach, kernel, &self.workers);
+        self.author(None);
         if report.moved > 0 {
             self.report.dabs += 1;
             self.hands.sculpted();

@@ -2,8 +2,9 @@
 //!
 //! A world of one person knows nobody else, and costs and does what it did. A command of a person
 //! comes as [`Command::OfPerson`], and a device of a person has the person's number in the upper
-//! byte of its id. Whoever is new begins with what the world began with. One undo runs over the
-//! steps of all, and the hands are followed in the view of the person whose tracker spoke last.
+//! byte of its id. Whoever is new begins with what the world began with. Each takes back the own
+//! steps ([`crate::scene`] keeps them in one timeline), and the hands are followed in the view of
+//! the person whose tracker spoke last.
 
 use std::sync::Arc;
 
@@ -13,6 +14,7 @@ use super::World;
 use crate::camera::Camera;
 use crate::command::{Command, OfPerson};
 use crate::desktop_layout::DesktopLayout;
+use sculptd_clay::Author;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
 
@@ -33,10 +35,29 @@ pub(super) struct People {
     /// Whose settings are the world's own fields.
     current: u8,
     /// Whose tracker spoke last.
-    hands: u8,
+    pub(super) hands: u8,
     /// Whom the world is shown to; no part of what is stepped.
     #[serde(skip)]
     shown: u8,
+    /// Whose strokes go on, and whose did in the tick before; a checkpoint ends all.
+    #[serde(skip)]
+    pub(super) sculpt: Vec<u8>,
+    #[serde(skip)]
+    pub(super) sculpted: Vec<u8>,
+    /// Of the person that the world is shown to: the newest undo or redo that was refused.
+    #[serde(skip)]
+    refused: Option<UndoRefusal>,
+}
+
+/// An undo or redo that was refused, as a step of somebody else is in the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UndoRefusal {
+    /// When it was asked for.
+    pub tick: u64,
+    /// It was a redo.
+    pub redo: bool,
+    /// An owner of the step that is in the way.
+    pub by: u8,
 }
 
 impl People {
@@ -53,6 +74,18 @@ impl People {
     /// Whether it is a device of the person whose input is applied.
     pub(super) fn is_current(&self, device: DeviceId) -> bool {
         self.of_device(device) == self.current
+    }
+
+    /// Something was refused to whoever acts now.
+    pub(super) fn refuse(&mut self, refusal: UndoRefusal) {
+        if self.current == self.shown {
+            self.refused = Some(refusal);
+        }
+    }
+
+    /// The newest that was refused to the person that the world is shown to.
+    pub(super) fn refused(&self) -> Option<UndoRefusal> {
+        self.refused
     }
 
     /// The settings of another person than the current one; `None`: of the current one.
@@ -76,6 +109,25 @@ impl World {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown
     }
 
+    /// Who acts now; `None`: the world is of one person.
+    pub(super) fn person(&self) -> Option<u8> {
+        (!self.people.is_nobody()).then_some(self.people.current)
+    }
+
+    /// Whom the world is shown to; `None`: it is of one person.
+    pub(super) fn shown_person(&self) -> Option<u8> {
+        (!self.people.is_nobody()).then_some(self.people.shown)
+    }
+
+    /// Whose changes of the active object's clay follow: one person's, or `None`: what follows from
+    /// what several did. Nothing in a world of one person.
+    pub(super) fn author(&mut self, person: Option<u8>) {
+        if !self.people.is_nobody() {
+            let author = person.map_or(Author::Everybody, Author::Person);
+            self.scene.active_mut().clay.set_author(author);
+        }
+    }
+
     /// Whether several people have shared the world.
     pub fn has_people(&self) -> bool {
         !self.people.is_nobody()
@@ -87,13 +139,18 @@ impl World {
             self.act_as(1);
         }
         self.people = People::default();
+        self.timeline.set_person(None);
+        self.scene.objects_mut().iter_mut().for_each(|o| o.clay.set_author(Author::Nobody));
     }
 
     /// A command of a person.
     pub(super) fn apply_of_person(&mut self, of: &OfPerson) {
         if !matches!(of.command, Command::OfPerson(_)) {
             self.act_as(of.person);
+            self.timeline.set_person(self.person());
+            self.author(self.person());
             self.apply_command(&of.command);
+            self.author(None);
         }
     }
 

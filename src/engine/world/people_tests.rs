@@ -80,6 +80,41 @@ fn each_person_has_a_view_and_a_brush_whomever_the_world_is_shown_to() {
 }
 
 #[test]
+fn everybody_sees_where_the_others_pens_meet_the_clay() {
+    let mut world = world();
+    for shown in [1, 2] {
+        world.show_to(shown);
+        settle(&mut world);
+        let both = [pen(1, false, 45.0), pen(2, true, 55.0)];
+        world.step(3, &both, &[]);
+        world.step(4, &both, &[]);
+        let other = 3 - shown;
+        let seen: Vec<_> = world.pens_of_others().collect();
+        let [one] = seen.as_slice() else { panic!("one pen: {seen:?}") };
+        assert_eq!((one.person, one.device), (other, DeviceId(u16::from(other) << 8)));
+        assert_eq!(one.down, other == 2);
+        // It lies on the ball, at the side where that person looks, with that person's brush.
+        world.show_to(other);
+        assert!(one.position.normalize().dot(world.camera().backward()) > 0.9);
+        assert!((one.position.length() - 1.0).abs() < 0.02, "{one:?}");
+        assert!(one.normal.dot(one.position.normalize()) > 0.9);
+        let brush = world.brush();
+        let pressed = if one.down { 0.8 } else { 1.0 };
+        let expected = world.brush_radius() * brush.pressure_radius.factor(pressed);
+        assert_eq!(one.radius, expected);
+        assert!(!world.pens_of_others().any(|p| p.person == other), "never the own");
+        // Beside the clay there is no place, and out of range there is no pen.
+        world.show_to(shown);
+        let gone = pen(u16::from(other), false, 99.9);
+        world.step(5, &[gone], &[]);
+        assert_eq!(world.pens_of_others().count(), 0);
+        world.step(6, &[], &[of(1, Command::LiftAll)]);
+    }
+    world.step(9, &[], &[Command::OnePerson]);
+    assert_eq!(world.pens_of_others().count(), 0, "a world of one person has no others");
+}
+
+#[test]
 fn a_saved_world_knows_everybody() {
     let mut world = world();
     world.show_to(1);

@@ -350,7 +350,7 @@ impl World {
             thing: self.thing.as_ref().map(|t| t.plain.clone()),
             picture: self.scratch.picture.clone(),
             levels: active.clay.levels().cloned(),
-            steps: (self.undo_steps() as u32, self.redo_steps() as u32),
+            steps: (self.timeline.past() as u32, self.timeline.future() as u32),
             field_counts: &[],
         })
     }

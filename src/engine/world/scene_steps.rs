@@ -346,18 +346,32 @@ impl World {
         }
     }
 
-    /// Takes the newest step back, in memory. False: there is none.
+    /// Takes the newest step back, in memory; of several people that of whoever acts now. False:
+    /// there is none, or somebody else's is in the way.
     pub(super) fn undo_step(&mut self) -> bool {
         let before = self.stance();
-        let done = self.timeline.undo(&mut self.scene);
+        let done = match self.person() {
+            None => self.timeline.undo(&mut self.scene),
+            Some(person) => {
+                let way = self.timeline.undo_own(person, &mut self.scene);
+                self.told_of_undo(way, false)
+            }
+        };
         self.stand(before);
         done
     }
 
-    /// Does the step again that was taken back last. False: there is none.
+    /// Does the step again that was taken back last. False: there is none, or somebody else's is in
+    /// the way.
     pub(super) fn redo_step(&mut self) -> bool {
         let before = self.stance();
-        let done = self.timeline.redo(&mut self.scene);
+        let done = match self.person() {
+            None => self.timeline.redo(&mut self.scene),
+            Some(person) => {
+                let way = self.timeline.redo_own(person, &mut self.scene);
+                self.told_of_undo(way, true)
+            }
+        };
         self.stand(before);
         done
     }

@@ -52,14 +52,15 @@ impl World {
         &self.scene
     }
 
-    /// Steps that undo can take back, of all objects.
+    /// Steps that undo can take back, of all objects. Of several people those of the person that
+    /// the world is shown to, whether or not somebody else's are in the way.
     pub fn undo_steps(&self) -> usize {
-        self.timeline.past()
+        self.shown_person().map_or(self.timeline.past(), |p| self.timeline.steps_of(p).0)
     }
 
-    /// Steps that redo can do again, of all objects.
+    /// Steps that redo can do again, of all objects; of several people as [`World::undo_steps`].
     pub fn redo_steps(&self) -> usize {
-        self.timeline.future()
+        self.shown_person().map_or(self.timeline.future(), |p| self.timeline.steps_of(p).1)
     }
 
     /// The active object's clay, for publishing only: nothing of it changes.

@@ -155,7 +155,9 @@ impl World {
 
     /// Gives a local remesh up and the object as it was before. False: none is under way.
     pub(super) fn take_back_remesh(&mut self) -> bool {
-        if !self.surface.is_remesh() {
+        // Somebody else's is finished, and is a step of that person.
+        let clay = &self.scene.active().clay;
+        if !self.surface.is_remesh() || self.person().is_some_and(|p| !clay.is_step_of(p)) {
             return false;
         }
         self.tell_surface_edit(Err(SceneError::TakenBack));

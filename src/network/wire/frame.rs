@@ -82,7 +82,10 @@ impl Role {
     }
 }
 
-/// Somebody who came.
+/// Marks the role of somebody who has gone.
+const GONE: u8 = 0x80;
+
+/// Somebody who came, or has gone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Arrival {
     /// The person's number.
@@ -91,18 +94,22 @@ pub struct Arrival {
     pub name: String,
     /// What the person may do.
     pub role: Role,
+    /// The person is connected from now on; else no longer.
+    pub here: bool,
 }
 
 impl Arrival {
     pub(crate) fn put(&self, out: &mut Vec<u8>) {
-        out.extend([self.person, self.role.code()]);
+        let gone = if self.here { 0 } else { GONE };
+        out.extend([self.person, self.role.code() | gone]);
         put_bytes(out, self.name.as_bytes());
     }
 
     pub(crate) fn take(bytes: &mut ByteReader<'_>) -> Result<Arrival, BadBytes> {
         let person = bytes.byte()?;
-        let role = Role::of_code(bytes.byte()?)?;
-        Ok(Arrival { person, name: bytes.text(MAX_NAME)?, role })
+        let code = bytes.byte()?;
+        let (role, here) = (Role::of_code(code & !GONE)?, code & GONE == 0);
+        Ok(Arrival { person, name: bytes.text(MAX_NAME)?, role, here })
     }
 }
 
@@ -115,7 +122,7 @@ pub struct Frame {
     pub tick: u64,
     /// What is done after the tick.
     pub mark: Mark,
-    /// Who came before the tick.
+    /// Who came, and who was found to be gone, before the tick.
     pub arrivals: Vec<Arrival>,
     /// In the order in which they are stepped.
     pub batches: Vec<Batch>,

@@ -503,7 +503,7 @@ mod tests {
 
     fn messages() -> Vec<Vec<u8>> {
         let term = Term { number: 3, base: 900, host: 77 };
-        let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer };
+        let person = Arrival { person: 2, name: "Ada".into(), role: Role::Viewer, here: false };
         let frames = vec![9; 40];
         let entry = Entry {
             person: 2,

@@ -5,8 +5,8 @@ use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, chooser, colours, cube, curve_stroke, devices, face_sets, files, fonts,
     hand_menu, help, hints, history, keys, layers, legend, light, look, masks, measure, messages,
-    modal, outliner, preferences, pressure_curve, radial, region, remesh, retopology, rows, scene,
-    search, start, symmetry, tablet_keys, theme, timing, trim,
+    modal, outliner, people, preferences, pressure_curve, radial, region, remesh, retopology, rows,
+    scene, search, start, symmetry, tablet_keys, theme, timing, trim,
 };
 
 /// Width of either panel, points.
@@ -62,6 +62,7 @@ pub fn all(
     colours::sampler(&ctx, ui_state, free, out);
     region::ui(&ctx, ui_state, free, out);
     curve_stroke::ui(&ctx, view, ui_state, free, out);
+    people::labels(&ctx, view, free);
     hand_menu::ui(&ctx, view, free);
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
@@ -105,6 +106,7 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     masks::ui(ui, view, ui_state, out);
     ui.add_space(8.0);
     history::ui(ui, view, ui_state, out);
+    people::ui(ui, view);
 }
 
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {

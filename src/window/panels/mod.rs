@@ -35,6 +35,7 @@ pub mod measure;
 pub mod messages;
 pub mod modal;
 pub mod outliner;
+pub mod people;
 pub mod preferences;
 pub mod pressure_curve;
 pub mod radial;

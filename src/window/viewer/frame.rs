@@ -17,6 +17,7 @@ use crate::panels;
 use crate::panels::state::{KeyMap, TabletKeys, UiRequest, UiState, View};
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::Stage;
+use sculptd_daemon::people::colour_of;
 use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
@@ -34,7 +35,8 @@ impl WindowState {
         let mut ring_at = |view: Vec2, pressure: f32, tilt: Option<Vec2>, down: bool| {
             let ray = self.camera.ray(view);
             let radius = state.brush_radius * state.brush.pressure_radius.factor(pressure);
-            let ring = overlay::Ring { radius, carve: state.brush.negative, mirrored: false, down };
+            let carve = state.brush.negative;
+            let ring = overlay::Ring { radius, carve, mirrored: false, down, of: None };
             if let Some(hit) = state.pick(ray) {
                 overlay::ring(&mut lines, state, hit.position, hit.normal, &ring);
                 if let Some(tilt) = tilt {
@@ -84,12 +86,14 @@ impl WindowState {
                 ring_at(view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
             }
         }
+        overlay::others(&mut lines, state);
         self.gizmo_lines(&mut lines, state);
         if let Some(thing) = &state.thing {
             overlay::held_object(&mut lines, thing);
         }
         if let Some(hands) = &state.hands {
-            overlay::hands(&mut lines, hands, &state.volume);
+            let of = state.others_hands().map(colour_of);
+            overlay::hands(&mut lines, hands, &state.volume, of);
         }
         (lines, brush)
     }

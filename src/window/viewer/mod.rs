@@ -24,7 +24,7 @@ pub mod look_files;
 mod look_follow;
 mod mirrors;
 pub mod objects;
-mod overlay;
+pub mod overlay;
 pub mod overlay_mesh;
 mod pacing;
 pub mod pages;

@@ -3,8 +3,10 @@
 use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
+use crate::look::linear;
 use sculptd_clay::Ray;
 use sculptd_daemon::Published;
+use sculptd_daemon::people::colour_of;
 use sculptd_devices::Hands;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::hand::{HeldObject, Volume};
@@ -32,6 +34,8 @@ pub struct Ring {
     pub mirrored: bool,
     /// The pen touches; before contact the ring is fainter.
     pub down: bool,
+    /// The colour of another person, whose ring it is; `None`: it is the own.
+    pub of: Option<[u8; 3]>,
 }
 
 /// A circle of the brush's true radius about `centre`, laid on the surface: each corner is dropped
@@ -39,10 +43,11 @@ pub struct Ring {
 /// the circle goes on evenly between the corners beside the gap.
 pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec3, ring: &Ring) {
     let radius = ring.radius;
-    let mut colour = match (ring.mirrored, ring.carve) {
-        (true, _) => MIRRORED,
-        (false, true) => CARVING,
-        (false, false) => RING,
+    let mut colour = match (ring.of, ring.mirrored, ring.carve) {
+        (Some(colour), ..) => of_person(colour, 255),
+        (None, true, _) => MIRRORED,
+        (None, false, true) => CARVING,
+        (None, false, false) => RING,
     };
     if !ring.down {
         colour[3] = colour[3] / 4 * 3;
@@ -66,6 +71,26 @@ pub fn ring(out: &mut Vec<LineEnd>, state: &Published, centre: Vec3, normal: Vec
         last = next;
     }
     segment(out, centre, centre + normal * radius * 0.4, colour);
+}
+
+/// The colour of a person as lines have it: light adds up linearly where they are drawn.
+fn of_person(colour: [u8; 3], alpha: u8) -> [u8; 4] {
+    let [r, g, b, _] = linear(colour).map(|c| (c * 255.0).round() as u8);
+    [r, g, b, alpha]
+}
+
+/// The rings of the others who share the sculpture, each in the colour of its person.
+pub fn others(out: &mut Vec<LineEnd>, state: &Published) {
+    for pen in state.others.iter().flatten() {
+        let ring = Ring {
+            radius: pen.radius,
+            carve: pen.carves,
+            mirrored: false,
+            down: pen.down,
+            of: Some(colour_of(pen.person)),
+        };
+        self::ring(out, state, pen.position, pen.normal, &ring);
+    }
 }
 
 /// The heights of a ring's corners over its plane, without a jump: gaps are bridged from corner to
@@ -132,8 +157,9 @@ pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale:
     }
 }
 
-/// A hand's bones, in the world.
-pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
+/// A hand's bones, in the world. `of`: the colour of another person, whose hands they are.
+pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume, of: Option<[u8; 3]>) {
+    let bone = of.map_or(BONE, |colour| of_person(colour, BONE[3]));
     for hand in hands.as_slice() {
         let mut knuckles: Vec<Vec3> = Vec::with_capacity(5);
         for finger in hand.fingers.iter().flatten() {
@@ -142,7 +168,7 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
             for mm in joints {
                 let p = volume.to_world(mm);
                 if let Some(last) = last {
-                    segment(out, last, p, BONE);
+                    segment(out, last, p, bone);
                 }
                 last = Some(p);
             }
@@ -152,13 +178,13 @@ pub fn hands(out: &mut Vec<LineEnd>, hands: &Hands, volume: &Volume) {
             diamond(out, volume.to_world(finger.tip), 5.0 * volume.scale);
         }
         for pair in knuckles.windows(2) {
-            segment(out, pair[0], pair[1], BONE);
+            segment(out, pair[0], pair[1], bone);
         }
         if let (Some(wrist), Some(first), Some(last)) =
             (hand.wrist, knuckles.first(), knuckles.last())
         {
-            segment(out, volume.to_world(wrist), *first, BONE);
-            segment(out, volume.to_world(wrist), *last, BONE);
+            segment(out, volume.to_world(wrist), *first, bone);
+            segment(out, volume.to_world(wrist), *last, bone);
         }
     }
 }

@@ -27,6 +27,8 @@ fn looks_the_same(a: &Published, b: &Published) -> bool {
         && a.draft == b.draft
         && a.hands == b.hands
         && a.poses == b.poses
+        && (a.others, a.hands_of) == (b.others, b.hands_of)
+        && a.people == b.people
         && held(&a.thing) == held(&b.thing)
         && a.menu == b.menu
         && a.fatigue == b.fatigue
@@ -42,6 +44,7 @@ impl WindowState {
         let now = wiring.clock.now_us();
         self.follow_tablets(&state, wiring);
         let mut changed = self.drawn.as_ref().is_none_or(|d| !looks_the_same(d, &state));
+        changed |= self.tell_refused_undo(&state);
         if let Some(count) = self.ui_state.layers.baked(&state) {
             self.ui_state.say(tr!("task-layers-baked", count = count), false);
         }
@@ -82,6 +85,22 @@ impl WindowState {
         if changed {
             self.pacing.want();
         }
+    }
+
+    /// Says whose step is in the way of an undo that was refused since the last look.
+    fn tell_refused_undo(&mut self, state: &Published) -> bool {
+        if self.told_refusal == state.undo_refused {
+            return false;
+        }
+        self.told_refusal = state.undo_refused;
+        let Some(refused) = state.undo_refused else { return false };
+        let name = state.people.as_ref().map_or("?", |p| p.name(refused.by));
+        let text = match refused.redo {
+            false => tr!("undo-in-the-way", name = name),
+            true => tr!("redo-in-the-way", name = name),
+        };
+        self.ui_state.say(text, true);
+        true
     }
 
     /// The versions of the session, or the pictures of the steps where there is none.

@@ -127,6 +127,8 @@ pub(super) struct WindowState {
     pub(super) drawn: Option<Arc<Published>>,
     pub(super) drawn_demo: bool,
     pub(super) drawn_kiosk: Option<KioskView>,
+    /// The refused undo that was told.
+    pub(super) told_refusal: Option<sculptd_engine::world::UndoRefusal>,
     /// The part of the window between the panels, points; all of it before the first frame.
     pub(super) free: Option<egui::Rect>,
     /// The picture of the clay, as large as the free part, where the surface takes copies.
@@ -284,6 +286,7 @@ impl WindowState {
             drawn: None,
             drawn_demo: false,
             drawn_kiosk: None,
+            told_refusal: None,
             free: None,
             clay_picture: None,
             clay_key: None,

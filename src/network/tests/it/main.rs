@@ -8,4 +8,5 @@ mod faults;
 mod fleet;
 mod fleet_simulated;
 mod keys;
+mod people;
 mod simulated;

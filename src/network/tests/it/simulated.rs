@@ -415,7 +415,7 @@ impl Simulation {
     }
 }
 
-/// An undo of one's own; the world knows one timeline.
+/// An undo of one's own.
 pub fn undo() -> Vec<Command> {
     vec![Command::Undo]
 }

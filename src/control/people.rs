@@ -1,0 +1,79 @@
+//! Who shares the sculpture, and where their pens are.
+
+use serde::{Deserialize, Serialize};
+
+/// Reply of `people`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PeopleReply {
+    /// Whether the sculpture is shared: the daemon hosts one or has joined one.
+    pub shared: bool,
+    /// The number of the person of this daemon; 0: none, as nothing is shared.
+    pub own: u8,
+    /// All who ever came, in the order of their numbers.
+    pub people: Vec<PersonInfo>,
+    /// The newest undo or redo of the own person that was refused, as a step of somebody else is in
+    /// the way; `null`: none was.
+    #[serde(default)]
+    pub undo_refused: Option<UndoRefused>,
+}
+
+/// An undo or redo that was refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct UndoRefused {
+    /// The tick in which it was asked for.
+    pub tick: u64,
+    /// It was a redo.
+    pub redo: bool,
+    /// The number of the person whose step is in the way.
+    pub by: u8,
+}
+
+/// A person.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PersonInfo {
+    /// From 1; a person who comes back has the same.
+    pub number: u8,
+    /// As the person wants to be called.
+    pub name: String,
+    /// What the person may do.
+    pub role: PersonRole,
+    /// The person is connected.
+    pub here: bool,
+    /// The colour of the person in every window: `#` and six hexadecimal digits.
+    pub colour: String,
+    /// Where the person's pens meet the clay, but for the own: `status` has those.
+    #[serde(default)]
+    pub pens: Vec<PersonPen>,
+}
+
+/// What a person may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PersonRole {
+    /// Sculpts and sees.
+    Sculptor,
+    /// Sees.
+    Viewer,
+    /// Sends samples, and sees nothing.
+    Device,
+}
+
+/// A pen over the clay.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PersonPen {
+    /// Where it meets the clay, in the world.
+    pub position: [f32; 3],
+    /// The surface's normal there, of length 1.
+    pub normal: [f32; 3],
+    /// The radius of its brush as it presses now, in the unit of the scene.
+    pub radius: f32,
+    /// The tip touches.
+    pub down: bool,
+    /// The object under it, as `scene.list` names it.
+    pub object: u32,
+}

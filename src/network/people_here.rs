@@ -1,0 +1,33 @@
+//! Who shares the sculpture, as the log of arrivals tells it, for the loop and its window.
+
+use crate::core::Event;
+use crate::station::Station;
+use crate::wire::frame::{Arrival, Role};
+use sculptd_daemon::people::{PeopleHere, Person, PersonRole};
+
+/// Everybody who ever came, and who of them is connected. A host that was killed is told as gone
+/// by its successor, five seconds after it took over.
+pub fn people_here(station: &Station) -> PeopleHere {
+    let person = |(a, _): (Arrival, u64)| Person {
+        number: a.person,
+        name: a.name,
+        role: match a.role {
+            Role::Sculptor => PersonRole::Sculptor,
+            Role::Viewer => PersonRole::Viewer,
+            Role::Device => PersonRole::Device,
+        },
+        here: a.here,
+    };
+    let all = station.log().people().into_iter().map(person).collect();
+    PeopleHere { own: station.person(), all }
+}
+
+/// Whether what [`people_here`] gives may be another after this event.
+pub fn changes_people(event: &Event) -> bool {
+    match event {
+        Event::Frame(frame) => !frame.arrivals.is_empty(),
+        Event::Entered { .. } | Event::Restore { .. } => true,
+        Event::RestorePart { .. } | Event::Hosting(_) | Event::Differs { .. } => false,
+        Event::Note(_) | Event::Refused(_) => false,
+    }
+}
