@@ -3,6 +3,7 @@
 
 mod beside;
 mod brush_panel;
+mod four_views;
 mod kiosk;
 mod languages;
 mod layers;
