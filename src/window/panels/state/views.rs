@@ -127,7 +127,7 @@ impl Views {
     pub fn work_in(&mut self, kind: ViewKind, now: &Camera) -> Camera {
         self.cameras[self.active as usize] = *now;
         self.active = kind;
-        self.camera(kind, now)
+        Camera { aspect: now.aspect, ..self.cameras[kind as usize] }
     }
 
     /// The camera after `asked` was asked for, which was made from `now`. Where that would turn a
