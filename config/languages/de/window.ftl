@@ -48,7 +48,7 @@ page-devices = Stifte
 page-loop = Takt
     .about = Zeiten der Rechenschleife und dieses Fensters
 page-more = Mehr
-    .about = Einstellungen und Meldungen
+    .about = Sprache, Einstellungen und Meldungen
 
 ## Brushes
 

@@ -50,7 +50,7 @@ page-devices = Pens
 page-loop = Loop
     .about = Timing of the tick loop and of this window
 page-more = More
-    .about = Preferences and messages
+    .about = Language, preferences and messages
 
 ## Brushes
 

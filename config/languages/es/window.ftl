@@ -48,7 +48,7 @@ page-devices = Lápices
 page-loop = Ciclo
     .about = Tiempos del ciclo de cálculo y de esta ventana
 page-more = Más
-    .about = Preferencias y mensajes
+    .about = Idioma, preferencias y mensajes
 
 ## Brushes
 

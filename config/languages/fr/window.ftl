@@ -48,7 +48,7 @@ page-devices = Stylets
 page-loop = Boucle
     .about = Temps de la boucle de calcul et de cette fenêtre
 page-more = Plus
-    .about = Préférences et messages
+    .about = Langue, préférences et messages
 
 ## Brushes
 

@@ -48,7 +48,7 @@ page-devices = Penne
 page-loop = Ciclo
     .about = Tempi del ciclo di calcolo e di questa finestra
 page-more = Altro
-    .about = Preferenze e messaggi
+    .about = Lingua, preferenze e messaggi
 
 ## Brushes
 

@@ -48,7 +48,7 @@ page-devices = ペン
 page-loop = ループ
     .about = 計算ループとこのウィンドウの所要時間
 page-more = その他
-    .about = プリファレンスとメッセージ
+    .about = 言語、プリファレンス、メッセージ
 
 ## Brushes
 

@@ -48,7 +48,7 @@ page-devices = 笔
 page-loop = 循环
     .about = 计算循环与此窗口的耗时
 page-more = 更多
-    .about = 偏好设置与消息
+    .about = 语言、偏好设置与消息
 
 ## Brushes
 

@@ -56,7 +56,7 @@ fn four_views_are_drawn_from_pages_that_are_sent_once() {
     let camera = framed(&mesh, 1.2);
     let views = four(camera);
     let snapshot = mesh.snapshot();
-    let mut paint = |painter: &mut Painter, camera: &Camera, size: (u32, u32)| {
+    let paint = |painter: &mut Painter, camera: &Camera, size: (u32, u32)| {
         let scene = Scene {
             mesh: &snapshot,
             camera,
