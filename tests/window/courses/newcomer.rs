@@ -243,8 +243,8 @@ fn preferences(c: &mut Course) {
         |s| s.answer("ctrl+k", "larger text"),
         |_| kept("scale = 1.1"),
     );
-    c.step("smaller again", |s| s.answer("ctrl+k", "rimpicciolire"), |_| true);
-    c.step("and the system's language", |s| s.answer("ctrl+k", "lingua"), |_| true);
+    c.step("smaller again", |s| s.answer("ctrl+k", "smaller text"), |_| true);
+    c.step("and the page by its Italian name", |s| s.answer("ctrl+k", "lingua"), |_| true);
 }
 
 /// The ball from four sides, and back.
