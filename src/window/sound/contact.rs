@@ -234,7 +234,7 @@ mod tests {
                 let mut voice = Voice::default();
                 for (dabs, speed) in odd.into_iter().enumerate() {
                     let touch = Touch {
-                        brush: kind,
+                        brush: *kind,
                         carves: i % 2 == 0,
                         pressure,
                         speed,
