@@ -167,7 +167,7 @@
 //!   chooser. Waits for: the disk.
 //! * `sculptd-look`, made by `window::viewer::tasks`: reads and keeps pictures for the look of the
 //!   clay. Waits for: the disk.
-//! * `sculptd-sound`, made by `window::sound::player` (feature `sound`, not in the default set):
+//! * `sculptd-sound`, made by `window::sound` (feature `sound`, not in the default set):
 //!   opens, starts and stops the device that plays the sound of a contact; the sound system's own
 //!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a

@@ -5,12 +5,12 @@ use super::no_sound::NoSound;
 
 /// There is none.
 #[derive(Debug)]
-pub enum Player {}
+pub enum NoPlayer {}
 
-impl Player {
+impl NoPlayer {
     /// # Errors
     /// Always: [`NoSound::NotBuilt`].
-    pub fn open() -> Result<Player, NoSound> {
+    pub fn open() -> Result<NoPlayer, NoSound> {
         Err(NoSound::NotBuilt)
     }
 

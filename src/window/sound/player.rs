@@ -1,7 +1,7 @@
 //! Plays the sound of a contact on the usual device, by cpal.
 //!
-//! The device is opened, started and stopped by a thread of its own, for a sound server may take its
-//! time. What is to be heard goes to the sound system's thread by atomics: nobody waits for
+//! The device is opened, started and stopped by a thread of its own, for a sound server may take
+//! its time. What is to be heard goes to the sound system's thread by atomics: nobody waits for
 //! another, and nothing is allocated once a stream is there.
 
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! The pictures of the clay between the panels, one a view: drawn anew where something of it has changed, else
-//! copied. A tooltip, a message or a picture in the history costs no clay.
+//! The pictures of the clay between the panels, one a view: drawn anew where something of it has
+//! changed, else copied. A tooltip, a message or a picture in the history costs no clay.
 
 use std::sync::Arc;
 

@@ -9,6 +9,7 @@ mod brush_requests;
 mod camera_animation;
 mod clay_frame;
 mod clay_picture;
+mod contact_sound;
 pub mod distance_field;
 pub mod environment;
 mod fingers;

@@ -1,21 +1,12 @@
 //! The sound of the contact, where a person has asked for it.
 
+use super::contact_sound::ContactSound;
 use super::state::WindowState;
 use super::wiring::Wiring;
 use crate::language::tr;
-use crate::sound::heard::Heard;
+use crate::sound::Player;
 use crate::sound::no_sound::NoSound;
-use crate::sound::player::Player;
 use sculptd_daemon::Published;
-
-/// What is heard, and what plays it.
-#[derive(Debug, Default)]
-pub(super) struct ContactSound {
-    heard: Heard,
-    player: Option<Player>,
-    /// It was told why nothing plays; asked for anew, it is tried anew.
-    failed: bool,
-}
 
 impl WindowState {
     /// Lets what the pens and hands do be heard. `true` where a message has come of it.

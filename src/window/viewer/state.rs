@@ -9,6 +9,7 @@ use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPicture;
+use super::contact_sound::ContactSound;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
@@ -22,7 +23,6 @@ use super::preferences_file::PreferencesFile;
 use super::preview::Preview;
 use super::renderer::Renderer;
 use super::snapshot_workers::SnapshotWorkers;
-use super::sound_follow::ContactSound;
 use super::step_pictures::StepPictures;
 use super::tablet_map::Tablets;
 use super::tasks::Tasks;
