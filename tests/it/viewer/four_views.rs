@@ -81,13 +81,15 @@ fn four_views_are_drawn_from_pages_that_are_sent_once() {
         assert!(!pictures.contains(&picture), "{kind:?} is like another");
         pictures.push(picture);
     }
-    // The dab is above, in front and to the right: along each axis it is seen.
-    let (mut one, mut four) = (Duration::MAX, Duration::MAX);
-    for _ in 0..7 {
+    // The least of several rounds each: other tests run beside this one.
+    let (mut one, mut each) = (Duration::MAX, [Duration::MAX; 4]);
+    for _ in 0..10 {
         one = one.min(paint(&mut painter, &camera, all).1);
-        let took = ViewKind::ALL.map(|k| paint(&mut painter, &views.camera(k, &camera), half).1);
-        four = four.min(took.into_iter().sum());
+        for (least, kind) in each.iter_mut().zip(ViewKind::ALL) {
+            *least = paint(&mut painter, &views.camera(kind, &camera), half).1.min(*least);
+        }
     }
+    let four: Duration = each.into_iter().sum();
     let times = four.as_secs_f64() / one.as_secs_f64();
     println!("one view {one:.1?}, four {four:.1?}: {times:.2} times");
     assert!(times < 5.0, "{times}");
