@@ -3,8 +3,8 @@
 //! 2011, chapter 15): pressure is loudness, speed is brightness, the brush is the pitch.
 //!
 //! [`heard`] says what is done from what was published, [`contact`] computes samples of it, and
-//! the [`Player`] of the feature `sound` plays them on a thread of the sound system. The tick knows none
-//! of them: it neither waits for them nor writes for them.
+//! the [`Player`] of the feature `sound` plays them on a thread of the sound system. The tick
+//! knows none of them: it neither waits for them nor writes for them.
 
 pub mod contact;
 pub mod heard;
