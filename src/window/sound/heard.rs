@@ -46,7 +46,7 @@ impl Heard {
             let id = state.hand_devices[0].unwrap_or(DeviceId(0));
             (id, hand.palm.truncate() / HAND_VIEW_MM)
         });
-        let dabbed = state.figures.dabs != self.dabs;
+        let dabbed = self.t_us != 0 && state.figures.dabs != self.dabs;
         if dabbed && pen.is_none() && hand.is_some() {
             self.dab_us = now_us;
         }
