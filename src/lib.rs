@@ -169,6 +169,9 @@
 //!   chooser. Waits for: the disk.
 //! * `sculptd-look`, made by `window::viewer::tasks`: reads and keeps pictures for the look of the
 //!   clay. Waits for: the disk.
+//! * `sculptd-sound`, made by `window::sound` (feature `sound`, not in the default set):
+//!   opens, starts and stops the device that plays the sound of a contact; the sound system's own
+//!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by

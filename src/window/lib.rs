@@ -11,4 +11,5 @@
 pub mod language;
 pub mod look;
 pub mod panels;
+pub mod sound;
 pub mod viewer;

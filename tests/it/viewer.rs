@@ -3,6 +3,8 @@
 
 mod beside;
 mod brush_panel;
+mod four_views;
+mod heard;
 mod kiosk;
 mod languages;
 mod layers;

@@ -10,6 +10,7 @@ mod desktop;
 mod files;
 mod fingers;
 mod first_minutes;
+mod four_views;
 mod idle;
 mod lost_screen;
 mod objects;

@@ -93,6 +93,7 @@ pub fn act(
         }
         Action::Panels => ui_state.hidden = !ui_state.hidden,
         Action::LightOrDark => ui_state.prefs.light = !ui_state.prefs.light,
+        Action::Sound => ui_state.prefs.sound = !ui_state.prefs.sound,
         Action::LargerText => ui_state.prefs.scale = (ui_state.prefs.scale + 0.1).min(SCALE.1),
         Action::SmallerText => ui_state.prefs.scale = (ui_state.prefs.scale - 0.1).max(SCALE.0),
         Action::Help => ui_state.help = !ui_state.help,
@@ -103,9 +104,11 @@ pub fn act(
             out.push(UiRequest::World(Command::Brush(taken.clamped())));
         }
         Action::Lesson => ui_state.prefs.hints = HintsFollowed::default(),
-        Action::OpenMesh | Action::Export | Action::Screenshot | Action::Turntable => {
-            out.push(UiRequest::Do(action))
-        }
+        Action::OpenMesh
+        | Action::Export
+        | Action::Screenshot
+        | Action::Turntable
+        | Action::FourViews => out.push(UiRequest::Do(action)),
         // Of the brush and of the six sides: done above.
         _ => {}
     }

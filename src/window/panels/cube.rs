@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 use egui::{Color32, Rect, Sense, Stroke, pos2, vec2};
 use glam::Vec3;
 
-use super::state::{Action, UiRequest, View};
+use super::state::{Action, UiRequest, View, ViewKind};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::camera::MAX_PITCH;
 
@@ -40,8 +40,11 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequ
     if free.width() < 150.0 || free.height() < 200.0 {
         return;
     }
-    let (right, up) = view.camera.axes();
-    let back = view.camera.backward();
+    // In the corner of the view that turns.
+    let free_camera = view.views.camera(ViewKind::Free, &view.camera);
+    let camera = if view.views.are_four() { free_camera } else { view.camera };
+    let (right, up) = camera.axes();
+    let back = camera.backward();
     let corner = pos2(free.right() - 2.0 * RADIUS - 30.0, free.top() + 8.0);
     let area = egui::Area::new(egui::Id::unique("cube")).fixed_pos(corner).movable(false);
     area.show(ctx, |ui| {
@@ -54,7 +57,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect, out: &mut Vec<UiRequ
             .collect();
         // The far ones first.
         sides.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let (mut camera, mut turned) = (view.camera, false);
+        let (mut camera, mut turned) = (camera, false);
         for ((_, letter, action, colour), depth, at) in sides {
             let ball = Rect::from_center_size(at, vec2(BALL, BALL) * 2.0);
             let response = ui.interact(ball, ui.scope_id().with(action), Sense::click());

@@ -6,7 +6,7 @@ use super::{
     analysis, brush, chooser, colours, cube, curve_stroke, devices, face_sets, files, fonts,
     hand_menu, help, hints, history, keys, layers, legend, light, look, masks, measure, messages,
     modal, outliner, people, preferences, pressure_curve, radial, region, remesh, retopology, rows,
-    scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    scene, search, start, symmetry, tablet_keys, theme, timing, trim, views,
 };
 
 /// Width of either panel, points.
@@ -58,12 +58,15 @@ pub fn all(
         }
     }
     let free = ui.available_rect_before_wrap();
-    ui_state.brush_panel.free = Some(free);
+    // What lies over the clay belongs to the view in which is worked.
+    let worked_in = views::part(&ctx, view.views, view.views.active(), free);
+    ui_state.brush_panel.free = Some(worked_in);
+    views::ui(&ctx, view, free, out);
     colours::sampler(&ctx, ui_state, free, out);
-    region::ui(&ctx, ui_state, free, out);
-    curve_stroke::ui(&ctx, view, ui_state, free, out);
-    people::labels(&ctx, view, free);
-    hand_menu::ui(&ctx, view, free);
+    region::ui(&ctx, ui_state, (free, worked_in), out);
+    curve_stroke::ui(&ctx, view, ui_state, worked_in, out);
+    people::labels(&ctx, view, worked_in);
+    hand_menu::ui(&ctx, view, worked_in);
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, view, ui_state, free);

@@ -39,6 +39,11 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     let mut camera = view.camera;
     ui.checkbox(&mut camera.orthographic, tr!("look-orthographic"))
         .on_hover_text(view.tip(Action::Perspective));
+    let mut four = view.views.are_four();
+    let box_of_four = ui.checkbox(&mut four, tr!("look-four-views"));
+    if box_of_four.on_hover_text(view.tip(Action::FourViews)).changed() {
+        out.push(UiRequest::Do(Action::FourViews));
+    }
     let mut degrees = camera.fov_y.to_degrees();
     ui.add_enabled_ui(!camera.orthographic, |ui| {
         rows::slider(ui, egui::Slider::new(&mut degrees, 10.0..=100.0), &tr!("look-angle"))

@@ -52,6 +52,7 @@ pub mod tablet_keys;
 pub mod theme;
 pub mod timing;
 pub mod trim;
+pub mod views;
 
 pub use act::act;
 pub use layout::{PANEL, all};

@@ -130,7 +130,13 @@ pub fn request(purpose: RegionPurpose, region: ViewRegion, tool: &RegionTool) ->
 }
 
 /// The gesture itself, its outline, and a bar that says what is done with it.
-pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec<UiRequest>) {
+/// `free` shows the clay; the region is one of the view in which is worked.
+pub fn ui(
+    ctx: &egui::Context,
+    ui_state: &mut UiState,
+    (free, worked_in): (Rect, Rect),
+    out: &mut Vec<UiRequest>,
+) {
     let tool = &mut ui_state.region;
     let Some(mut drawing) = tool.drawing.take() else { return };
     let typing = ctx.text_edit_focused() || ui_state.search.is_some();
@@ -153,8 +159,8 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
             response.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Canvas, true, tr!("region-heading"))
             });
-            let clamp = |at: Pos2| at.clamp(free.min, free.max);
-            let (mut at, mut moves) = (free.center(), Vec::new());
+            let clamp = |at: Pos2| at.clamp(worked_in.min, worked_in.max);
+            let (mut at, mut moves) = (worked_in.center(), Vec::new());
             ctx.input(|i| {
                 at = clamp(i.pointer.latest_pos().unwrap_or(at));
                 for event in &i.events {
@@ -179,7 +185,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
             });
             let pressed_enter = pressed(Key::Enter);
             let finished = follow(&mut drawing, &response, at, &moves) || pressed_enter;
-            let painter = ui.painter().clone().with_clip_rect(free);
+            let painter = ui.painter().clone().with_clip_rect(worked_in);
             outline(&painter, &drawing, at);
             response.on_hover_cursor(egui::CursorIcon::Crosshair);
             (finished, at)
@@ -189,7 +195,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &mut UiState, free: Rect, out: &mut Vec
     if finished && !drawing.points.is_empty() {
         let turned = ctx.input(|i| i.modifiers.command || i.modifiers.ctrl);
         let purpose = if turned { drawing.purpose.opposite() } else { drawing.purpose };
-        if let Some(region) = drawn(&drawing, free, at) {
+        if let Some(region) = drawn(&drawing, worked_in, at) {
             out.push(request(purpose, region, tool));
             done = drawing.purpose == RegionPurpose::Trim;
         }

@@ -39,6 +39,11 @@ impl CameraAnimation {
         CameraAnimation { from, to, begun_us: now_us }
     }
 
+    /// The camera when it has arrived.
+    pub fn end(&self) -> Camera {
+        self.to
+    }
+
     /// The camera now, and whether it has arrived.
     pub fn at(&self, now_us: u64) -> (Camera, bool) {
         let x = (now_us.saturating_sub(self.begun_us) as f32 / TAKES_US as f32).min(1.0);

@@ -1,5 +1,5 @@
-//! The picture of the clay between the panels: drawn anew where something of it has changed, else
-//! copied. A tooltip, a message or a picture in the history costs no clay.
+//! The pictures of the clay between the panels, one a view: drawn anew where something of it has
+//! changed, else copied. A tooltip, a message or a picture in the history costs no clay.
 
 use std::sync::Arc;
 
@@ -32,6 +32,41 @@ pub(super) struct ClayPictureKey {
     pub(super) values: u64,
     /// Pixels.
     pub(super) size: (u32, u32),
+}
+
+/// The picture of one view, and what it was drawn from.
+#[derive(Debug, Default)]
+pub(super) struct ClayPicture {
+    texture: Option<wgpu::Texture>,
+    /// `None`: it is to be drawn anew.
+    pub(super) key: Option<ClayPictureKey>,
+}
+
+impl ClayPicture {
+    /// The texture that the view is drawn into, `size` pixels.
+    pub(super) fn texture(
+        &mut self,
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        size: (u32, u32),
+    ) -> wgpu::Texture {
+        let fits = |t: &&wgpu::Texture| (t.width(), t.height()) == size && t.format() == format;
+        if let Some(texture) = self.texture.as_ref().filter(fits) {
+            return texture.clone();
+        }
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("clay"),
+            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        (self.texture, self.key) = (Some(texture.clone()), None);
+        texture
+    }
 }
 
 impl PartialEq for ClayPictureKey {

@@ -1,103 +1,17 @@
 //! One frame of the window: the clay, what lies over it, the panels, and what they ask for.
 
-use glam::{Vec2, Vec3};
-
-use super::clay_picture::ClayPictureKey;
-use super::mirrors::mirrors;
-use super::objects::{self, Stance};
-use super::overlay;
-use super::pages::MapValues;
 use super::pointer::Drag;
-use super::provisional::ProvisionalDabs;
-use super::renderer::{Beside, LineEnd, Renderer, Scene};
+use super::renderer::Renderer;
 use super::state::WindowState;
 use super::wiring::Wiring;
-use crate::look::Map;
 use crate::panels;
-use crate::panels::state::{KeyMap, TabletKeys, UiRequest, UiState, View};
+use crate::panels::state::{KeyMap, TabletKeys, UiRequest, View};
 use sculptd_daemon::Published;
-use sculptd_daemon::kiosk::Stage;
-use sculptd_daemon::people::colour_of;
 use sculptd_daemon::present_latency::PresentedFrame;
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
 impl WindowState {
-    /// The ring under the pointer and under every other pen (where that will be when the frame is
-    /// seen), their mirror images, the tracked hands.
-    fn lines(&self, state: &Published, wiring: &Wiring) -> (Vec<LineEnd>, Option<(Vec3, f32)>) {
-        let mut lines = Vec::new();
-        let mut brush = None;
-        if self.ui_state.look.grid {
-            let floor = state.world_bounds().0.y;
-            overlay::grid(&mut lines, state.middle, floor, state.extent, self.ui_state.look.pale);
-        }
-        let mut ring_at = |view: Vec2, pressure: f32, tilt: Option<Vec2>, down: bool| {
-            let ray = self.camera.ray(view);
-            let radius = state.brush_radius * state.brush.pressure_radius.factor(pressure);
-            let carve = state.brush.negative;
-            let ring = overlay::Ring { radius, carve, mirrored: false, down, of: None };
-            if let Some(hit) = state.pick(ray) {
-                overlay::ring(&mut lines, state, hit.position, hit.normal, &ring);
-                if let Some(tilt) = tilt {
-                    overlay::barrel(&mut lines, &self.camera, hit.position, tilt, radius);
-                }
-                brush.get_or_insert((hit.position, radius));
-            }
-            // Mirrors stand in the object's own frame.
-            let to_world = state.transform();
-            let own = to_world.inverse();
-            let (middle, ray) = (own.point(state.middle), own.ray(ray));
-            for m in mirrors(state.brush.symmetry) {
-                let origin = middle + (ray.origin - middle) * m;
-                let mirrored = sculptd_clay::Ray { origin, dir: ray.dir * m };
-                if let Some(hit) = state.pick(to_world.ray(mirrored)) {
-                    let ring = overlay::Ring { mirrored: true, ..ring };
-                    overlay::ring(&mut lines, state, hit.position, hit.normal, &ring);
-                }
-            }
-        };
-        // While nobody is there the recording plays by itself: no tool is seen.
-        let nobody = self.drawn_kiosk.is_some_and(|k| k.stage == Stage::Attract);
-        let p = &self.pointer;
-        let scale = self.egui.egui_ctx().pixels_per_point();
-        let over_panel = self.over_panel(self.pointer.at);
-        let follows = self.pointer_is_a_pen(wiring);
-        if let Some(modal) = &self.ui_state.modal {
-            let at = Vec2::new(modal.from.x, modal.from.y) * scale;
-            ring_at(self.view_point(at), 1.0, None, false);
-        } else if p.inside
-            && !nobody
-            && (p.drag == Drag::Sculpt || (p.drag == Drag::None && !over_panel && !follows))
-        {
-            let felt = state
-                .pens
-                .iter()
-                .flatten()
-                .find(|(id, _)| *id == sculptd_daemon::adaptors::POINTER_ID);
-            let down = p.drag == Drag::Sculpt;
-            let pressure = if down { felt.map_or(1.0, |f| f.1.pressure) } else { 1.0 };
-            ring_at(self.view_point(p.at), pressure, None, down);
-        }
-        for (id, pen) in state.pens.iter().flatten().filter(|_| !nobody) {
-            if *id != sculptd_daemon::adaptors::POINTER_ID {
-                let down = pen.pressure > 0.0;
-                let view = self.predicted(*id, wiring).unwrap_or(pen.view);
-                ring_at(view, if down { pen.pressure } else { 1.0 }, pen.tilt, down);
-            }
-        }
-        overlay::others(&mut lines, state);
-        self.gizmo_lines(&mut lines, state);
-        if let Some(thing) = &state.thing {
-            overlay::held_object(&mut lines, thing);
-        }
-        if let Some(hands) = &state.hands {
-            let of = state.others_hands().map(colour_of);
-            overlay::hands(&mut lines, hands, &state.volume, of);
-        }
-        (lines, brush)
-    }
-
     pub(super) fn redraw(&mut self, wiring: &Wiring) {
         let texture = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(t)
@@ -132,15 +46,14 @@ impl WindowState {
             self.renderer = Renderer::new(&self.gpu, self.clay_format, samples);
             self.samples = samples;
             self.look_again();
-            self.clay_key = None;
+            self.forget_clay();
         }
         self.update_overlay_mesh(&state);
         self.shots(&state);
-        let (lines, brush) = self.lines(&state, wiring);
-        let led = self.led(&state, wiring);
+        let over = self.over_view(&state, wiring);
         let view = texture.texture.create_view(&Default::default());
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.draw_clay(&state, (&lines, brush, led), &mut encoder, &texture.texture);
+        self.draw_clay(&state, over, &mut encoder, &texture.texture);
         let requests = self.panels(&state, wiring, &mut encoder, &view);
         let own_ms = (wiring.clock.now_ns() - begun_ns) as f64 / 1e6;
         self.gpu.queue.submit([encoder.finish()]);
@@ -155,98 +68,9 @@ impl WindowState {
             self.answer(request, &state, wiring);
         }
         self.fit_camera(wiring);
-        if self.renderer.waiting > 0 || self.leads_a_pen(wiring) {
+        if self.clay_waits || self.leads_a_pen(wiring) {
             self.pacing.want();
         }
-    }
-
-    /// The clay in the part of the window that the panels leave free: drawn into a picture of that
-    /// size, which is then copied to its place.
-    fn draw_clay(
-        &mut self,
-        state: &Published,
-        (lines, brush, led): (&[LineEnd], Option<(Vec3, f32)>, ProvisionalDabs),
-        encoder: &mut wgpu::CommandEncoder,
-        surface: &wgpu::Texture,
-    ) {
-        let (corner, size) = self.view_rect();
-        let size = (size.x as u32, size.y as u32);
-        let part = self.takes_copies();
-        let target = if part { self.clay_picture(size) } else { surface.clone() };
-        let pages = state.mesh.page_count();
-        let first = self.first_picture.as_ref().filter(|p| p.pages == pages);
-        let mut camera = self.camera;
-        if let Some((lo, hi)) = first.and_then(|p| p.bounds) {
-            camera.frame(lo, hi);
-        }
-        let lines = if first.is_some() { &[] } else { lines };
-        let brush = brush.filter(|_| first.is_none());
-        let preview = first.or(self.preview.as_ref());
-        let key = ClayPictureKey {
-            object: state.clay_revision(),
-            scene: state.scene.clone(),
-            camera,
-            look: self.ui_state.look,
-            brush,
-            lines: lines.to_vec(),
-            led,
-            preview: preview.cloned(),
-            overlay: self.overlay_mesh.stamp,
-            values: self.map_changes,
-            size,
-        };
-        let drawn = part && self.renderer.waiting == 0 && self.clay_key.as_ref() == Some(&key);
-        self.uploaded = 0;
-        if !drawn {
-            let others = objects::others(state);
-            let scene = Scene {
-                mesh: &state.mesh,
-                camera: &camera,
-                brush,
-                lines,
-                look: self.ui_state.look,
-                values: shown(&self.ui_state, &self.values, &self.distances)
-                    .filter(|v| v.pages.len() == pages),
-                beside: Beside {
-                    preview,
-                    overlay: Some(&self.overlay_mesh),
-                    stance: Stance::of(state),
-                    others: &others,
-                    led: Some(&led),
-                    backdrop: if first.is_some() { 0.0 } else { self.backdrop() },
-                },
-            };
-            let view = target.create_view(&Default::default());
-            self.renderer.draw(&self.gpu, encoder, &view, size, &scene);
-            self.uploaded = self.renderer.uploaded;
-            self.clay_key = part.then_some(key);
-        }
-        if part {
-            let mut to = surface.as_image_copy();
-            to.origin = wgpu::Origin3d { x: corner.x as u32, y: corner.y as u32, z: 0 };
-            let extent = wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 };
-            encoder.copy_texture_to_texture(target.as_image_copy(), to, extent);
-        }
-    }
-
-    /// The texture that the clay is drawn into, `size` pixels.
-    fn clay_picture(&mut self, size: (u32, u32)) -> wgpu::Texture {
-        let fits = |t: &wgpu::Texture| (t.width(), t.height()) == size;
-        if let Some(texture) = self.clay_picture.as_ref().filter(|t| fits(t)) {
-            return texture.clone();
-        }
-        let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("clay"),
-            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: self.clay_format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        self.clay_picture = Some(texture.clone());
-        texture
     }
 
     fn measure(
@@ -301,6 +125,7 @@ impl WindowState {
             keys: &self.key_map,
             presets: &wiring.presets,
             camera: self.camera,
+            views: &self.views,
             devices: &self.devices,
             tablet: wiring
                 .kiosk
@@ -389,15 +214,6 @@ fn by_press(mut input: egui::RawInput) -> Vec<egui::RawInput> {
     }
     passes.push(egui::RawInput { events, ..input });
     passes
-}
-
-/// The values of the map that is shown.
-pub(super) fn shown<'a>(
-    ui_state: &UiState,
-    thickness: &'a Option<MapValues>,
-    distances: &'a Option<MapValues>,
-) -> Option<&'a MapValues> {
-    if ui_state.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
 }
 
 #[cfg(test)]

@@ -58,6 +58,7 @@ impl WindowState {
         let by = (to - self.pointer.at) / self.view_rect().1;
         self.pointer.at = to;
         self.pointer.inside = true;
+        self.work_at(to, wiring);
         self.take_trail(wiring);
         match self.pointer.drag {
             Drag::Sculpt => self.sample(true, wiring),
@@ -117,6 +118,7 @@ impl WindowState {
         if down && self.pointer.drag == Drag::None {
             let dragged = self.held_on_panels != 0;
             let at = self.pointer.at;
+            self.work_at(at, wiring);
             let turns = button != MouseButton::Left && self.over_region(at);
             if dragged || self.over_panel(at) && !turns {
                 self.held_on_panels |= bit;
@@ -159,6 +161,7 @@ impl WindowState {
         }
         self.camera_animation = None;
         self.pointer.inside = true;
+        self.work_at(self.pointer.at, wiring);
         self.take_trail(wiring);
         if self.press_is_a_keys() {
             return;
@@ -198,6 +201,12 @@ impl WindowState {
             MouseButton::Middle => Drag::Pan,
             _ => Drag::None,
         };
+        let turns = button == MouseButton::Left && self.pointer.drag == Drag::Orbit;
+        if turns && self.is_double_press(wiring) {
+            self.pointer.drag = Drag::None;
+            self.show_view(self.views.active(), wiring);
+        }
+        self.pointer.drag = self.held_drag(self.pointer.drag);
         if self.pointer.drag == Drag::Sculpt {
             self.ui_state.prefs.hints.touched = true;
             let brush = state.brush;
@@ -217,6 +226,9 @@ impl WindowState {
     /// A touch of the screen. One that begins on a panel stays with that.
     pub(super) fn touched(&mut self, touch: &Touch, wiring: &mut Wiring) {
         let at = Vec2::new(touch.location.x as f32, touch.location.y as f32);
+        if touch.phase == TouchPhase::Started {
+            self.work_at(at, wiring);
+        }
         let step = match touch.phase {
             TouchPhase::Started if self.over_panel(at) => return,
             TouchPhase::Started => TouchStep::Down,
@@ -274,6 +286,7 @@ impl WindowState {
                 self.pointer.t_us = None;
                 return;
             }
+            FingerAction::Turn(by) if self.views.is_held() => self.camera.pan(by / height),
             FingerAction::Turn(by) => {
                 self.camera.orbit(by / height);
                 self.ui_state.prefs.hints.turned = true;

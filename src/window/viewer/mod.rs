@@ -1,18 +1,22 @@
 //! The viewer: draws what was published, sends commands and pointer samples, and owns nothing of
 //! the world. A viewer that stalls or dies costs the sculpture nothing.
 //!
-//! Read first: `app` (events), `poll` (what changed), `frame` (one frame), `input` (the pointer).
+//! Read first: `app` (events), `poll` (what changed), `frame` (one frame), `clay_frame` (its clay),
+//! `input` (the pointer).
 
 mod app;
 mod brush_requests;
 mod camera_animation;
+mod clay_frame;
 mod clay_picture;
+mod contact_sound;
 pub mod distance_field;
 pub mod environment;
 mod fingers;
 mod folder_listing;
 mod folder_tasks;
 mod follow;
+mod four_views;
 mod frame;
 mod frame_uniform;
 pub mod gizmo;
@@ -24,6 +28,7 @@ pub mod look_files;
 mod look_follow;
 mod mirrors;
 pub mod objects;
+mod over_clay;
 pub mod overlay;
 pub mod overlay_mesh;
 mod pacing;
@@ -40,6 +45,7 @@ mod scene_pointer;
 mod shadow;
 mod shots;
 mod snapshot_workers;
+mod sound_follow;
 mod ssao;
 mod state;
 mod step_picture_jobs;

@@ -31,6 +31,8 @@ pub struct Pointer {
     /// The brush as it was before Shift or Ctrl changed it for one stroke.
     pub(super) lent: Option<BrushSettings>,
     pub(super) speed: Speed,
+    /// When and where the last press beside the clay was, microseconds and pixels.
+    pub(super) beside: Option<(u64, Vec2)>,
     /// The handle of the gizmo that is dragged.
     pub(super) gizmo: Option<GizmoDrag>,
 }

@@ -27,10 +27,12 @@ impl WindowState {
             }
             UiRequest::Camera(camera) => {
                 self.camera_animation = None;
-                self.camera = camera;
+                self.take_camera(camera);
                 self.send_camera(wiring);
             }
+            UiRequest::ShowView(kind) => self.show_view(kind, wiring),
             UiRequest::FlyTo(place) => {
+                self.turn_freely();
                 let now = wiring.clock.now_us();
                 self.camera_animation = Some(CameraAnimation::to_place(
                     self.camera,
@@ -143,6 +145,7 @@ impl WindowState {
                 self.tasks.open_dialog(FilePurpose::Export, wiring.clock.clone());
             }
             UiRequest::Do(Action::Screenshot) => self.screenshot = true,
+            UiRequest::Do(Action::FourViews) => self.turn_views(wiring),
             UiRequest::Do(Action::Turntable) => self.begin_turntable(),
             UiRequest::Do(_) => {}
         }

@@ -12,6 +12,7 @@ use super::wiring::Wiring;
 use sculptd_clay::Ray;
 use sculptd_daemon::Published;
 use sculptd_daemon::snap_jobs::PickedFace;
+use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, ObjectView, SceneCommand};
 
@@ -24,11 +25,11 @@ fn movable(state: &Published) -> Option<&ObjectView> {
 }
 
 impl WindowState {
-    /// The gizmo of the active object as it stands, or as it is dragged.
-    fn gizmo(&self, state: &Published) -> Option<Gizmo> {
+    /// The gizmo of the active object as it stands, or as it is dragged, in a view.
+    fn gizmo(&self, state: &Published, camera: &Camera) -> Option<Gizmo> {
         let object = movable(state).filter(|_| self.ui_state.outliner.gizmo)?;
         let at = self.pointer.gizmo.map_or(object.settings.transform, |drag| drag.now);
-        Some(Gizmo::of(object, &at, &self.camera))
+        Some(Gizmo::of(object, &at, camera))
     }
 
     /// A press that is of objects and not of clay. False: it is neither on the gizmo nor a pick.
@@ -49,7 +50,7 @@ impl WindowState {
             return true;
         }
         let view = self.view_point(self.pointer.at);
-        let Some(gizmo) = self.gizmo(state) else { return false };
+        let Some(gizmo) = self.gizmo(state, &self.camera) else { return false };
         let Some(handle) = gizmo.handle_at(&self.camera, view) else { return false };
         let Some(object) = movable(state) else { return false };
         let before = object.settings.transform;
@@ -88,11 +89,12 @@ impl WindowState {
     }
 
     /// The lines of the gizmo, and the object's box where it is dragged to.
-    pub(super) fn gizmo_lines(&self, lines: &mut Vec<LineEnd>, state: &Published) {
-        let Some(gizmo) = self.gizmo(state) else { return };
+    pub(super) fn gizmo_lines(&self, lines: &mut Vec<LineEnd>, state: &Published, camera: &Camera) {
+        let Some(gizmo) = self.gizmo(state, camera) else { return };
         let hot = match self.pointer.gizmo {
             Some(drag) => Some(drag.handle),
-            None => self.hot_handle(&gizmo),
+            None if *camera == self.camera => self.hot_handle(&gizmo),
+            None => None,
         };
         gizmo.lines(lines, hot);
         if let Some(drag) = self.pointer.gizmo {

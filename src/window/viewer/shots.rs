@@ -69,7 +69,7 @@ impl WindowState {
             brush: None,
             lines: &[],
             look: self.ui_state.look,
-            values: super::frame::shown(&self.ui_state, &self.values, &self.distances),
+            values: super::clay_frame::shown(&self.ui_state, &self.values, &self.distances),
             beside: Beside { stance: Stance::of(state), others: &others, ..Beside::default() },
         };
         match paint(&self.gpu, &mut self.renderer, &scene, width, height) {

@@ -8,7 +8,8 @@ use winit::keyboard::ModifiersState;
 use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
-use super::clay_picture::ClayPictureKey;
+use super::clay_picture::ClayPicture;
+use super::contact_sound::ContactSound;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
@@ -31,7 +32,7 @@ use super::wiring::Wiring;
 use crate::language::{set_current, tr};
 use crate::look::{MATERIALS, Material};
 use crate::panels::hand_menu::MenuBall;
-use crate::panels::state::{FrameFigures, KeyMap, UiState};
+use crate::panels::state::{FrameFigures, KeyMap, UiState, Views};
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::View as KioskView;
@@ -70,8 +71,10 @@ pub(super) struct WindowState {
     pub(super) paint: egui_wgpu::Renderer,
     pub(super) pointer: Pointer,
     pub(super) mods: ModifiersState,
-    /// The camera as this window last wanted it; the world's own follows a tick later.
+    /// The camera as this window last wanted it; the world's own follows a tick later. That of the
+    /// view in which is worked.
     pub(super) camera: Camera,
+    pub(super) views: Views,
     /// The camera that was sent last and when, microseconds, until the world has it.
     pub(super) asked_camera: Option<(Camera, u64)>,
     /// The object is to be framed as soon as the panels are laid out.
@@ -131,16 +134,17 @@ pub(super) struct WindowState {
     pub(super) told_refusal: Option<sculptd_engine::world::UndoRefusal>,
     /// The part of the window between the panels, points; all of it before the first frame.
     pub(super) free: Option<egui::Rect>,
-    /// The picture of the clay, as large as the free part, where the surface takes copies.
-    pub(super) clay_picture: Option<wgpu::Texture>,
-    /// What that picture was drawn from; `None`: it is to be drawn anew.
-    pub(super) clay_key: Option<ClayPictureKey>,
+    /// The picture of each view, where the surface takes copies.
+    pub(super) clay_pictures: [ClayPicture; 4],
+    /// Pages that the last frame shows are still to be sent.
+    pub(super) clay_waits: bool,
     /// Counts the changes of the values of the maps.
     pub(super) map_changes: u64,
     /// Buttons and fingers that went down on a panel and are still down.
     pub(super) held_on_panels: u32,
     pub(super) tablets: Tablets,
     pub(super) fingers: Fingers,
+    pub(super) sound: ContactSound,
 }
 
 impl WindowState {
@@ -248,6 +252,7 @@ impl WindowState {
             pointer: Pointer::default(),
             mods: ModifiersState::empty(),
             camera,
+            views: Views::default(),
             asked_camera: None,
             unframed: from_front,
             camera_animation: None,
@@ -288,12 +293,13 @@ impl WindowState {
             drawn_kiosk: None,
             told_refusal: None,
             free: None,
-            clay_picture: None,
-            clay_key: None,
+            clay_pictures: Default::default(),
+            clay_waits: false,
             map_changes: 0,
             held_on_panels: 0,
             tablets: Tablets::default(),
             fingers: Fingers::default(),
+            sound: ContactSound::default(),
         };
         open.send_camera(wiring);
         if let Some(path) = &wiring.open_first {
@@ -303,7 +309,7 @@ impl WindowState {
     }
 
     /// The part of the window that shows the clay, pixels: its top left corner and its size.
-    pub(super) fn view_rect(&self) -> (Vec2, Vec2) {
+    pub(super) fn clay_rect(&self) -> (Vec2, Vec2) {
         let whole = Vec2::new(self.config.width as f32, self.config.height as f32);
         let Some(free) = self.free.filter(|_| self.takes_copies()) else {
             return (Vec2::ZERO, whole);
@@ -341,7 +347,7 @@ impl WindowState {
             return;
         }
         self.asked_camera = None;
-        self.camera = Camera { aspect: self.camera.aspect, ..*worlds };
+        self.take_camera(Camera { aspect: self.camera.aspect, ..*worlds });
     }
 
     /// Gives the camera the proportions of the view.

@@ -154,6 +154,14 @@ pub(super) struct Tablets {
     pub(super) key_us: Option<u64>,
 }
 
+impl Tablets {
+    /// Whether the desktop moves its pointer by the pen of a tablet, or may do so.
+    pub(super) fn moves_pointer(&self, device: DeviceId) -> bool {
+        let known = self.known.iter().find(|t| t.0 == device);
+        known.is_some_and(|(_, map)| map.map().is_some() || map.is_undecided())
+    }
+}
+
 impl TabletMap {
     /// The pen is here, in shares of its tablet's area, or out of range, and touches or not.
     pub fn pen(&mut self, t_us: u64, share: Option<DVec2>, tip: bool) {

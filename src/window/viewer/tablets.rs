@@ -18,6 +18,7 @@ use super::provisional::ProvisionalDabs;
 use super::state::WindowState;
 use super::tablet_map::{LATE_US, TabletMap, Tablets};
 use super::wiring::Wiring;
+use crate::panels::views;
 use sculptd_daemon::Published;
 use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::DeviceId;
@@ -138,6 +139,7 @@ impl WindowState {
                 map.pointer(now, at);
             }
         }
+        self.follow_pens(state, wiring);
         let (corner, size) = self.view_rect();
         wiring.link.set_view_on_desktop(self.on_screen(corner), size.as_dvec2());
         let desktop = self.desktop(wiring);
@@ -155,6 +157,13 @@ impl WindowState {
         let mut desktop = DesktopLayout::default();
         let (corner, size) = self.view_rect();
         let zero = self.on_screen(corner);
+        // A pen that moves no pointer covers all views.
+        let (first, all) = self.clay_rect();
+        let spread = PenPlace::Mapped {
+            origin: (first - corner) / size,
+            across: Vec2::new(all.x / size.x, 0.0),
+            down: Vec2::new(0.0, all.y / size.y),
+        };
         let view = |v: DVec2| v.as_vec2() / size;
         for (slot, (id, map)) in desktop.tablets.iter_mut().zip(&self.tablets.known) {
             let place = match map.map() {
@@ -169,7 +178,16 @@ impl WindowState {
             *slot = Some((*id, place));
         }
         // An installation has the whole screen, and nothing lies before it.
-        if wiring.kiosk.is_none() && desktop.tablets.iter().any(Option::is_some) {
+        let follows = desktop.tablets.iter().any(Option::is_some);
+        if self.views.are_four() {
+            let others =
+                self.tablets.in_range.iter().filter(|id| !self.tablets.moves_pointer(**id));
+            let slots = desktop.tablets.iter_mut().filter(|slot| slot.is_none());
+            for (slot, id) in slots.zip(others) {
+                *slot = Some((*id, spread));
+            }
+        }
+        if wiring.kiosk.is_none() && follows {
             desktop.away = self.tablets.unfocused || !self.pointer.inside;
             for (slot, cover) in desktop.covers.iter_mut().zip(self.covers()) {
                 *slot = Some(cover.map(|at| (at - corner) / size));
@@ -184,7 +202,8 @@ impl WindowState {
         let scale = context.pixels_per_point();
         let mut layers: Vec<egui::LayerId> =
             context.memory(|m| m.areas().visible_layer_ids()).into_iter().collect();
-        layers.sort_unstable_by_key(|l| (l.order, l.id.value()));
+        // Where there are too many, names of views are left out.
+        layers.sort_unstable_by_key(|l| (views::is_name(l.id), l.order, l.id.value()));
         let above =
             |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(takes_presses);
         layers

@@ -36,6 +36,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             keys: &Default::default(),
             presets: sculptd::presets(),
             camera: s.published.camera,
+            views: &s.views,
             devices: &s.devices,
             tablet: None,
             session: None,

@@ -274,6 +274,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 keys: &Default::default(),
                 presets: sculptd::presets(),
                 camera: s.published.camera,
+                views: &s.views,
                 devices: &[],
                 tablet: None,
                 session: None,

@@ -18,7 +18,7 @@ use sculptd_window::look::Map;
 use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
-    ThicknessSummary, ThinSpot, TrialStatus,
+    ThicknessSummary, ThinSpot, TrialStatus, Views,
 };
 use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
 
@@ -29,6 +29,7 @@ pub(super) struct State {
     pub devices: Vec<String>,
     pub demo_runs: bool,
     pub tablet: Option<TabletKeys>,
+    pub views: Views,
     pub translations: &'static Translations,
     pub presets: Presets,
 }
@@ -47,6 +48,7 @@ pub(super) fn state(tab: Tab) -> State {
         devices: Vec::new(),
         demo_runs: false,
         tablet: None,
+        views: Views::default(),
         translations: super::translations(),
         presets: sculptd::presets().apart(),
     }
@@ -60,6 +62,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         keys: &keys,
         presets: &s.presets,
         camera: s.published.camera,
+        views: &s.views,
         devices: &s.devices,
         tablet: s.tablet.clone(),
         session: None,

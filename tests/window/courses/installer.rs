@@ -124,5 +124,37 @@ fn an_installer_s_hour() {
     c.step("Finished keeps this work too", |s| press(s, tools[4]), |_| works() >= 2);
     let pictures = std::fs::read_dir(&gallery).expect("a folder").count();
     c.step("what was kept is in the gallery", |_| {}, |_| pictures >= 2);
+    staff_comes(&mut c);
     println!("{} steps", c.steps);
+}
+
+/// The keypad of the staff: a wrong number lets nobody out, the right one ends the program.
+fn staff_comes(c: &mut Course) {
+    let digit = |n: i32| (1049 + (n - 1) % 3 * 78, 112 + (n - 1) / 3 * 77);
+    let (door, ok) = ((1196, 75), (1205, 343));
+    c.step(
+        "a new visit",
+        |s| {
+            pause(1000);
+            s.drag((-80, 0), (80, 10));
+        },
+        |s| steps(s) == 1,
+    );
+    let typed = move |number: &'static [i32]| {
+        move |s: &mut Stage| {
+            press(s, door);
+            pause(600);
+            for n in number {
+                press(s, digit(*n));
+                pause(200);
+            }
+            press(s, ok);
+        }
+    };
+    c.step("a wrong number of the staff", typed(&[1, 2, 3, 4]), |s| steps(s) == 1);
+    pause(1000);
+    c.step("the visit goes on", |s| s.drag((-60, 60), (60, 50)), |s| steps(s) == 2);
+    c.step("the right number ends it", typed(&[4, 7, 1, 1]), |s| {
+        s.daemon.0.try_wait().is_ok_and(|ended| ended.is_some_and(|e| e.success()))
+    });
 }

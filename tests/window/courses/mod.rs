@@ -27,7 +27,10 @@ impl Course {
             println!("skipped: SCULPTD_LONG=1 runs it");
             return None;
         }
-        Some(Course { s: Stage::open(args)?, name, steps: 0 })
+        let mut s = Stage::open(args)?;
+        // The window is there before its first frame is.
+        s.seen(&format!("course-{name}-00"));
+        Some(Course { s, name, steps: 0 })
     }
 
     /// One step: what the person does, and how it is seen that it was done.

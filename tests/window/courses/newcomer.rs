@@ -34,7 +34,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |s| press(s, (65, 405)),
         |s| brush(s)["symmetry"] == json!([true, false, false]),
     );
-    c.step("the lesson is over", |_| {}, |_| true);
+    c.step("the lesson is over", |s| s.drag((-60, -90), (60, -80)), |s| steps(s) == 3);
     c.is_as_kept();
 
     // Help, search, keys.
@@ -200,6 +200,8 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |s| s.answer("ctrl+k", "language"),
         |s| differs(&was, &s.look("course-newcomer-languages")) > 0.3,
     );
+    preferences(&mut c);
+    four_views(&mut c);
     let was = c.s.look("course-newcomer-panels");
     c.step(
         "N takes the panels away",
@@ -219,4 +221,63 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |s| hash(s) == work,
     );
     println!("{} steps", c.steps);
+}
+
+/// Another language and what else is on the page of preferences; a key of one's own.
+fn preferences(c: &mut Course) {
+    let file = c.s.dir.path().join("sculptd/viewer.toml");
+    let kept = move |text: &str| std::fs::read_to_string(&file).is_ok_and(|t| t.contains(text));
+    let was = c.s.look("course-newcomer-english");
+    let choose = |y: i32| {
+        move |s: &mut Stage| {
+            press(s, (1150, 122));
+            pause(1500);
+            press(s, (1090, y));
+        }
+    };
+    c.step("Italian", choose(299), |s| {
+        kept("language = \"it\"") && differs(&was, &s.look("course-newcomer-italian")) > 0.3
+    });
+    c.step(
+        "its search knows English too",
+        |s| s.answer("ctrl+k", "larger text"),
+        |_| kept("scale = 1.1"),
+    );
+    c.step("smaller again", |s| s.answer("ctrl+k", "smaller text"), |_| true);
+    c.step("and the page by its Italian name", |s| s.answer("ctrl+k", "lingua"), |_| true);
+}
+
+/// The ball from four sides, and back.
+fn four_views(c: &mut Course) {
+    let parallel = |s: &Stage| s.ask("camera", &json!({}))["orthographic"] == true;
+    let go = |s: &Stage, x: &str, y: &str| s.drive(&["mousemove", x, y]);
+    let before = c.s.look("course-newcomer-one-view");
+    c.step(
+        "four views",
+        |s| {
+            go(s, "842", "179");
+            key(s, "4");
+        },
+        |s| differs(&before, &s.look("course-newcomer-four-views")) > 1.0,
+    );
+    let at = steps(&c.s);
+    c.step(
+        "a stroke from above",
+        |s| {
+            go(s, "437", "179");
+            pause(500);
+            drag_with(s, "1", (407, 170), (467, 190));
+        },
+        |s| steps(s) == at + 1 && parallel(s),
+    );
+    c.step("is taken back", |s| key(s, "ctrl+z"), |s| steps(s) == at);
+    c.step(
+        "and one again",
+        |s| {
+            go(s, "842", "179");
+            pause(500);
+            key(s, "4");
+        },
+        |s| differs(&before, &s.look("course-newcomer-one-view-again")) < 2.0,
+    );
 }

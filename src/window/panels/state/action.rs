@@ -40,6 +40,7 @@ pub enum Action {
     Top,
     Bottom,
     Perspective,
+    FourViews,
     NextMaterial,
     Facets,
     Ssao,
@@ -73,6 +74,7 @@ pub enum Action {
     Search,
     Panels,
     LightOrDark,
+    Sound,
     LargerText,
     SmallerText,
     Help,
@@ -132,6 +134,16 @@ fn also_of(kind: BrushKind) -> &'static str {
     }
 }
 
+/// Words that find a page and are not in what is said of it.
+fn also_of_page(tab: Tab) -> &'static str {
+    match tab {
+        Tab::More => "language preferences settings options",
+        Tab::Scene => "objects layers boolean outliner face sets",
+        Tab::Devices => "tablets hands pressure",
+        _ => "",
+    }
+}
+
 /// What a button says, in the language of this thread.
 pub fn brush_title(kind: BrushKind) -> String {
     text_or(&format!("kind-{}", kind.name()), &english_title(kind))
@@ -164,7 +176,7 @@ pub fn all() -> &'static [ActionEntry] {
                 action: Action::Page(tab),
                 name: name.into(),
                 keys: None,
-                also: about.to_lowercase().into(),
+                also: format!("{} {}", about.to_lowercase(), also_of_page(tab)).into(),
             }
         });
         FIXED.iter().cloned().chain(brushes).chain(pages).collect()
@@ -194,6 +206,12 @@ const FIXED: &[ActionEntry] = &[
     entry(Action::Top, "View from above", key(Key::Num9), "camera top"),
     entry(Action::Bottom, "View from below", shift(Key::Num9), "camera bottom"),
     entry(Action::Perspective, "Perspective or orthographic", key(Key::Num5), "camera parallel"),
+    entry(
+        Action::FourViews,
+        "Four views or one",
+        key(Key::Num4),
+        "camera split quad front right top orthographic",
+    ),
     entry(Action::NextMaterial, "Next material", key(Key::M), "matcap colour"),
     entry(Action::Facets, "Smooth or flat shading", ctrl(Key::F), "facets"),
     entry(Action::Ssao, "Ambient occlusion", shift(Key::H), "shade hollows cavity depth"),
@@ -232,6 +250,7 @@ const FIXED: &[ActionEntry] = &[
     entry(Action::Search, "Search actions", ctrl(Key::K), "find command palette"),
     entry(Action::Panels, "Panels", key(Key::N), "hide show full view"),
     entry(Action::LightOrDark, "Light or dark", None, "theme preferences"),
+    entry(Action::Sound, "Sound of the contact", None, "audio hear mute sonification volume"),
     entry(Action::LargerText, "Larger text", ctrl(Key::Plus), "scale zoom"),
     entry(Action::SmallerText, "Smaller text", ctrl(Key::Minus), "scale zoom"),
     entry(Action::Lesson, "First lesson", None, "tutorial learn help begin hints"),
@@ -304,7 +323,11 @@ pub fn search(text: &str) -> Vec<&'static ActionEntry> {
             let names = [e.action.title(), e.name.to_string()]
                 .map(|n| n.to_lowercase().replace(['-', '_'], " "));
             let in_name = |w: &str| names.iter().any(|name| name.contains(w));
-            let holds = |w: &&str| in_name(w) || e.also.contains(*w);
+            let about = match e.action {
+                Action::Page(tab) => tab.about().to_lowercase(),
+                _ => String::new(),
+            };
+            let holds = |w: &&str| in_name(w) || e.also.contains(*w) || about.contains(*w);
             let rank = if names.iter().any(|name| name.starts_with(text.trim())) {
                 0
             } else if words.iter().all(|w| in_name(w)) {
@@ -347,6 +370,7 @@ mod tests {
             assert!(found.iter().any(|e| e.action == Action::Thickness), "{text}");
         }
         assert_eq!(search("annulla")[0].action, Action::Undo);
+        assert_eq!(search("lingua")[0].action, Action::Page(Tab::More));
         assert_eq!(search("undo")[0].action, Action::Undo);
         assert_eq!(search("clay-strips")[0].action, Action::Brush(BrushKind::ClayStrips));
         assert_eq!(Action::Brush(BrushKind::Smooth).entry().name, "Smooth brush");
@@ -360,6 +384,7 @@ mod tests {
         assert_eq!(search("stl")[0].action, Action::Export);
         assert_eq!(search("clay")[0].action, Action::Brush(BrushKind::Clay));
         assert_eq!(search("paint")[0].action, Action::Brush(BrushKind::Paint));
+        assert_eq!(search("language")[0].action, Action::Page(Tab::More));
         assert_eq!(search("shortcuts")[0].action, Action::Keys);
         assert!(search("timing").iter().any(|e| e.action == Action::Page(Tab::Loop)));
         assert_eq!(search("").len(), all().len());

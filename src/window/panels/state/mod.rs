@@ -31,6 +31,7 @@ pub mod tablet_keys;
 pub mod thickness;
 pub mod ui;
 pub mod view;
+pub mod views;
 
 pub use action::{Action, ActionEntry};
 pub use brush_panel::BrushPanel;
@@ -59,3 +60,4 @@ pub use tablet_keys::{TabletKeys, TabletKeysPage};
 pub use thickness::{ThicknessSummary, ThinSpot, WallsPage};
 pub use ui::UiState;
 pub use view::{FrameFigures, View};
+pub use views::{ViewKind, Views};

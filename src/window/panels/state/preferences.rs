@@ -94,6 +94,8 @@ pub struct Preferences {
     pub speed_is_pressure: bool,
     /// A stroke of a tablet's pen is shown where the pen will be when the frame is seen.
     pub lead_strokes: bool,
+    /// What the pens and hands do to the clay is heard.
+    pub sound: bool,
     /// What two fingers on a touch screen do when they move together.
     pub two_fingers: TwoFingers,
     #[serde(alias = "done")]
@@ -119,6 +121,7 @@ impl Default for Preferences {
             smooth_edges: false,
             speed_is_pressure: true,
             lead_strokes: true,
+            sound: false,
             two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),

@@ -18,6 +18,7 @@ use sculptd_engine::scene::{ObjectId, Primitive};
 
 use super::action::Action;
 use super::outliner::Pairing;
+use super::views::ViewKind;
 
 /// What a panel asks for.
 #[derive(Debug, Clone)]
@@ -27,6 +28,8 @@ pub enum UiRequest {
     /// To a place of the session's history.
     Jump(u64),
     Camera(Camera),
+    /// One view is shown, this one.
+    ShowView(ViewKind),
     /// The camera comes to look at this place.
     FlyTo(Vec3),
     OpenMesh(PathBuf),

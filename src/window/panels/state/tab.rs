@@ -28,7 +28,7 @@ impl Tab {
         (Tab::Files, "Files", "Open, export, pictures"),
         (Tab::Devices, "Pens", "Devices and their live values"),
         (Tab::Loop, "Loop", "Timing of the tick loop and of this window"),
-        (Tab::More, "More", "Preferences and messages"),
+        (Tab::More, "More", "Language, preferences and messages"),
     ];
 
     /// The name in files and messages: `page-look`.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::action::Action;
 use super::key_map::KeyMap;
 use super::tablet_keys::TabletKeys;
+use super::views::Views;
 use crate::language::{Translations, tr};
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
@@ -22,6 +23,8 @@ pub struct View<'a> {
     pub presets: &'a sculptd_clay::brush::Presets,
     /// The camera as the window has it: the world's own follows a tick later.
     pub camera: Camera,
+    /// The views of the clay; `camera` is that of the one in which is worked.
+    pub views: &'a Views,
     /// One line a device, as the adaptors describe themselves.
     pub devices: &'a [String],
     /// The controls of tablets; `None` in an installation.

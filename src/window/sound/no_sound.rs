@@ -1,0 +1,10 @@
+//! Why nothing is heard.
+
+/// Why nothing plays.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoSound {
+    /// The program was built without sound.
+    NotBuilt,
+    /// What the sound system said.
+    Failed(String),
+}
