@@ -64,9 +64,9 @@ fn put_halves(out: &mut Vec<u8>, values: impl ExactSizeIterator<Item = u16>) {
 }
 
 /// Reads what [`put_words`] and [`put_halves`] wrote.
-struct Planes<'a>(&'a [u8]);
+struct PlaneReader<'a>(&'a [u8]);
 
-impl<'a> Planes<'a> {
+impl<'a> PlaneReader<'a> {
     fn bytes(&mut self, count: usize) -> Result<&'a [u8], BadPage> {
         let (bytes, rest) = self.0.split_at_checked(count).ok_or(BadPage)?;
         self.0 = rest;
@@ -152,7 +152,7 @@ impl Page {
         let size = u32::from_le_bytes(*size) as usize;
         let (head, bytes) = bytes.split_at_checked(size).ok_or(BadPage)?;
         let head: PageHead = postcard::from_bytes(head).map_err(|_| BadPage)?;
-        let mut from = Planes(bytes);
+        let mut from = PlaneReader(bytes);
         let (own, halo) = (head.own as usize, head.halo as usize);
         let all = own.checked_add(halo).ok_or(BadPage)?;
         let kind = |byte: &u8| match byte {

@@ -13,7 +13,7 @@ use std::time::Duration;
 use glam::Vec2;
 use serde::Serialize;
 
-use super::live::raise_priority;
+use super::priority::raise_priority;
 use crate::config::{Config, LoopConfig};
 use sculptd_clay::{Clay, Workers};
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample};

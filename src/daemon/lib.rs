@@ -37,6 +37,7 @@ pub mod pen_trail;
 pub mod people;
 pub mod polygons;
 pub mod present_latency;
+pub mod priority;
 pub mod published;
 pub mod quad_job;
 pub mod remesh_job;

@@ -34,7 +34,8 @@ pub enum To {
 pub enum Event {
     /// The next frame to be stepped.
     Frame(Arc<Frame>),
-    /// The next bytes of a checkpoint, as [`sculptd_engine::checkpoint::Captured::write`] made them.
+    /// The next bytes of a checkpoint, as [`sculptd_engine::checkpoint::Captured::write`] made
+    /// them.
     RestorePart {
         /// Whether they are its first: what came before was of another.
         first: bool,

@@ -225,8 +225,8 @@ impl Shared {
     }
 
     /// Waits until the station was let in, and gives its first world and the host's rate; without a
-    /// world (a device sees none), as soon as it has a number. `coming` is told the bytes of the world
-    /// that have come.
+    /// world (a device sees none), as soon as it has a number. `coming` is told the bytes of the
+    /// world that have come.
     ///
     /// # Errors
     /// [`SharedError::Refused`], [`SharedError::Silent`]

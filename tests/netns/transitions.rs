@@ -1,5 +1,5 @@
-//! What a session's file holds of each device's input: `transitions FILE`. One line of JSON: samples
-//! and those that did more than move, by the device's number; a person of a shared sculpture has
+//! What a session's file holds of each device's input: `transitions FILE`. One line of JSON:
+//! samples and those that did more than move, by the device's number; a person of a shared sculpture has
 //! the numbers from 256 times their own.
 
 use std::collections::BTreeMap;

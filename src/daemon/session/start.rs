@@ -1,5 +1,5 @@
-//! What a session begins with: a mesh; or, where a person joined a shared sculpture, the world as it
-//! was then.
+//! What a session begins with: a mesh; or, where a person joined a shared sculpture, the world as
+//! it was then.
 //!
 //! In the file the world's checkpoint lies behind a mesh that stands for nothing, so that all that
 //! guards a start guards it too: its sum, and its second copy.

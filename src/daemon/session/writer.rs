@@ -23,7 +23,7 @@ use super::input_end::{InputEnd, begin_log, upgrade};
 use super::shared_memory_log::LogName;
 use super::start::SessionStart;
 use super::syncer::Syncer;
-use crate::live::raise_priority_below;
+use crate::priority::raise_priority_below;
 use crate::session::shared_memory_log;
 use crate::session::shared_memory_log::SharedMemoryLog;
 use crate::tick::Journal;

@@ -95,8 +95,8 @@ impl WindowState {
         }
     }
 
-    /// The rings of others who share the sculpture, the gizmo, as large as it is in a view, the held
-    /// object, the tracked hands.
+    /// The rings of others who share the sculpture, the gizmo, as large as it is in a view, the
+    /// held object, the tracked hands.
     fn objects_in_hand(&self, lines: &mut Vec<LineEnd>, state: &Published, camera: &Camera) {
         overlay::others(lines, state);
         self.gizmo_lines(lines, state, camera);

@@ -218,7 +218,7 @@ impl HistoryThread {
         ending: &AtomicBool,
         busy: &AtomicUsize,
     ) {
-        crate::live::raise_priority_below();
+        crate::priority::raise_priority_below();
         loop {
             let message = match inbox.recv_timeout(RETRY) {
                 Ok(message) => message,
