@@ -224,7 +224,7 @@ impl SharedArgs {
             config.r#loop.rate_hz = rate;
         }
         let (world, journal) = match world {
-            Some((world, journal)) => (*world, journal),
+            Some((world, journal)) => (*world, journal.map(|j| *j)),
             // It stands still.
             None => (alone(config)?.world, None),
         };

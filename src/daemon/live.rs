@@ -366,7 +366,8 @@ impl Ticking {
                     if let Some(old) = self.journal.take() {
                         garbage.discard_owned(old);
                     }
-                    if let Some((writer, thread)) = journal {
+                    if let Some(journal) = journal {
+                        let (writer, thread) = *journal;
                         self.journal = Some(Box::new(writer));
                         self.writing.push(thread);
                     }

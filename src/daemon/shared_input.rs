@@ -25,7 +25,7 @@ pub struct SharedTick {
 }
 
 /// A session that records a shared world from where it was taken over.
-pub type SharedJournal = (SessionWriter, WriterThread);
+pub type SharedJournal = Box<(SessionWriter, WriterThread)>;
 
 /// What the loop does next.
 #[derive(Debug)]

@@ -26,13 +26,16 @@ pub enum Job {
     Dump(Box<HashView>, PathBuf),
 }
 
+/// A world that came as a checkpoint; and its session, where one is written, or why it is not.
+pub type RestoredWorld = (Box<World>, Result<Option<SharedJournal>, String>);
+
 /// From the worker.
 pub enum Done {
     Hash(HashView, u64),
     /// The next part of a checkpoint, and whether it is the last.
     CheckpointPart(u64, Vec<u8>, bool),
     /// The world; and its session, where one is written, or why it is not.
-    Restored(Option<(Box<World>, Result<Option<SharedJournal>, String>)>),
+    Restored(Option<RestoredWorld>),
 }
 
 /// The worker's thread.

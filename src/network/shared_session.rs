@@ -45,7 +45,7 @@ impl SharedSession {
         let journal = session::create(&path, start, &settings).map_err(|e| e.to_string())?;
         self.taken = true;
         tracing::info!("recorded from here on in {}", path.display());
-        Ok(journal)
+        Ok(Box::new(journal))
     }
 }
 

@@ -2,6 +2,8 @@
 //! samples and those that did more than move, by the device's number; a person of a shared sculpture has
 //! the numbers from 256 times their own.
 
+#![allow(clippy::print_stdout)]
+
 use std::collections::BTreeMap;
 
 fn main() {
