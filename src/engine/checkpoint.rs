@@ -69,8 +69,8 @@ impl Captured {
     }
 
     /// As bytes, part by part as they are made on all cores: the head, then the pages of each
-    /// object in order, some to a block; head and blocks are compressed by themselves, and the length of
-    /// each is before it. `put` takes each part, and whether it is the last.
+    /// object in order, some to a block; head and blocks are compressed by themselves, and the
+    /// length of each is before it. `put` takes each part, and whether it is the last.
     pub fn write(&self, mut put: impl FnMut(&[u8], bool)) {
         let each = || self.scene.each(&self.active).map(|(_, clay)| clay);
         let objects = each().map(|clay| ObjectHead {
