@@ -495,13 +495,14 @@ fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     warn(&args.out, &out.warnings);
     answer(json, out, |w| {
         for r in &out.results {
+            // An open result has none.
+            let volume = r.volume.map(|v| format!("volume {v}, ")).unwrap_or_default();
             writeln!(
                 w,
-                "{}: {} vertices, {} faces, volume {:?}, area {}, {} components -> {}",
+                "{}: {} vertices, {} faces, {volume}area {}, {} components -> {}",
                 r.name,
                 r.vertices,
                 r.faces,
-                r.volume,
                 r.area,
                 r.components,
                 r.file.display()
