@@ -6,9 +6,8 @@ use std::time::Duration;
 
 use super::Fail;
 use sculptd_daemon::config::Config;
-use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::shared_input::SharedInput;
-use sculptd_daemon::startup::Begun;
+use sculptd_daemon::startup::{Begun, session_settings};
 use sculptd_devices::Clock;
 use sculptd_network::join_link::{JoinLink, MAX_LINK, is_link, sculpture_name};
 use sculptd_network::keyring::{Entropy, Invitation, Keyring};
@@ -235,15 +234,8 @@ impl SharedArgs {
 /// `session`: a file of which a session is made, and whether it is one already.
 fn settings(config: &Config, name: &str, session: Option<(&Path, bool)>) -> SharedSettings {
     let workers = config.r#loop.worker_count();
-    let begun_with = Settings {
-        rate_hz: config.r#loop.rate_hz,
-        dab_budget: config.r#loop.dab_budget,
-        undo_bytes: config.undo.bytes,
-        camera: config.camera.camera(),
-        brush: config.brush,
-        hands: config.hand,
-    };
-    let session = session.map(|(path, taken)| SharedSession::new(path, begun_with, taken));
+    let begun = session_settings(config);
+    let session = session.map(|(path, taken)| SharedSession::new(path, begun, taken));
     SharedSettings { workers, dumps: data_folder("differences").join(name), session }
 }
 

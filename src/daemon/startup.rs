@@ -104,6 +104,18 @@ pub fn world(mesh: Clay, config: &Config) -> World {
     World::new(mesh, config.camera.camera(), config.brush, workers, options)
 }
 
+/// What a fresh session keeps of a configuration.
+pub fn session_settings(config: &Config) -> Settings {
+    Settings {
+        rate_hz: config.r#loop.rate_hz,
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: config.undo.bytes,
+        camera: config.camera.camera(),
+        brush: config.brush,
+        hands: config.hand,
+    }
+}
+
 /// A world, and the session that records it, if one was asked for.
 #[derive(Debug)]
 pub struct Begun {
@@ -240,14 +252,7 @@ pub fn begin_with(
     let mut journal = match session {
         None => None,
         Some(path) => {
-            let settings = Settings {
-                rate_hz: config.r#loop.rate_hz,
-                dab_budget: config.r#loop.dab_budget,
-                undo_bytes: config.undo.bytes,
-                camera: config.camera.camera(),
-                brush: config.brush,
-                hands: config.hand,
-            };
+            let settings = session_settings(config);
             let (mut writer, mut thread) = session::create(path, &loaded.plain, &settings)?;
             let keeper = Keeper::start(path, &mut world, 0, None, config.undo.history_bytes);
             keep(keeper, &mut writer, &mut thread, &mut warnings);

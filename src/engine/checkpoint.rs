@@ -200,6 +200,9 @@ impl Restoring {
             }
             clays.push(clay);
         }
+        if pages.next().is_some() {
+            return Err(BadCheckpoint);
+        }
         let options = WorldOptions { dab_budget, undo_bytes, hands };
         World::restore(clays, saved, workers, options).map_err(|_| BadCheckpoint)
     }

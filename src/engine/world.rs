@@ -568,6 +568,8 @@ fn goes_on_by_time(brush: &BrushSettings) -> bool {
 }
 
 #[cfg(test)]
+mod checkpoint_tests;
+#[cfg(test)]
 mod face_set_tests;
 #[cfg(test)]
 mod layer_tests;

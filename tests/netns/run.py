@@ -207,6 +207,19 @@ def transitions(args, session):
     return {int(k): v["transitions"] for k, v in json.loads(out.stdout).items()}
 
 
+def played_alone(args, folder, count, seconds):
+    """Recordings of that length, K.hid; the transitions of each where it is played alone, and the longest's seconds."""
+    expected, lasting = [], 0
+    for k in range(count):
+        to = folder / f"{k}.hid"
+        lasting = max(lasting, lengthened(args.recordings[k % len(args.recordings)], seconds, to))
+        alone = folder / f"alone-{k}.sculpt"
+        subprocess.run([args.binary, "run", "--headless", "--play-device", to, "--session", alone], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        expected.append(sum(transitions(args, alone).values()))
+    return expected, lasting
+
+
 def begin(args, air, folder, people, host_words=(), words=lambda k: ()):
     keys, at = folder / "keys", "tcp/10.77.0.1:7447"
     host = Daemon(args.binary, air, 0, folder / "0", "--host", "rig", "--keys", keys, "--as", "person-0",
@@ -221,14 +234,7 @@ def begin(args, air, folder, people, host_words=(), words=lambda k: ()):
 
 def strokes(args, folder, claim):
     count, seconds = args.people, args.minutes * 60
-    expected, lasting = [], 0
-    for k in range(count):
-        to = folder / f"{k}.hid"
-        lasting = max(lasting, lengthened(args.recordings[k % len(args.recordings)], seconds, to))
-        alone = folder / f"alone-{k}.sculpt"
-        subprocess.run([args.binary, "run", "--headless", "--play-device", to, "--session", alone], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        expected.append(sum(transitions(args, alone).values()))
+    expected, lasting = played_alone(args, folder, count, seconds)
     mesh = folder / "ball.ply"
     # A join takes about as long as its bytes at what TCP makes of such a network: 300 kbit/s.
     for words in [["run", "--headless", "--for", "0.1", "--export", folder / "fine.ply"],
@@ -302,14 +308,7 @@ def kills(args, folder, claim):
     sculptors, tablets = 3, 2
     # A kill and a return take about that long.
     seconds = args.times * 3.5
-    expected, lasting = [], 0
-    for k in range(tablets):
-        to = folder / f"{k}.hid"
-        lasting = max(lasting, lengthened(args.recordings[k % len(args.recordings)], seconds, to))
-        alone = folder / f"alone-{k}.sculpt"
-        subprocess.run([args.binary, "run", "--headless", "--play-device", to, "--session", alone], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        expected.append(sum(transitions(args, alone).values()))
+    expected, lasting = played_alone(args, folder, tablets, seconds)
     air = Air(sculptors + tablets + 1, args.delay_ms / 1e3, 0, 0, 0, args.seed)
     air.start()
     keys, serial = folder / "keys", [0]

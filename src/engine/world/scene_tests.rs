@@ -80,7 +80,7 @@ fn primitive(shape: PrimitiveShape, edge: f64) -> NewObject {
 }
 
 /// Everything that undo must bring back, in words.
-fn state(world: &World) -> String {
+pub(super) fn state(world: &World) -> String {
     let scene = world.scene();
     let each = scene.objects().iter().map(|o| {
         let size = (o.middle, o.extent);
@@ -94,7 +94,7 @@ fn one_of(world: &World) -> ObjectId {
     world.scene().objects()[0].id
 }
 
-pub(super) struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
     pub(super) fn roll(&mut self, most: usize) -> usize {
@@ -179,7 +179,7 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
 }
 
 /// One random operation.
-fn operate(world: &mut World, dice: &mut Dice) {
+pub(super) fn operate(world: &mut World, dice: &mut Dice) {
     let id = dice.object(world);
     let full = world.scene().objects().len() > 8;
     match dice.roll(47) {

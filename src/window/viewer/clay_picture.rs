@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::gpu::clay_target;
 use super::preview::Preview;
 use super::provisional::ProvisionalDabs;
 use super::renderer::LineEnd;
@@ -54,16 +55,7 @@ impl ClayPicture {
         if let Some(texture) = self.texture.as_ref().filter(fits) {
             return texture.clone();
         }
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("clay"),
-            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = clay_target(device, "clay", size, format);
         (self.texture, self.key) = (Some(texture.clone()), None);
         texture
     }

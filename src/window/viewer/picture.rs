@@ -5,7 +5,7 @@ use std::sync::mpsc;
 use image::RgbaImage;
 
 use super::environment::Environment;
-use super::gpu::{Gpu, NoViewer, instance};
+use super::gpu::{Gpu, NoViewer, clay_target, instance};
 use super::renderer::{Renderer, Scene};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -73,16 +73,7 @@ pub fn paint(
 ) -> Result<RgbaImage, NoViewer> {
     let format = renderer.format();
     let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("picture"),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let texture = clay_target(&gpu.device, "picture", (width, height), format);
     // Rows are padded to what copies need.
     let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let bytes = gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -3,6 +3,7 @@
 
 use std::sync::mpsc;
 
+use super::gpu::clay_target;
 use super::objects::{self, Stance};
 use super::renderer::{Beside, Scene};
 use super::state::WindowState;
@@ -71,18 +72,10 @@ impl WindowState {
         let device = &self.gpu.device;
         let size = wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 };
         let format = self.clay_format;
-        let texture = self.step_pictures.target.get_or_insert_with(|| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("thumb"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        });
+        let texture = self
+            .step_pictures
+            .target
+            .get_or_insert_with(|| clay_target(device, "thumb", SIZE, format));
         let bytes = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("thumb"),
             size: u64::from(SIZE.0 * SIZE.1 * 4),
