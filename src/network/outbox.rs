@@ -1,4 +1,6 @@
-//! The own input on its way to the log: numbered, and kept until a replica has it too.
+//! The own input on its way to the log: numbered, and kept until a replica has it too, and a while
+//! longer: of a network that was split in two, one part's log is given up when it heals, and what
+//! only that one had is sent again.
 
 use std::collections::VecDeque;
 
@@ -12,29 +14,51 @@ const CONGESTED: usize = 2048;
 /// Samples and commands of one message.
 const PER_MESSAGE: usize = 512;
 
-/// The own batches that are not acknowledged.
+/// Acknowledged batches that are kept: at 120 a second the last two minutes, where every tick has
+/// some.
+const KEPT: usize = 14_400;
+/// Acknowledged batches that are kept although they have a mesh or the like.
+const KEPT_LARGE: usize = 2;
+
+/// The own batches that are not acknowledged, and the newest of those that are.
 #[derive(Debug, Default)]
 pub struct Outbox {
-    waiting: VecDeque<(Batch, Option<u64>)>,
+    batches: VecDeque<(Batch, Option<u64>)>,
+    /// All up to this one are acknowledged.
+    acknowledged: u64,
+    /// Kept ones that own memory.
+    large: usize,
     /// The last of each device.
     last: Vec<Sample>,
     next: u64,
-    /// Samples that were left out because too much waits.
+    /// What was taken in, and what became of it.
+    pub counts: OutboxCounts,
+}
+
+/// What an outbox took in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OutboxCounts {
+    /// Samples that did more than move.
+    pub transitions: u64,
+    /// Samples that were left out because too much waits: all of them only moved.
     pub dropped: u64,
+    /// Batches that were acknowledged, are in no log that is left, and were not kept either.
+    pub lost: u64,
 }
 
 impl Outbox {
     /// Takes what the own devices and people gave in one tick.
     pub fn push(&mut self, samples: Vec<Sample>, commands: Vec<Command>) {
-        let congested = self.waiting.len() >= CONGESTED;
+        let congested = self.len() >= CONGESTED;
         let mut kept: Vec<(Sample, bool)> = Vec::with_capacity(samples.len());
         for sample in samples {
             let old = self.last.iter_mut().find(|l| l.device == sample.device);
             let moved = old.as_ref().is_some_and(|l| sample.only_moved_since(l));
             if congested && moved {
-                self.dropped += 1;
+                self.counts.dropped += 1;
                 continue;
             }
+            self.counts.transitions += u64::from(!moved);
             // Of motion within one tick the newest is enough.
             match kept.last_mut() {
                 Some((last, true)) if moved && last.device == sample.device => *last = sample,
@@ -56,40 +80,57 @@ impl Outbox {
             let samples: Vec<Sample> = samples.by_ref().take(MAX_ENTRIES).collect();
             let commands = commands.by_ref().take(MAX_ENTRIES).collect();
             let batch = Batch { person: 0, number: self.next, samples, commands };
-            self.waiting.push_back((batch, None));
+            self.batches.push_back((batch, None));
         }
     }
 
     /// Batches up to this one are in the log, and a replica has them.
     pub fn acknowledge(&mut self, through: u64) {
-        while self.waiting.front().is_some_and(|(b, _)| b.number <= through) {
-            self.waiting.pop_front();
+        while self.acknowledged < through.min(self.next) {
+            self.acknowledged += 1;
+            self.large += usize::from(self.get(self.acknowledged).is_some_and(is_large));
         }
+        while let Some((front, _)) = self.batches.front()
+            && front.number <= self.acknowledged
+            && (self.batches.len() - self.len() > KEPT || self.large > KEPT_LARGE)
+        {
+            self.large -= usize::from(is_large(front));
+            self.batches.pop_front();
+        }
+    }
+
+    fn get(&self, number: u64) -> Option<&Batch> {
+        let at = number.checked_sub(self.batches.front()?.0.number)?;
+        self.batches.get(at as usize).map(|(b, _)| b)
     }
 
     /// The log has the batches up to `applied`: what follows is numbered from the one after it, and
     /// is to be sent anew.
     pub fn begin_after(&mut self, applied: u64) {
-        let waiting = std::mem::take(&mut self.waiting);
-        let of_log = |b: &Batch| b.number <= applied;
         // The log of a new host may lack what was in the old one's: it is sent again under the same
-        // numbers. Where numbers were given to nobody else, a gap cannot be.
-        let contiguous = waiting.iter().find(|(b, _)| !of_log(b)).map(|(b, _)| b.number);
-        let shift = contiguous.map_or(0, |first| first as i64 - (applied as i64 + 1));
-        self.next = applied.max((self.next as i64 - shift) as u64);
-        for (mut batch, _) in waiting {
-            if !of_log(&batch) {
-                batch.number = (batch.number as i64 - shift) as u64;
-            }
-            self.waiting.push_back((batch, None));
+        // numbers. What is kept no longer left a gap, which nobody would ever fill.
+        let first = self.batches.front().map_or(self.next + 1, |(b, _)| b.number);
+        let lost = first.saturating_sub(applied + 1);
+        self.counts.lost += lost;
+        self.next = self.next.saturating_sub(lost).max(applied);
+        self.acknowledged = self.acknowledged.saturating_sub(lost).min(applied);
+        let (mut batches, mut large) = (std::mem::take(&mut self.batches), 0);
+        for (batch, sent) in &mut batches {
+            (batch.number, *sent) = (batch.number - lost, None);
+            large += usize::from(batch.number <= self.acknowledged && is_large(batch));
         }
+        (self.batches, self.large) = (batches, large);
+    }
+
+    fn from(&self, received: u64) -> usize {
+        self.batches.partition_point(|(b, _)| b.number <= received)
     }
 
     /// What is to be sent now: batches after `received` that were never sent, or longer ago than
     /// `patience_us`.
     pub fn due(&mut self, received: u64, now_us: u64, patience_us: u64) -> Vec<Batch> {
-        let (mut due, mut entries) = (Vec::new(), 0);
-        for (batch, sent) in self.waiting.iter_mut().filter(|(b, _)| b.number > received) {
+        let (mut due, mut entries, from) = (Vec::new(), 0, self.from(received));
+        for (batch, sent) in self.batches.range_mut(from..) {
             if sent.is_some_and(|at| now_us < at + patience_us) {
                 continue;
             }
@@ -105,29 +146,38 @@ impl Outbox {
 
     /// The batches after `received`, for a host that orders its own.
     pub fn after(&self, received: u64, most: usize) -> impl Iterator<Item = &Batch> {
-        let from = self.waiting.iter().map(|(b, _)| b).skip_while(move |b| b.number <= received);
-        from.take(most)
+        self.batches.range(self.from(received)..).map(|(b, _)| b).take(most)
     }
 
     /// How many are after `received`.
     pub fn count_after(&self, received: u64) -> usize {
-        self.waiting.iter().rev().take_while(|(b, _)| b.number > received).count()
+        self.batches.len() - self.from(received)
+    }
+
+    /// The number of the last batch.
+    pub fn last(&self) -> u64 {
+        self.next
+    }
+
+    /// All up to this one are acknowledged.
+    pub fn acknowledged(&self) -> u64 {
+        self.acknowledged
     }
 
     /// How many are not acknowledged.
     pub fn len(&self) -> usize {
-        self.waiting.len()
+        self.count_after(self.acknowledged)
     }
 
     /// Whether all are acknowledged.
     pub fn is_empty(&self) -> bool {
-        self.waiting.is_empty()
+        self.len() == 0
     }
+}
 
-    /// Everything that waits is given up.
-    pub fn clear(&mut self) {
-        self.waiting.clear();
-    }
+/// Whether a batch is more than some hundred bytes.
+fn is_large(batch: &Batch) -> bool {
+    batch.commands.iter().any(Command::owns_memory)
 }
 
 #[cfg(test)]
@@ -148,7 +198,11 @@ mod tests {
             outbox.push(vec![sample(k % 100 < 50, k as f32)], vec![]);
         }
         let all = outbox.due(0, 0, 0).len() as u64;
-        assert!(all > 0 && outbox.dropped > CONGESTED as u64 / 2, "{} dropped", outbox.dropped);
+        assert!(
+            all > 0 && outbox.counts.dropped > CONGESTED as u64 / 2,
+            "{} dropped",
+            outbox.counts.dropped
+        );
         let waiting: Vec<_> = outbox.after(0, usize::MAX).collect();
         let tips = |s: &Sample| matches!(s.body, Body::Pen(p) if p.tip);
         let transitions =
@@ -169,12 +223,35 @@ mod tests {
         outbox.begin_after(4);
         let again: Vec<u64> = outbox.due(4, 120, 100).iter().map(|b| b.number).collect();
         assert_eq!(again, [5, 6]);
-        // It lacks two that were: their numbers are given anew, and nothing waits for ever.
+        // It lacks two that were: they are kept, and go again.
         let mut outbox = Outbox::default();
         (0..6).for_each(|_| outbox.push(vec![], vec![Command::Undo]));
         outbox.acknowledge(5);
+        assert_eq!(outbox.len(), 1);
         outbox.begin_after(3);
         let again: Vec<u64> = outbox.due(3, 120, 100).iter().map(|b| b.number).collect();
-        assert_eq!(again, [4]);
+        assert_eq!((again, outbox.len(), outbox.counts.lost), (vec![4, 5, 6], 3, 0));
+    }
+
+    #[test]
+    fn what_is_kept_no_longer_leaves_no_gap() {
+        let mut outbox = Outbox::default();
+        let many = KEPT as u64 + 10;
+        (0..many).for_each(|_| outbox.push(vec![], vec![Command::Undo]));
+        outbox.acknowledge(many);
+        assert_eq!((outbox.len(), outbox.count_after(0)), (0, KEPT));
+        outbox.begin_after(4);
+        assert_eq!(outbox.counts.lost, 6);
+        let again = outbox.due(4, 0, 100);
+        assert_eq!(again.first().map(|b| b.number), Some(5));
+        // None waits, and the log lacks all: what comes next is the next.
+        let mut outbox = Outbox::default();
+        outbox.begin_after(100);
+        outbox.push(vec![], vec![Command::Undo]);
+        outbox.acknowledge(101);
+        (outbox.batches, outbox.large) = (VecDeque::new(), 0);
+        outbox.begin_after(40);
+        outbox.push(vec![], vec![Command::Undo]);
+        assert_eq!(outbox.due(40, 0, 100).first().map(|b| b.number), Some(41));
     }
 }

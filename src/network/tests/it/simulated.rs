@@ -81,6 +81,8 @@ pub struct Replica {
     pub alive: bool,
     /// Nothing comes to it or from it.
     pub cut_off: bool,
+    /// Of a network that is split, the part it is in.
+    pub part: u8,
     pub notes: Vec<String>,
     pub refused: Option<String>,
     pub differed: usize,
@@ -159,6 +161,7 @@ impl Simulation {
             alone: (ball(), (0, 0)),
             alive: true,
             cut_off: false,
+            part: 0,
             notes: Vec::new(),
             refused: None,
             differed: 0,
@@ -346,7 +349,7 @@ impl Simulation {
     fn send(&mut self, from: usize, to: To, bytes: &[u8]) {
         self.replicas[from].bytes.0 += bytes.len() as u64;
         let all: Vec<usize> = (0..self.replicas.len())
-            .filter(|&k| k != from)
+            .filter(|&k| k != from && self.replicas[k].part == self.replicas[from].part)
             .filter(|&k| match to {
                 To::Host => self.replicas[k].station.hosts(),
                 To::Heirs => true,
@@ -389,6 +392,9 @@ impl Simulation {
         for (i, r) in self.replicas.iter().enumerate().filter(|(_, r)| r.alive) {
             let waits = r.station.outbox().len();
             assert_eq!(waits, 0, "replica {i}: {}", r.notes.join("\n"));
+            let (given, lost) = (r.station.outbox().last(), r.station.outbox().counts.lost);
+            let ordered = r.station.log().applied(r.station.person());
+            assert_eq!((ordered, lost), (given, 0), "replica {i}: {}", r.notes.join("\n"));
         }
     }
 
@@ -400,7 +406,7 @@ impl Simulation {
         for (i, r) in self.replicas.iter().enumerate().filter(|(_, r)| r.alive) {
             let told = r.notes.join("\n");
             assert_eq!(r.world.as_ref().map(World::hash), hash, "replica {i} differs:\n{told}");
-            assert_eq!(r.station.outbox().dropped, 0);
+            assert_eq!(r.station.outbox().counts.dropped, 0);
             assert_eq!(r.differed, 0, "replica {i}:\n{told}");
             for (person, applied) in log.people() {
                 let own = r.station.log().applied(person.person);
