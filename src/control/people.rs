@@ -12,10 +12,32 @@ pub struct PeopleReply {
     pub own: u8,
     /// All who ever came, in the order of their numbers.
     pub people: Vec<PersonInfo>,
+    /// What became of the input of this daemon's devices and commands; `null`: nothing is shared.
+    #[serde(default)]
+    pub own_input: Option<OwnInput>,
     /// The newest undo or redo of the own person that was refused, as a step of somebody else is in
     /// the way; `null`: none was.
     #[serde(default)]
     pub undo_refused: Option<UndoRefused>,
+}
+
+/// What became of the own input: all of it is in the sculpture when `ordered` is `batches`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OwnInput {
+    /// Samples that did more than move.
+    pub transitions: u64,
+    /// Batches that they, and the commands, were put in: at most one for each tick.
+    pub batches: u64,
+    /// Batches that are in the order that all step.
+    pub ordered: u64,
+    /// Batches that are in it, and that another replica has too.
+    pub acknowledged: u64,
+    /// Samples that only moved and were left out, as too much waited.
+    pub dropped: u64,
+    /// Batches that were acknowledged and are in no order that is left: none, but where a network
+    /// was split for minutes.
+    pub lost: u64,
 }
 
 /// An undo or redo that was refused.

@@ -286,6 +286,7 @@ impl Ticking {
             let mut state = Published::of(&mut self.world, shown);
             if let Some(shared) = &mut self.shared {
                 state.people = Some(shared.people());
+                state.own_input = shared.own_input();
                 if let Some(ahead) = shared.ahead(&self.world) {
                     state.show_ahead(ahead);
                 }

@@ -33,6 +33,23 @@ pub struct PeopleHere {
     pub all: Vec<Person>,
 }
 
+/// What became of the own input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OwnInput {
+    /// Samples of the own devices that did more than move.
+    pub transitions: u64,
+    /// Batches that they, and the commands, were put in: at most one for each tick.
+    pub batches: u64,
+    /// Batches that are in the order that all step.
+    pub ordered: u64,
+    /// Batches that are in it, and that another replica has too.
+    pub acknowledged: u64,
+    /// Samples that only moved and were left out, as too much waited.
+    pub dropped: u64,
+    /// Batches that were acknowledged and are in no order that is left.
+    pub lost: u64,
+}
+
 impl PeopleHere {
     /// What is known of a person.
     pub fn person(&self, number: u8) -> Option<&Person> {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use arc_swap::ArcSwap;
 use glam::Vec3;
 
-use crate::people::PeopleHere;
+use crate::people::{OwnInput, PeopleHere};
 use crate::tick_statistics::{Losses, Percentiles};
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{GarbageSink, Hit, Ray, Snapshot};
@@ -78,6 +78,8 @@ pub struct Published {
     pub redo_steps: usize,
     /// Who shares the sculpture; `None`: nothing is shared.
     pub people: Option<Arc<PeopleHere>>,
+    /// What became of the own input, where anything is shared.
+    pub own_input: OwnInput,
     /// The newest undo or redo of the own person that was refused: a step of somebody else is in
     /// the way.
     pub undo_refused: Option<UndoRefusal>,
@@ -177,6 +179,7 @@ impl Published {
             undo_steps: world.undo_steps() + usize::from(world.is_taken_back_by(&Command::Undo)),
             redo_steps: world.redo_steps(),
             people: None,
+            own_input: OwnInput::default(),
             undo_refused: world.undo_refused(),
             others,
             figures,

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::command_queue::QueuedCommand;
-use crate::people::PeopleHere;
+use crate::people::{OwnInput, PeopleHere};
 use crate::session::SessionWriter;
 use crate::session::writer::WriterThread;
 use sculptd_devices::Sample;
@@ -54,6 +54,8 @@ pub trait SharedInput: Send + std::fmt::Debug {
     fn ahead(&mut self, world: &World) -> Option<&mut World>;
     /// Who shares the sculpture; the same list as before, where nobody came or went.
     fn people(&self) -> Arc<PeopleHere>;
+    /// What became of the own input.
+    fn own_input(&self) -> OwnInput;
     /// Whether this daemon orders the input. It alone starts what a step asks for once.
     fn hosts(&self) -> bool;
 }

@@ -18,7 +18,8 @@
 //! * What is shown of the own strokes before they are ordered ([`local_echo`]) is a try on a copy,
 //!   and no part of what is stepped.
 //! * Input is acknowledged when a replica has it too; what is not is sent again, to the next host
-//!   where the first is gone. Nothing is stepped twice: batches are numbered.
+//!   where the first is gone. What was is kept for minutes, and sent again to a host that lacks it,
+//!   as another part of a split network had it. Nothing is stepped twice: batches are numbered.
 //! * Nobody without a key is listened to; what a member sends is bounded. Reading never panics.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
@@ -47,6 +48,8 @@ pub mod replica_log;
 #[cfg(feature = "zenoh")]
 mod replica_worker;
 pub mod seal;
+#[cfg(feature = "zenoh")]
+pub mod shared_error;
 #[cfg(feature = "zenoh")]
 pub mod shared_session;
 pub mod station;

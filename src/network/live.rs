@@ -16,16 +16,17 @@ use crossbeam_channel as cc;
 use crate::core::Event;
 use crate::executor::{Asked, Executor, HashView};
 use crate::local_echo::LocalEcho;
-use crate::people_here::{changes_people, people_here};
+use crate::people_here::{changes_people, own_input, people_here};
 use crate::policy;
 use crate::replica_worker::{Done, Job, work_on};
+use crate::shared_error::SharedError;
 use crate::shared_session::SharedSession;
 use crate::station::Station;
 use crate::transport::Transport;
 use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::samples::rounded;
 use sculptd_daemon::command_queue::QueuedCommand;
-use sculptd_daemon::people::PeopleHere;
+use sculptd_daemon::people::{OwnInput, PeopleHere};
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
 use sculptd_engine::command::Command;
@@ -39,6 +40,8 @@ const MAX_DEVICES: usize = 16;
 const ENOUGH: Duration = Duration::from_secs(3);
 /// Jobs of the worker beyond which no state is hashed: it misses a comparison.
 const MAX_JOBS: usize = 64;
+/// Between two words of what became of the own input.
+const TOLD_US: u64 = 100_000;
 /// Compared states that are kept for a dump.
 const KEPT_VIEWS: usize = 8;
 
@@ -56,6 +59,7 @@ enum ToLoop {
     /// Bytes of a checkpoint that have come.
     Coming(u64),
     People(Arc<PeopleHere>),
+    Input(OwnInput),
 }
 
 /// What a run is told of its shared sculpture.
@@ -96,6 +100,7 @@ pub struct SharedLink {
     /// The frame whose own tick is being stepped.
     stepping: Option<Arc<Frame>>,
     hosting: Arc<AtomicBool>,
+    own_input: OwnInput,
     people: Arc<PeopleHere>,
     /// Frames come here: a device is sent none, and its world stands still.
     sees: bool,
@@ -129,28 +134,6 @@ impl Drop for SharedThread {
             let _ = thread.join();
         }
     }
-}
-
-/// Why a sculpture cannot be shared.
-#[derive(Debug, thiserror::Error)]
-pub enum SharedError {
-    /// A thread or the network cannot be had.
-    #[error("{0}")]
-    Start(String),
-    /// The host says no.
-    #[error("not let in: {0}")]
-    Refused(String),
-    /// The session's file cannot be made.
-    #[error("the sculpture cannot be recorded: {0}")]
-    Session(String),
-    /// Nobody answers.
-    #[error("nobody hosts '{name}' here, or nobody answers: {last}")]
-    Silent {
-        /// The sculpture's name.
-        name: String,
-        /// The last that was heard.
-        last: String,
-    },
 }
 
 /// A station that runs.
@@ -201,6 +184,7 @@ impl Shared {
             differs: None,
             dumps: settings.dumps,
             hosting: hosting.clone(),
+            told_input: (0, OwnInput::default()),
             stop: stop.clone(),
         };
         let thread = std::thread::Builder::new()
@@ -216,6 +200,7 @@ impl Shared {
             frames: VecDeque::new(),
             stepping: None,
             hosting,
+            own_input: OwnInput::default(),
             people: Arc::default(),
             sees: true,
             lost: 0,
@@ -274,6 +259,7 @@ impl Shared {
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
                 Ok(ToLoop::People(people)) => self.link.people = people,
+                Ok(ToLoop::Input(own)) => self.link.own_input = own,
                 Ok(ToLoop::Coming(bytes)) => {
                     last_us = clock.now_us();
                     coming(bytes);
@@ -353,6 +339,7 @@ impl SharedInput for SharedLink {
             match self.from.try_recv() {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
                 Ok(ToLoop::People(people)) => self.people = people,
+                Ok(ToLoop::Input(own)) => self.own_input = own,
                 Ok(ToLoop::World(world, executor, journal)) => {
                     self.executor = executor;
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
@@ -388,6 +375,10 @@ impl SharedInput for SharedLink {
         self.people.clone()
     }
 
+    fn own_input(&self) -> OwnInput {
+        self.own_input
+    }
+
     fn hosts(&self) -> bool {
         self.hosting.load(Relaxed)
     }
@@ -412,6 +403,8 @@ struct Running {
     differs: Option<u64>,
     dumps: PathBuf,
     hosting: Arc<AtomicBool>,
+    /// What the loop was told last of the own input, and when.
+    told_input: (u64, OwnInput),
     stop: Arc<AtomicBool>,
 }
 
@@ -443,6 +436,7 @@ impl Running {
             }
             self.station.advance(self.clock.now_us());
             self.tell_events();
+            self.tell_input();
             self.send();
         }
         self.station.leave();
@@ -514,6 +508,14 @@ impl Running {
                     let _ = self.to_loop.send(ToLoop::Frame(frame));
                 }
             }
+        }
+    }
+
+    fn tell_input(&mut self) {
+        let (now_us, own) = (self.clock.now_us(), own_input(&self.station));
+        if own != self.told_input.1 && now_us >= self.told_input.0 + TOLD_US {
+            self.told_input = (now_us, own);
+            let _ = self.to_loop.send(ToLoop::Input(own));
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::core::Event;
 use crate::station::Station;
 use crate::wire::frame::{Arrival, Role};
-use sculptd_daemon::people::{PeopleHere, Person, PersonRole};
+use sculptd_daemon::people::{OwnInput, PeopleHere, Person, PersonRole};
 
 /// Everybody who ever came, and who of them is connected. A host that was killed is told as gone
 /// by its successor, five seconds after it took over.
@@ -20,6 +20,19 @@ pub fn people_here(station: &Station) -> PeopleHere {
     };
     let all = station.log().people().into_iter().map(person).collect();
     PeopleHere { own: station.person(), all }
+}
+
+/// What became of the own input.
+pub fn own_input(station: &Station) -> OwnInput {
+    let outbox = station.outbox();
+    OwnInput {
+        transitions: outbox.counts.transitions,
+        batches: outbox.last(),
+        ordered: station.log().applied(station.person()),
+        acknowledged: outbox.acknowledged(),
+        dropped: outbox.counts.dropped,
+        lost: outbox.counts.lost,
+    }
 }
 
 /// Whether what [`people_here`] gives may be another after this event.

@@ -33,6 +33,10 @@ const BULK: usize = 1024;
 /// Stations whose publisher is kept.
 const MAX_PUBLISHERS: usize = 256;
 
+/// A connection is given up after so long without a word. Nothing waits for that: who is gone is
+/// found by the stations. One that lives through a break is there again at once after it.
+const LEASE_MS: u32 = 20_000;
+
 /// Where others are found.
 #[derive(Debug, Clone, Default)]
 pub struct Endpoints {
@@ -66,15 +70,11 @@ fn locator(endpoint: &str) -> String {
     format!("{address}?mixed_rel=1{config}")
 }
 
-/// Opens a session. `lease_ms`: a silent connection is given up after so long; `None`: as Zenoh has
-/// it, ten seconds.
+/// Opens a session. `lease_ms`: a silent connection is given up after so long.
 ///
 /// # Errors
 /// Where an endpoint cannot be used, as a text.
-pub(crate) fn open_session(
-    endpoints: &Endpoints,
-    lease_ms: Option<u32>,
-) -> Result<zenoh::Session, String> {
+pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh::Session, String> {
     let mut config = zenoh::Config::default();
     let list = |all: &[String]| {
         let quoted: Vec<String> = all.iter().map(|e| format!("{:?}", locator(e))).collect();
@@ -95,11 +95,11 @@ pub(crate) fn open_session(
         set("connect/timeout_ms", "-1")?;
         set("connect/exit_on_failure", "false")?;
     }
+    set("connect/retry/period_max_ms", "2000")?;
+    set("transport/unicast/open_timeout", "5000")?;
     // A checkpoint over a slow way: who is gone is known by the lease.
     set("transport/link/tx/queue/congestion_control/block/wait_before_close", "120000000")?;
-    if let Some(lease_ms) = lease_ms {
-        set("transport/link/tx/lease", &lease_ms.to_string())?;
-    }
+    set("transport/link/tx/lease", &lease_ms.to_string())?;
     zenoh::open(config).wait().map_err(|e| e.to_string())
 }
 
@@ -109,7 +109,7 @@ impl ZenohLink {
     /// # Errors
     /// Where an endpoint cannot be used, as a text.
     pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
-        let session = open_session(endpoints, None)?;
+        let session = open_session(endpoints, LEASE_MS)?;
         let (sender, incoming) = cc::bounded(WAITING);
         let (bulk, waiting) = cc::bounded(BULK);
         let of_thread = session.clone();

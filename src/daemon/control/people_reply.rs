@@ -23,11 +23,19 @@ pub(super) fn people(shown: &Published) -> PeopleReply {
             pens: pens(p.number).map(pen).collect(),
         }
     };
-    let refused = shown.undo_refused;
+    let (refused, input) = (shown.undo_refused, shown.own_input);
     PeopleReply {
         shared: true,
         own: known.own,
         people: known.all.iter().map(info).collect(),
+        own_input: Some(people::OwnInput {
+            transitions: input.transitions,
+            batches: input.batches,
+            ordered: input.ordered,
+            acknowledged: input.acknowledged,
+            dropped: input.dropped,
+            lost: input.lost,
+        }),
         undo_refused: refused.map(|r| UndoRefused { tick: r.tick, redo: r.redo, by: r.by }),
     }
 }

@@ -74,7 +74,7 @@ impl InstallationLink {
         run: &str,
         endpoints: &Endpoints,
     ) -> Result<InstallationLink, String> {
-        let session = open_session(endpoints, Some(LEASE_MS))?;
+        let session = open_session(endpoints, LEASE_MS)?;
         let failed = |e: zenoh::Error| e.to_string();
         let (sender, requests) = cc::bounded(WAITING);
         let subscriber = session
@@ -132,7 +132,7 @@ impl StaffLink {
     /// # Errors
     /// Where an endpoint cannot be used, as a text.
     pub fn open(fleet: &str, endpoints: &Endpoints) -> Result<StaffLink, String> {
-        let session = open_session(endpoints, Some(LEASE_MS))?;
+        let session = open_session(endpoints, LEASE_MS)?;
         let failed = |e: zenoh::Error| e.to_string();
         let (sender, incoming) = cc::bounded(WAITING);
         let subscribe = |what: &str| {
