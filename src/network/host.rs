@@ -14,7 +14,8 @@ use crate::comparison::HashComparison;
 use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, To, ms};
 use crate::held_checkpoint::{HeldCheckpoint, drop_old, is_recent, people_at};
 use crate::host_limits::{
-    ALONE_US, BUSY_US, GONE_US, GREETINGS, MAX_MEMBERS, MAX_WAITING, PATIENCE, REST_US,
+    ALONE_US, BUSY_US, GONE_US, GREETINGS, HERE_ALREADY, MAX_MEMBERS, MAX_WAITING, PATIENCE,
+    REST_US,
 };
 use crate::host_members::{
     BatchQueue, Greeted, JoinedMember, PER_MESSAGE, SenderLimits, bounded, drop_silent, fitting,
@@ -146,9 +147,8 @@ impl Host {
         let own: Nonce = known.map_or_else(|| core.nonce(), |g| g.nonces.1);
         let (up, down) = invitation.secret.seals(&nonce, &own);
         let proof = invitation.secret.proof(&nonce, &own, &self.term);
-        let (nonces, at_us) = ((nonce, own), now_us);
+        let (nonces, at_us, term) = ((nonce, own), now_us, self.term);
         self.greeted.insert(from, Greeted { up, down, invitation, nonces, at_us });
-        let term = self.term;
         core.greet(To::Peer(from), &Greeting::Challenge { to: nonce, nonce: own, term, proof });
     }
 
@@ -225,7 +225,7 @@ impl Host {
             (Err(why), _) => Some(why),
             _ if !clean => Some("a name is text without control characters".into()),
             _ if name == core.name || self.members.values().any(there) => {
-                Some(format!("'{name}' is here already"))
+                Some(format!("'{name}' {HERE_ALREADY}"))
             }
             _ if self.members.len() >= MAX_MEMBERS => {
                 Some(format!("{MAX_MEMBERS} people are here, and no more are let in"))

@@ -26,3 +26,5 @@ pub const MAX_WANTED: u32 = 256;
 /// Frames after which a checkpoint is not given to who joins: another is made. Half a minute of
 /// frames takes less time to come than another checkpoint.
 pub const RECENT: u64 = 3600;
+/// The end of the reason why nobody else of the same name is let in.
+pub const HERE_ALREADY: &str = "is here already";

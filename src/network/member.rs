@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
+use crate::host_limits::HERE_ALREADY;
 use crate::keyring::{Invitation, Keyring};
 use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
@@ -81,6 +82,7 @@ pub struct Member {
     /// What a successor needs.
     pub succession: Option<(Keyring, Secret)>,
     hashes: BTreeMap<u64, u64>,
+    begun_us: u64,
     /// The host has been silent for too long.
     pub lost: bool,
     told: Option<String>,
@@ -104,6 +106,7 @@ impl Member {
             level: false,
             succession: None,
             hashes: BTreeMap::new(),
+            begun_us: now_us,
             lost: false,
             told: None,
         }
@@ -145,13 +148,16 @@ impl Member {
                 self.advance(core, now_us);
             }
             // Not sealed: anybody may have said it, so the greetings go on.
-            Greeting::Refused { to, reason }
-                if *to == own && self.told.as_ref() != Some(reason) =>
-            {
-                core.note(format!("not let in: {reason}"));
-                self.told = Some(reason.clone());
-            }
+            Greeting::Refused { to, reason } if *to == own => self.not_let_in(core, reason),
             _ => {}
+        }
+    }
+
+    /// Tells a reason once.
+    fn not_let_in(&mut self, core: &mut Core, reason: &str) {
+        if self.told.as_deref() != Some(reason) {
+            core.note(format!("not let in: {reason}"));
+            self.told = Some(reason.into());
         }
     }
 
@@ -168,6 +174,12 @@ impl Member {
             FromHost::Refused(why) => {
                 if why.ends_with("join again") {
                     self.level = false;
+                    return self.greet(core, now_us);
+                }
+                // Somebody who was here a moment ago is back before that was noticed.
+                let soon = core.person == 0 && now_us < self.begun_us + 3 * LOST_US;
+                if soon && why.ends_with(HERE_ALREADY) {
+                    self.not_let_in(core, &why);
                     return self.greet(core, now_us);
                 }
                 core.events.push_back(Event::Refused(why));

@@ -67,7 +67,7 @@ fn locator(endpoint: &str) -> String {
         return endpoint.into();
     }
     let (address, config) = endpoint.split_at(endpoint.find('#').unwrap_or(endpoint.len()));
-    format!("{address}?mixed_rel=1{config}")
+    format!("{address}?rel=1;mixed_rel=1{config}")
 }
 
 /// Opens a session. `lease_ms`: a silent connection is given up after so long.
@@ -95,7 +95,8 @@ pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh
         set("connect/timeout_ms", "-1")?;
         set("connect/exit_on_failure", "false")?;
     }
-    set("connect/retry/period_max_ms", "2000")?;
+    let retry = "{period_init_ms: 500, period_max_ms: 2000, period_increase_factor: 2}";
+    set("connect/retry", retry)?;
     set("transport/unicast/open_timeout", "5000")?;
     // A checkpoint over a slow way: who is gone is known by the lease.
     set("transport/link/tx/queue/congestion_control/block/wait_before_close", "120000000")?;
@@ -225,8 +226,11 @@ mod tests {
     #[test]
     fn udp_carries_datagrams_and_streams_where_it_does_not_say_how() {
         assert_eq!(locator("tcp/studio:7447"), "tcp/studio:7447");
-        assert_eq!(locator("udp/studio:7447"), "udp/studio:7447?mixed_rel=1");
-        assert_eq!(locator("udp/[::]:7447#iface=eth0"), "udp/[::]:7447?mixed_rel=1#iface=eth0");
+        assert_eq!(locator("udp/studio:7447"), "udp/studio:7447?rel=1;mixed_rel=1");
+        assert_eq!(
+            locator("udp/[::]:7447#iface=eth0"),
+            "udp/[::]:7447?rel=1;mixed_rel=1#iface=eth0"
+        );
         assert_eq!(locator("udp/studio:7447?rel=0"), "udp/studio:7447?rel=0");
     }
 }

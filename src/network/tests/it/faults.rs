@@ -153,3 +153,19 @@ fn what_each_part_of_a_split_network_acknowledged_is_in_the_one_sculpture() {
     assert_eq!(s.replicas.iter().filter(|r| r.station.hosts()).count(), 1);
     s.verify();
 }
+
+#[test]
+fn who_was_killed_and_is_back_at_once_is_let_in() {
+    let mut s = together(3, GOOD, 1.0, 12);
+    s.replicas[2].alive = false;
+    let key = s.keyring.0[0].clone();
+    let back = s.join("person 2", sculptd_network::wire::frame::Role::Sculptor, key);
+    // Until the host is sure that the first is gone.
+    s.run(1.0, |i| i < 2);
+    let told = s.replicas[back].notes.join("\n");
+    assert!(told.contains("'person 2' is here already"), "{told}");
+    s.run(4.0, |_| true);
+    s.run(3.0, |_| false);
+    s.verify();
+    assert_eq!((s.replicas[back].station.person(), s.replicas[back].refused.clone()), (3, None));
+}

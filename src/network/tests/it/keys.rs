@@ -61,7 +61,7 @@ fn a_name_is_had_by_one_at_a_time() {
     let first = s.join("Ada", Role::Sculptor, key.clone());
     s.run(2.0, |_| false);
     let second = s.join("Ada", Role::Sculptor, key);
-    s.run(2.0, |_| false);
+    s.run(4.0, |_| false);
     assert!(s.replicas[first].station.follows());
     assert!(s.replicas[second].refused.as_ref().is_some_and(|w| w.contains("here already")));
 }
