@@ -30,7 +30,7 @@ pub struct InviteArgs {
     /// name, and can be withdrawn without the others.
     #[arg(long = "as", value_name = "PERSON")]
     pub person: Option<String>,
-    /// Where the host listens, as udp/studio.example:7447. May be repeated; without it the guest
+    /// Where the host listens, as tcp/studio.example:7447. May be repeated; without it the guest
     /// finds the host on the local network.
     #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub connect: Vec<String>,
@@ -47,7 +47,7 @@ pub struct InviteArgs {
 fn endpoint(text: &str) -> Result<String, String> {
     match is_endpoint(text) {
         true => Ok(text.into()),
-        false => Err("expected an endpoint as udp/studio.example:7447".into()),
+        false => Err("expected an endpoint as tcp/studio.example:7447".into()),
     }
 }
 

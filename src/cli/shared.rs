@@ -47,11 +47,10 @@ pub struct SharedArgs {
     /// What the others call you; without it, what the link says, or the name of your account.
     #[arg(long = "as", value_name = "NAME")]
     pub person: Option<String>,
-    /// Where to listen for others, as udp/0.0.0.0:7447, or tcp/ where UDP does not pass. May be
-    /// repeated; without it, any port.
+    /// Where to listen for others, as tcp/0.0.0.0:7447. May be repeated; without it, any port.
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Vec<String>,
-    /// Whom to connect to, as udp/studio.local:7447. May be repeated. Others on the local network
+    /// Whom to connect to, as tcp/studio.local:7447. May be repeated. Others on the local network
     /// are found without it.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Vec<String>,

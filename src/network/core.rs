@@ -220,6 +220,12 @@ impl RoundTrip {
         }
     }
 
+    /// Whether a message and its answer take longer than a fifth of the silence after which a host
+    /// is gone.
+    pub fn is_long(&self) -> bool {
+        self.smooth_us > LOST_US as f64 / 5.0
+    }
+
     /// What was sent longer ago and is not confirmed is sent again.
     pub fn patience_us(&self) -> u64 {
         // Both sides send at intervals: a confirmation waits for the next message.

@@ -581,7 +581,7 @@ impl Host {
         }
         let behind = wants && member.sent < last;
         let busy = now_us < self.last_input_us + BUSY_US;
-        member.next_us = now_us + until_next(behind, busy);
+        member.next_us = now_us + until_next(behind, busy, member.trip.is_long());
         self.send_frames(core, to, &frames, now_us);
     }
 

@@ -108,9 +108,13 @@ pub struct BatchQueue {
     pub early: BTreeMap<u64, Batch>,
 }
 
-/// Microseconds until the next message to a member who lacks frames, while somebody gives input.
-pub fn until_next(behind: bool, busy: bool) -> u64 {
-    match (behind, busy) {
+/// Microseconds until the next message to a member who lacks frames, while somebody gives input,
+/// over a long way.
+///
+/// TCP sends a lost packet again after three that follow it, or after two round trips and more: on
+/// a long way an idle host would be silent for over [`crate::core::LOST_US`] with each.
+pub fn until_next(behind: bool, busy: bool, long: bool) -> u64 {
+    match (behind, busy || long) {
         (true, _) => SEND_US / 10,
         (_, true) => SEND_US,
         _ => IDLE_US,

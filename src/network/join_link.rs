@@ -27,7 +27,7 @@ pub struct JoinLink {
     pub name: String,
     /// The key, and what it allows: as what to join, and who is to, if it is for one person only.
     pub invitation: Invitation,
-    /// Whom to connect to, as `udp/studio.local:7447`; none where the local network finds the host.
+    /// Whom to connect to, as `tcp/studio.local:7447`; none where the local network finds the host.
     pub connect: Vec<String>,
 }
 
@@ -53,7 +53,7 @@ pub enum BadLink {
     #[error("the name of the person is not one: expected 1 to {MAX_NAME} bytes of text")]
     Person,
     /// An endpoint is none, or there are too many.
-    #[error("an endpoint is not one: expected at most {MAX_CONNECT}, as connect=udp/HOST:PORT")]
+    #[error("an endpoint is not one: expected at most {MAX_CONNECT}, as connect=tcp/HOST:PORT")]
     Connect,
     /// A `%` without two hexadecimal digits of a text behind it.
     #[error("what follows a % in it is damaged: copy the link as a whole")]

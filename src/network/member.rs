@@ -22,6 +22,8 @@ const WINDOW: u32 = 256;
 /// While a checkpoint comes, a word at least so often, and silence for so long is an end: what
 /// carries it may stand still for a while.
 const FETCHING_US: (u64, u64) = (1_000_000, 5_000_000);
+/// A host that others vouch for and that is silent for so long is greeted anew.
+const UNHEARD_US: u64 = 5 * LOST_US;
 /// Gaps that are asked for again at once.
 const MAX_GAPS: usize = 16;
 /// After so long without any chunk, those that did not come are asked for again. What carries them
@@ -71,6 +73,8 @@ pub struct Member {
     pub term: Term,
     seals: Option<(Seal, Seal)>,
     heard_us: u64,
+    /// Somebody else told that this host is there.
+    vouched_us: u64,
     early: BTreeMap<u64, Arc<Frame>>,
     /// A checkpoint that was broken off: it goes on where the host has it still.
     broken_off: Option<Box<Fetch>>,
@@ -98,6 +102,7 @@ impl Member {
             term: Term::default(),
             seals: None,
             heard_us: now_us,
+            vouched_us: 0,
             early: BTreeMap::new(),
             broken_off: None,
             received: 0,
@@ -120,6 +125,12 @@ impl Member {
     /// Whether the host is there for certain: it was heard just now.
     pub fn hears_host(&self, now_us: u64) -> bool {
         self.follows() && now_us < self.heard_us + LOST_US / 2
+    }
+
+    /// Another one says that this host is there: the own way to it stands still.
+    pub fn vouched(&mut self, now_us: u64) {
+        self.vouched_us = now_us;
+        self.lost = false;
     }
 
     /// Begins anew with a greeting.
@@ -390,7 +401,11 @@ impl Member {
                 }
             }
             MemberPhase::Follows => {
-                self.lost = silent;
+                self.lost = silent && now_us >= self.vouched_us + LOST_US;
+                if now_us >= self.heard_us + UNHEARD_US {
+                    core.note("the host is there for others, and unheard of here: joining anew");
+                    return self.greet(core, now_us);
+                }
                 core.log.trim(u64::MAX);
                 if now_us < self.next_us {
                     return;

@@ -237,6 +237,7 @@ impl Station {
                     }
                     StationPhase::Follows(member) if term >= member.term => {
                         self.heard_host_us = now_us;
+                        member.vouched(now_us);
                         if term > member.term && (member.follows() || self.election.is_some()) {
                             member.greet(&mut self.core, now_us);
                         }
@@ -282,10 +283,12 @@ impl Station {
                     member.lost = false;
                     self.core.note("the host is silent: looking for another");
                 } else if member.lost && may && self.election.is_none() {
-                    self.core.note("the host is silent: somebody takes over");
-                    member.greet(&mut self.core, now_us);
-                    member.lost = false;
+                    // It is followed on: it may be heard again before a successor is found.
+                    self.core.note("the host is silent: looking for who takes over");
                     self.begin_election(now_us);
+                } else if member.follows() && !member.lost && self.election.is_some() {
+                    self.core.note("the host is heard again");
+                    self.election = None;
                 } else if may
                     && self.election.is_none()
                     && !member.follows()

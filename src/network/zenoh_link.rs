@@ -9,18 +9,13 @@
 //! ```
 //!
 //! Everything is sealed before it comes here; Zenoh is trusted with nothing but its delivery.
-//!
-//! **By UDP or by TCP.** `udp/…` is one QUIC connection (Zenoh's, in the clear, for all is sealed):
-//! input and frames are its datagrams, of which one that is lost holds up no other; checkpoints are
-//! its streams. `tcp/…` passes where UDP does not, and stands still for over a second now and then
-//! on a long way that loses packets.
 
 use std::collections::BTreeMap;
 
 use crossbeam_channel as cc;
 use zenoh::Wait;
 use zenoh::pubsub::{Publisher, Subscriber};
-use zenoh::qos::{CongestionControl, Priority, Reliability};
+use zenoh::qos::{CongestionControl, Priority};
 
 use crate::core::To;
 use crate::transport::Transport;
@@ -40,9 +35,9 @@ const LEASE_MS: u32 = 20_000;
 /// Where others are found.
 #[derive(Debug, Clone, Default)]
 pub struct Endpoints {
-    /// Where this process listens, as `udp/0.0.0.0:7447`; none: any port, by UDP and by TCP.
+    /// Where this process listens, as `tcp/0.0.0.0:7447`; none: any port.
     pub listen: Vec<String>,
-    /// Whom it connects to, as `udp/studio.local:7447`.
+    /// Whom it connects to, as `tcp/studio.local:7447`.
     pub connect: Vec<String>,
     /// Others on the LAN are looked for by multicast.
     pub multicast: bool,
@@ -61,15 +56,6 @@ pub struct ZenohLink {
     bulk: cc::Sender<(String, Vec<u8>)>,
 }
 
-/// An endpoint as Zenoh has it: `udp/…` carries datagrams and streams, where it does not say how.
-fn locator(endpoint: &str) -> String {
-    if !endpoint.starts_with("udp/") || endpoint.contains('?') {
-        return endpoint.into();
-    }
-    let (address, config) = endpoint.split_at(endpoint.find('#').unwrap_or(endpoint.len()));
-    format!("{address}?rel=1;mixed_rel=1{config}")
-}
-
 /// Opens a session. `lease_ms`: a silent connection is given up after so long.
 ///
 /// # Errors
@@ -77,7 +63,7 @@ fn locator(endpoint: &str) -> String {
 pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh::Session, String> {
     let mut config = zenoh::Config::default();
     let list = |all: &[String]| {
-        let quoted: Vec<String> = all.iter().map(|e| format!("{:?}", locator(e))).collect();
+        let quoted: Vec<String> = all.iter().map(|e| format!("{e:?}")).collect();
         format!("[{}]", quoted.join(","))
     };
     let mut set = |key: &str, value: &str| {
@@ -85,10 +71,9 @@ pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh
     };
     set("mode", "\"peer\"")?;
     set("scouting/multicast/enabled", if endpoints.multicast { "true" } else { "false" })?;
-    // Whoever finds this process takes the first of its locators that can be reached.
-    let any = ["udp/[::]:0", "tcp/[::]:0"].map(String::from).to_vec();
-    let listen = if endpoints.listen.is_empty() { &any } else { &endpoints.listen };
-    set("listen/endpoints", &list(listen))?;
+    if !endpoints.listen.is_empty() {
+        set("listen/endpoints", &list(&endpoints.listen))?;
+    }
     if !endpoints.connect.is_empty() {
         set("connect/endpoints", &list(&endpoints.connect))?;
         // Who is not there yet is tried again for ever, in the background.
@@ -154,10 +139,7 @@ impl ZenohLink {
                 self.publishers.clear();
             }
             let publisher = self.session.declare_publisher(key.clone());
-            let publisher = publisher
-                .congestion_control(CongestionControl::Drop)
-                .reliability(Reliability::BestEffort)
-                .wait()?;
+            let publisher = publisher.congestion_control(CongestionControl::Drop).wait()?;
             self.publishers.insert(key.clone(), publisher);
         }
         match self.publishers.get(&key) {
@@ -216,21 +198,5 @@ fn send_bulk(session: &zenoh::Session, waiting: &cc::Receiver<(String, Vec<u8>)>
         {
             tracing::debug!("a part of a checkpoint was not sent: {e}");
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::locator;
-
-    #[test]
-    fn udp_carries_datagrams_and_streams_where_it_does_not_say_how() {
-        assert_eq!(locator("tcp/studio:7447"), "tcp/studio:7447");
-        assert_eq!(locator("udp/studio:7447"), "udp/studio:7447?rel=1;mixed_rel=1");
-        assert_eq!(
-            locator("udp/[::]:7447#iface=eth0"),
-            "udp/[::]:7447?rel=1;mixed_rel=1#iface=eth0"
-        );
-        assert_eq!(locator("udp/studio:7447?rel=0"), "udp/studio:7447?rel=0");
     }
 }

@@ -221,14 +221,14 @@ def played_alone(args, folder, count, seconds):
 
 
 def begin(args, air, folder, people, host_words=(), words=lambda k: ()):
-    keys, at = folder / "keys", f"{args.by}/10.77.0.1:7447"
+    keys, at = folder / "keys", "tcp/10.77.0.1:7447"
     host = Daemon(args.binary, air, 0, folder / "0", "--host", "rig", "--keys", keys, "--as", "person-0",
                   "--listen", at, *host_words)
     until("the host answers", lambda: host.hash())
     all_of = [host]
     for k in range(1, people):
         all_of.append(Daemon(args.binary, air, k, folder / str(k), "--join", "rig", "--key", keys / "sculptor.key",
-                             "--as", f"person-{k}", "--listen", f"{args.by}/10.77.0.{k + 1}:7447", "--connect", at, *words(k)))
+                             "--as", f"person-{k}", "--listen", f"tcp/10.77.0.{k + 1}:7447", "--connect", at, *words(k)))
     return all_of
 
 
@@ -249,8 +249,8 @@ def strokes(args, folder, claim):
                        lambda k: ["--play-device", folder / f"{k}.hid"])
         # A viewer takes nothing over: its file holds what all agree on, where it need not join anew.
         archive = Daemon(args.binary, air, count, folder / "archive", "--join", "rig", "--key", folder / "keys/viewer.key",
-                         "--role", "viewer", "--as", "archive", "--connect", f"{args.by}/10.77.0.1:7447", "--connect",
-                         f"{args.by}/10.77.0.2:7447", "--session", folder / "archive.sculpt")
+                         "--role", "viewer", "--as", "archive", "--connect", "tcp/10.77.0.1:7447", "--connect",
+                         "tcp/10.77.0.2:7447", "--session", folder / "archive.sculpt")
         all_of.append(archive)
         claim(until("all are there", lambda: all(d.hash() for d in all_of), 300), f"{count} daemons and a viewer share a sculpture")
         begun, sent, received = time.monotonic(), air.sent[:], air.received[:]
@@ -327,12 +327,12 @@ def kills(args, folder, claim):
 
     def ends(own):
         others = [k for k in range(sculptors) if k != own]
-        return [word for k in others for word in ["--connect", f"{args.by}/10.77.0.{k + 1}:7447"]]
+        return [word for k in others for word in ["--connect", f"tcp/10.77.0.{k + 1}:7447"]]
 
     def start(k, name, *words):
         serial[0] += 1
         return Daemon(args.binary, air, k, folder / f"home-{k}", *words, "--as", name, "--listen",
-                      f"{args.by}/10.77.0.{k + 1}:7447", *ends(k))
+                      f"tcp/10.77.0.{k + 1}:7447", *ends(k))
 
     def sculptor(k):
         session = folder / f"sculptor-{k}-{serial[0]}.sculpt"
@@ -416,7 +416,7 @@ def join(args, folder, claim):
         sent = air.sent[0]
         begun = time.monotonic()
         other = Daemon(args.binary, air, 1, folder / "1", "--join", "rig", "--key", folder / "keys/sculptor.key",
-                       "--as", "person-1", "--connect", f"{args.by}/10.77.0.1:7447")
+                       "--as", "person-1", "--connect", "tcp/10.77.0.1:7447")
         there = until("it has joined", lambda: other.ctl("status"), 600, 0.05)
         took = time.monotonic() - begun
         went = air.sent[0] - sent
@@ -438,7 +438,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", default=ROOT / "target/release/sculptd")
     parser.add_argument("--transitions", default=ROOT / "target/release/examples/transitions")
-    parser.add_argument("--by", choices=["udp", "tcp"], default="udp", help="what carries it")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=pathlib.Path, help="work here, and leave it")
     of = parser.add_subparsers(dest="what", required=True)
