@@ -20,15 +20,15 @@ const GREET_US: u64 = 200_000;
 /// Chunks that are on their way at once: 8 MiB.
 const WINDOW: u32 = 256;
 /// While a checkpoint comes, a word at least so often, and silence for so long is an end: what
-/// carries it may stand still for a while.
-const FETCHING_US: (u64, u64) = (1_000_000, 5_000_000);
+/// carries it may stand still for a while, and what is asked for again then comes twice.
+const FETCHING_US: (u64, u64) = (1_000_000, 12_000_000);
 /// A host that others vouch for and that is silent for so long is greeted anew.
 const UNHEARD_US: u64 = 5 * LOST_US;
 /// Gaps that are asked for again at once.
 const MAX_GAPS: usize = 16;
 /// After so long without any chunk, those that did not come are asked for again. What carries them
-/// loses few, and slowly begins.
-const CHUNK_US: u64 = 3_000_000;
+/// loses none but where it is made anew, and stands still now and then.
+const CHUNK_US: u64 = 10_000_000;
 /// Frames that wait for one before them.
 const MAX_EARLY: usize = 4096;
 

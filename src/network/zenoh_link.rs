@@ -23,8 +23,9 @@ use crate::wire::message::Address;
 
 /// Datagrams that wait to be read; more are dropped, as a full network drops them.
 const WAITING: usize = 8192;
-/// Datagrams of a checkpoint that wait to be sent; more are dropped.
-const BULK: usize = 1024;
+/// Datagrams of a checkpoint that wait to be sent to one receiver; more are dropped. Two of what a
+/// member asks for at once.
+const BULK: usize = 512;
 /// Stations whose publisher is kept.
 const MAX_PUBLISHERS: usize = 256;
 
@@ -53,7 +54,8 @@ pub struct ZenohLink {
     subscribers: Vec<Subscriber<()>>,
     host: Option<Subscriber<()>>,
     publishers: BTreeMap<String, Publisher<'static>>,
-    bulk: cc::Sender<(String, Vec<u8>)>,
+    /// Of each receiver of a checkpoint.
+    bulk: BTreeMap<String, cc::Sender<Vec<u8>>>,
 }
 
 /// Opens a session. `lease_ms`: a silent connection is given up after so long.
@@ -97,12 +99,6 @@ impl ZenohLink {
     pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
         let session = open_session(endpoints, LEASE_MS)?;
         let (sender, incoming) = cc::bounded(WAITING);
-        let (bulk, waiting) = cc::bounded(BULK);
-        let of_thread = session.clone();
-        std::thread::Builder::new()
-            .name("sculptd-bulk".into())
-            .spawn(move || send_bulk(&of_thread, &waiting))
-            .map_err(|e| e.to_string())?;
         Ok(ZenohLink {
             session,
             name: name.into(),
@@ -111,7 +107,7 @@ impl ZenohLink {
             subscribers: Vec::new(),
             host: None,
             publishers: BTreeMap::new(),
-            bulk,
+            bulk: BTreeMap::new(),
         })
     }
 
@@ -149,6 +145,25 @@ impl ZenohLink {
     }
 }
 
+impl ZenohLink {
+    /// A thread for each receiver: one whose connection stands still holds up nobody else.
+    fn send_bulk(&mut self, key: String, bytes: Vec<u8>) {
+        if !self.bulk.contains_key(&key) {
+            self.bulk.retain(|_, sender| !sender.is_empty());
+            let (sender, waiting) = cc::bounded(BULK);
+            let (session, to) = (self.session.clone(), key.clone());
+            let thread = std::thread::Builder::new().name("sculptd-bulk".into());
+            if let Err(e) = thread.spawn(move || send_bulk(&session, to, &waiting)) {
+                return tracing::warn!("a checkpoint is not sent: no thread: {e}");
+            }
+            self.bulk.insert(key.clone(), sender);
+        }
+        // What does not fit is asked for again.
+        let sender = self.bulk.get(&key);
+        let _ = sender.map(|sender| sender.try_send(bytes));
+    }
+}
+
 impl Transport for ZenohLink {
     fn hosts(&mut self, on: bool) {
         self.host = match on {
@@ -167,9 +182,7 @@ impl Transport for ZenohLink {
 
     fn send(&mut self, to: To, bytes: Vec<u8>) {
         if let To::Bulk(_) = to {
-            // What does not fit is asked for again.
-            let _ = self.bulk.try_send((self.key(to), bytes));
-            return;
+            return self.send_bulk(self.key(to), bytes);
         }
         if let Err(e) = self.put(to, bytes) {
             tracing::debug!("a datagram was not sent: {e}");
@@ -181,21 +194,20 @@ impl Transport for ZenohLink {
     }
 }
 
-/// Sends checkpoints: behind all else, and as fast as the receiver takes them. It may wait for a
-/// receiver that is gone until its connection is given up; nothing else waits with it.
-fn send_bulk(session: &zenoh::Session, waiting: &cc::Receiver<(String, Vec<u8>)>) {
-    let mut newest: Option<(String, Publisher<'static>)> = None;
-    for (key, bytes) in waiting {
-        if newest.as_ref().is_none_or(|n| n.0 != key) {
-            let publisher = session
-                .declare_publisher(key.clone())
-                .congestion_control(CongestionControl::Block)
-                .priority(Priority::DataLow);
-            newest = publisher.wait().ok().map(|publisher| (key, publisher));
-        }
-        if let Some((_, publisher)) = &newest
-            && let Err(e) = publisher.put(bytes).wait()
-        {
+/// Sends a checkpoint: behind all else, and as fast as the receiver takes it. It may wait for a
+/// receiver that is gone until its connection is given up.
+fn send_bulk(session: &zenoh::Session, key: String, waiting: &cc::Receiver<Vec<u8>>) {
+    let publisher = session
+        .declare_publisher(key)
+        .congestion_control(CongestionControl::Block)
+        .priority(Priority::DataLow)
+        .wait();
+    let publisher = match publisher {
+        Ok(publisher) => publisher,
+        Err(e) => return tracing::warn!("a checkpoint is not sent: {e}"),
+    };
+    for bytes in waiting {
+        if let Err(e) = publisher.put(bytes).wait() {
             tracing::debug!("a part of a checkpoint was not sent: {e}");
         }
     }

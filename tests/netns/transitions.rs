@@ -12,7 +12,7 @@ fn main() {
     let mut last = BTreeMap::new();
     let mut counts: BTreeMap<u16, [u64; 2]> = BTreeMap::new();
     // As they are shared: what differs by less than a rounding is no transition.
-    let rounded = |tick: &sculptd_daemon::session::TickInput| -> Vec<_> {
+    let rounded = |tick: &sculptd_daemon::session::format::TickInput| -> Vec<_> {
         tick.samples.iter().filter_map(sculptd_network::wire::samples::rounded).collect()
     };
     for sample in opened.input.iter().flat_map(rounded) {
