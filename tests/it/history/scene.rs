@@ -100,6 +100,32 @@ fn every_step_over_several_objects_comes_back_from_memory_and_from_the_file() {
 }
 
 #[test]
+fn a_work_of_one_object_that_is_not_the_first_stands_where_it_was_when_it_is_opened_again() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut s = Studio::begin(dir.path(), 3000, 1 << 30);
+    let asked = [
+        SceneCommand::Duplicate(ObjectId(0)),
+        SceneCommand::Rename(ObjectId(1), "object".into()),
+        SceneCommand::Remove(ObjectId(0)),
+    ];
+    let mut before = 0;
+    for command in asked {
+        before = s.world.hash();
+        s.tick(&[], &[Command::Scene(command)]);
+        assert!(s.world.scene_results()[0].is_ok(), "{:?}", s.world.scene_results());
+    }
+    assert!(s.world.scene_view().is_plain(), "but for its number it is as a session begins");
+    s.settle();
+    let (nodes, here) = (s.history.tree().len(), s.history.tree().cursor);
+    let path = s.end();
+    let mut s = Studio::reopened(&path);
+    assert_eq!((s.history.tree().len(), s.history.tree().cursor), (nodes, here));
+    // The first undo takes the last step back.
+    s.tick(&[], &[Command::Undo]);
+    s.becomes(before);
+}
+
+#[test]
 fn a_bounded_history_keeps_what_opening_a_scene_needs() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut s = Studio::bounded(dir.path(), 3000, 1 << 30, 1 << 20);

@@ -202,7 +202,9 @@ impl HistoryWriter {
         if Arc::ptr_eq(view, &self.view) {
             return Ok(self.scene.clone());
         }
-        if view.is_plain() && self.scene.is_none() {
+        // As a session begins: what a Boolean of all objects left alone has another number.
+        let first = view.objects.first().is_some_and(|o| o.id == ObjectId(0));
+        if first && view.is_plain() && self.scene.is_none() {
             return Ok(None);
         }
         let before = (self.view.clone(), self.scene.clone());
