@@ -132,6 +132,8 @@
 //!   the published state.
 //! * `sculptd-metrics`, `sculptd-share`, made by `daemon::http`: serve metrics, and a visitor's
 //!   sculpture for download, each to many clients. Wait for: their socket, time.
+//! * `sculptd-telemetry`, made by `daemon::telemetry`: sends figures and the log to a collector.
+//!   Waits for: time, the collector.
 //! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits
 //!   for: time, a signal.
 //! * `sculptd-kiosk`, made by `daemon::kiosk::keeper`: the cycle of an installation: attract,

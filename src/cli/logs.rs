@@ -34,6 +34,8 @@ pub fn begin(format: LogFormat) {
     // What the staff of a fleet may ask for, however much is written here.
     #[cfg(feature = "network")]
     let log = log.with(super::log_ring::LogRing.with_filter(usual()));
+    #[cfg(unix)]
+    let log = log.with(super::telemetry::ExportLayer.with_filter(usual()));
     // A second begin in one process (tests) keeps the first.
     let _ = match format {
         LogFormat::Text => log

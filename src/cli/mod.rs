@@ -40,6 +40,8 @@ pub mod run;
 pub mod session;
 #[cfg(feature = "network")]
 pub mod shared;
+#[cfg(unix)]
+pub mod telemetry;
 mod thickness_presets;
 #[cfg(unix)]
 pub mod window;

@@ -85,6 +85,11 @@ pub struct RunArgs {
     #[cfg(unix)]
     #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = sculptd_daemon::metrics::address)]
     pub metrics: Option<std::net::SocketAddr>,
+    /// Send figures and the log to a collector of OpenTelemetry: OTLP over HTTP. Without a URL to
+    /// the one of the environment, OTEL_EXPORTER_OTLP_ENDPOINT, or http://127.0.0.1:4318.
+    #[cfg(unix)]
+    #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = "")]
+    pub telemetry: Option<String>,
     #[cfg(feature = "network")]
     #[command(flatten)]
     pub shared: super::shared::SharedArgs,
@@ -139,6 +144,14 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
                     headless runs on a simulated one: leave out --metrics, or --headless";
         return Err(Fail::Usage(text.into()));
     }
+    #[cfg(unix)]
+    if args.telemetry.is_some() && !on_the_wall_clock {
+        let text = "--telemetry needs a run on the wall's clock, and a recording that is played \
+                    headless runs on a simulated one: leave out --telemetry, or --headless";
+        return Err(Fail::Usage(text.into()));
+    }
+    #[cfg(unix)]
+    let telemetry = args.telemetry.as_deref().map(super::telemetry::options).transpose()?;
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
@@ -206,6 +219,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             settings: args.config.clone(),
             #[cfg(unix)]
             metrics: args.metrics,
+            #[cfg(unix)]
+            telemetry,
             window: WindowLink::new(session.map(PathBuf::as_path)),
             shared,
         };
@@ -321,6 +336,10 @@ fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
     }
     if let Some(at) = args.metrics {
         all.extend(["--metrics".into(), at.to_string().into()]);
+    }
+    #[cfg(unix)]
+    if let Some(url) = &args.telemetry {
+        all.push(format!("--telemetry={url}").into());
     }
     all
 }

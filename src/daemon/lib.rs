@@ -20,6 +20,8 @@ pub mod demo_devices;
 pub mod disk_space;
 pub mod doctor;
 pub mod face_set_jobs;
+#[cfg(unix)]
+pub mod figures;
 pub mod garbage_thread;
 pub mod hand_jobs;
 #[cfg(unix)]
@@ -55,6 +57,8 @@ pub mod tablet_actions;
 pub mod tablet_controls;
 pub mod tablet_models;
 pub mod tablet_vocabulary;
+#[cfg(unix)]
+pub mod telemetry;
 pub mod tick;
 pub mod tick_statistics;
 pub mod toml_text;

@@ -63,6 +63,9 @@ pub struct LiveOptions {
     /// Where the figures are served, if anywhere.
     #[cfg(unix)]
     pub metrics: Option<std::net::SocketAddr>,
+    /// Figures and the log go to a collector.
+    #[cfg(unix)]
+    pub telemetry: Option<crate::telemetry::TelemetryOptions>,
     /// How the window stands; without a session no window can follow a lost one.
     pub window: WindowLink,
     /// The sculpture is shared with others.
@@ -309,6 +312,7 @@ impl LiveRun {
 struct Served {
     _control: Option<crate::control::Server>,
     _metrics: Option<crate::metrics::Metrics>,
+    _telemetry: Option<crate::telemetry::Telemetry>,
     _service: crate::service::Service,
 }
 
@@ -346,9 +350,24 @@ impl Served {
                 Some(page)
             }
         };
+        let telemetry = match options.telemetry.clone() {
+            None => None,
+            Some(telemetry) => {
+                let to = telemetry.endpoint.shown();
+                let export = crate::telemetry::Telemetry::start(telemetry, watched.clone());
+                let export = export.map_err(failed(format!("telemetry for {to}")))?;
+                notices.push(format!("telemetry goes to the collector at {to}"));
+                Some(export)
+            }
+        };
         let reload = Reload { extra: options.settings.clone(), now: config.clone(), commands };
         let service = Service::start(watched, reload).map_err(failed("SIGHUP".into()))?;
-        Ok(Served { _control: control, _metrics: metrics, _service: service })
+        Ok(Served {
+            _control: control,
+            _metrics: metrics,
+            _telemetry: telemetry,
+            _service: service,
+        })
     }
 }
 

@@ -65,6 +65,11 @@ impl Daemon {
     /// Starts the program with these arguments and these settings, and waits until its control
     /// socket is there (and its figures, where it was told to show them).
     pub fn start(arguments: &[&str], settings: &str) -> Daemon {
+        Daemon::start_in(arguments, settings, &[])
+    }
+
+    /// The same, with these variables in its environment.
+    pub fn start_in(arguments: &[&str], settings: &str, vars: &[(&str, &str)]) -> Daemon {
         let folder = tempfile::tempdir().expect("a folder");
         let config = folder.path().join("settings.toml");
         let text = format!("[loop]\nworkers = 1\n{settings}");
@@ -80,6 +85,7 @@ impl Daemon {
             .env("XDG_STATE_HOME", folder.path().join("state"))
             .env_remove("NOTIFY_SOCKET")
             .env_remove("SCULPTD_LOG")
+            .envs(vars.iter().copied())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()

@@ -49,6 +49,8 @@ mod synthetic_hands;
 
 use std::path::PathBuf;
 
+#[cfg(target_os = "linux")]
+mod telemetry;
 mod thickness;
 mod thickness_live;
 mod thickness_shapes;

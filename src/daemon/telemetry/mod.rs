@@ -1,0 +1,148 @@
+//! The daemon's figures and its warnings for a collector of OpenTelemetry: OTLP over HTTP, as JSON
+//! (OpenTelemetry protocol 1.x, `/v1/metrics` and `/v1/logs`). Off unless asked for.
+//!
+//! Laws kept here:
+//! * The thread that sends (`sculptd-telemetry`) is the only one that waits for a collector; the
+//!   tick thread knows nothing of it.
+//! * A collector that is gone costs no memory: counters are sums, and go on where they were when it
+//!   is back; of the log as much is kept as [`log_queue`] holds, and sent then.
+//! * What fails is told once, and once when it is well again.
+
+pub mod endpoint;
+pub mod log_queue;
+pub mod otlp;
+mod post;
+
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use crossbeam_channel as cc;
+
+use self::endpoint::Endpoint;
+use self::log_queue::LogQueue;
+use self::otlp::Resource;
+use self::post::{PostError, Poster};
+use crate::figures::{figures, stages};
+use crate::systemd::Watched;
+
+/// A collector may take so long for one request, and at the end of the daemon for all.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// See [`PATIENCE`].
+const LAST_PATIENCE: Duration = Duration::from_millis(900);
+/// Records of one request.
+const BATCH: usize = 512;
+
+/// Where to, how often, and as whom.
+#[derive(Debug, Clone)]
+pub struct TelemetryOptions {
+    /// The collector.
+    pub endpoint: Endpoint,
+    /// Between two exports.
+    pub every: Duration,
+    /// Who sends.
+    pub resource: Resource,
+    /// Nanoseconds since 1970, from outside.
+    pub now_ns: fn() -> u64,
+    /// What the log's layer has put aside.
+    pub logs: Arc<LogQueue>,
+}
+
+/// What this computer is called.
+pub fn host_name() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+/// The export; it ends, with a last one, when this is dropped.
+#[derive(Debug)]
+pub struct Telemetry {
+    stop: Option<cc::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Telemetry {
+    /// Begins to export.
+    ///
+    /// # Errors
+    /// Where there is no thread, or no runtime for it.
+    pub fn start(options: TelemetryOptions, watched: Watched) -> std::io::Result<Telemetry> {
+        let poster = Poster::new(options.endpoint.clone())?;
+        let (stop, stopped) = cc::bounded(0);
+        options.logs.open();
+        let begun_ns = (options.now_ns)();
+        let mut exporter = Exporter { options, watched, poster, begun_ns, failing: false };
+        let thread =
+            std::thread::Builder::new().name("sculptd-telemetry".into()).spawn(move || {
+                loop {
+                    match stopped.recv_timeout(exporter.options.every) {
+                        Err(cc::RecvTimeoutError::Timeout) => exporter.export(PATIENCE),
+                        _ => break,
+                    }
+                }
+                exporter.export(LAST_PATIENCE);
+                exporter.options.logs.close();
+            })?;
+        Ok(Telemetry { stop: Some(stop), thread: Some(thread) })
+    }
+}
+
+impl Drop for Telemetry {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+struct Exporter {
+    options: TelemetryOptions,
+    watched: Watched,
+    poster: Poster,
+    begun_ns: u64,
+    /// The last request failed, and that was told.
+    failing: bool,
+}
+
+impl Exporter {
+    /// All figures as they are now, then what the log holds.
+    fn export(&mut self, patience: Duration) {
+        let (options, watched) = (&self.options, &self.watched);
+        let latency = stages(&watched.window.present_latency());
+        let times = (self.begun_ns, (options.now_ns)());
+        let body = otlp::metrics(&options.resource, &figures(watched), &latency, times);
+        if self.told(self.poster.post("/v1/metrics", body, patience)) {
+            return;
+        }
+        loop {
+            let records = self.options.logs.oldest(BATCH);
+            if records.is_empty() {
+                return;
+            }
+            let body = otlp::logs(&self.options.resource, &records);
+            let sent = self.poster.post("/v1/logs", body, patience);
+            // What the collector will never take stands in nobody's way.
+            let done = !matches!(&sent, Err(e) if e.may_pass());
+            if done {
+                self.options.logs.remove(&records);
+            }
+            if self.told(sent) {
+                return;
+            }
+        }
+    }
+
+    /// Tells of a failure, or of its end, once. Whether it failed.
+    fn told(&mut self, result: Result<(), PostError>) -> bool {
+        let (to, failed) = (self.options.endpoint.shown(), result.is_err());
+        match result {
+            Err(e) if !self.failing => {
+                tracing::warn!("no telemetry goes to the collector at {to}: {e}; it is tried again")
+            }
+            Ok(()) if self.failing => tracing::info!("the collector at {to} takes telemetry again"),
+            _ => {}
+        }
+        self.failing = failed;
+        failed
+    }
+}
