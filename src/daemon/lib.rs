@@ -20,8 +20,6 @@ pub mod demo_devices;
 pub mod disk_space;
 pub mod doctor;
 pub mod face_set_jobs;
-#[cfg(unix)]
-pub mod figures;
 pub mod garbage_thread;
 pub mod hand_jobs;
 #[cfg(unix)]
@@ -31,6 +29,8 @@ pub mod live;
 pub mod live_booleans;
 pub mod live_run;
 pub mod mask_jobs;
+#[cfg(unix)]
+pub mod metric_table;
 #[cfg(unix)]
 pub mod metrics;
 pub mod pacer;

@@ -10,24 +10,24 @@ use std::sync::Arc;
 
 use hyper::{Request, StatusCode};
 
-use crate::figures::{
-    Figure, FigureKind, STAGES_HELP, STAGES_NAME, StageHistogram, figures, stages,
-};
 use crate::http::answer::permitted;
 use crate::http::bounds::ConnectionTable;
 use crate::http::{Answer, HttpServer};
+use crate::metric_table::{
+    Metric, MetricKind, STAGES_HELP, STAGES_NAME, StageHistogram, all_metrics, stages,
+};
 use crate::systemd::Watched;
 
 /// The page, from what is watched, and how many connections ask for it.
 pub fn page(watched: &Watched, connections: usize) -> String {
     let mut out = String::with_capacity(2048);
     let text = "Connections to this page, this one counted in; at most 256.";
-    let (name, kind) = ("metrics_connections", FigureKind::Gauge);
-    let own = Figure { name, kind, help: text, value: connections as f64 };
-    for Figure { name, kind, help, value } in figures(watched).into_iter().chain([own]) {
+    let (name, kind) = ("metrics_connections", MetricKind::Gauge);
+    let own = Metric { name, kind, help: text, value: connections as f64 };
+    for Metric { name, kind, help, value } in all_metrics(watched).into_iter().chain([own]) {
         let kind = match kind {
-            FigureKind::Counter => "counter",
-            FigureKind::Gauge => "gauge",
+            MetricKind::Counter => "counter",
+            MetricKind::Gauge => "gauge",
         };
         let _ = write!(
             out,

@@ -26,7 +26,7 @@ pub struct LogRecord {
 }
 
 #[derive(Debug, Default)]
-struct Waiting {
+struct QueuedLog {
     open: bool,
     records: VecDeque<LogRecord>,
     last: u64,
@@ -35,10 +35,10 @@ struct Waiting {
 
 /// Lines that wait for a collector.
 #[derive(Debug, Default)]
-pub struct LogQueue(Mutex<Waiting>);
+pub struct LogQueue(Mutex<QueuedLog>);
 
 impl LogQueue {
-    fn waiting(&self) -> std::sync::MutexGuard<'_, Waiting> {
+    fn waiting(&self) -> std::sync::MutexGuard<'_, QueuedLog> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -55,7 +55,7 @@ impl LogQueue {
     /// Nothing is kept any more.
     pub fn close(&self) {
         let last = self.waiting().last;
-        *self.waiting() = Waiting { last, ..Waiting::default() };
+        *self.waiting() = QueuedLog { last, ..QueuedLog::default() };
     }
 
     /// Puts a record at the end; its number is given here. Where too many wait, the oldest goes.

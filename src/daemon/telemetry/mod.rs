@@ -23,7 +23,7 @@ use self::endpoint::Endpoint;
 use self::log_queue::LogQueue;
 use self::otlp::Resource;
 use self::post::{PostError, Poster};
-use crate::figures::{figures, stages};
+use crate::metric_table::{all_metrics, stages};
 use crate::systemd::Watched;
 
 /// A collector may take so long for one request, and at the end of the daemon for all.
@@ -110,7 +110,7 @@ impl Exporter {
         let (options, watched) = (&self.options, &self.watched);
         let latency = stages(&watched.window.present_latency());
         let times = (self.begun_ns, (options.now_ns)());
-        let body = otlp::metrics(&options.resource, &figures(watched), &latency, times);
+        let body = otlp::metrics(&options.resource, &all_metrics(watched), &latency, times);
         if self.told(self.poster.post("/v1/metrics", body, patience)) {
             return;
         }

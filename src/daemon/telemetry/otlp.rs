@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use tracing::Level;
 
 use super::log_queue::LogRecord;
-use crate::figures::{Figure, FigureKind, STAGES_HELP, STAGES_NAME, StageHistogram};
+use crate::metric_table::{Metric, MetricKind, STAGES_HELP, STAGES_NAME, StageHistogram};
 
 /// `AGGREGATION_TEMPORALITY_CUMULATIVE`: sums since the daemon began.
 const CUMULATIVE: u32 = 2;
@@ -57,16 +57,16 @@ pub fn name_and_unit(name: &str) -> (String, &'static str) {
 /// since 1970.
 pub fn metrics(
     resource: &Resource,
-    figures: &[Figure],
+    values: &[Metric],
     stages: &[StageHistogram],
     times: (u64, u64),
 ) -> String {
     let (start, now) = (times.0.to_string(), times.1.to_string());
-    let one = |f: &Figure| {
+    let one = |f: &Metric| {
         let (name, unit) = name_and_unit(f.name);
         let mut metric = json!({ "name": name, "description": f.help, "unit": unit });
         match f.kind {
-            FigureKind::Counter => {
+            MetricKind::Counter => {
                 let point = json!({
                     "startTimeUnixNano": start, "timeUnixNano": now,
                     "asInt": (f.value as u64).to_string(),
@@ -77,7 +77,7 @@ pub fn metrics(
                     "isMonotonic": true,
                 });
             }
-            FigureKind::Gauge => {
+            MetricKind::Gauge => {
                 let point = json!({ "timeUnixNano": now, "asDouble": f.value });
                 metric["gauge"] = json!({ "dataPoints": [point] });
             }
@@ -90,7 +90,7 @@ pub fn metrics(
         "name": name, "description": STAGES_HELP, "unit": unit,
         "histogram": { "dataPoints": points, "aggregationTemporality": CUMULATIVE },
     });
-    let all: Vec<Value> = figures.iter().map(one).chain([histogram]).collect();
+    let all: Vec<Value> = values.iter().map(one).chain([histogram]).collect();
     json!({ "resourceMetrics": [{
         "resource": resource.to_json(),
         "scopeMetrics": [{ "scope": scope(), "metrics": all }],

@@ -9,7 +9,7 @@ use sculptd_devices::latency::Latency;
 
 /// How a figure behaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FigureKind {
+pub enum MetricKind {
     /// Counts from the start of the daemon, and never falls. Its name ends with `_total`.
     Counter,
     /// Goes up and down.
@@ -18,11 +18,11 @@ pub enum FigureKind {
 
 /// One figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
+pub struct Metric {
     /// As Prometheus has it, without the program's name: a unit other than 1 is in it.
     pub name: &'static str,
     /// How it behaves.
-    pub kind: FigureKind,
+    pub kind: MetricKind,
     /// For people.
     pub help: &'static str,
     /// Its value now.
@@ -48,12 +48,12 @@ pub const STAGES_NAME: &str = "sample_to_present_seconds";
 pub const STAGES_HELP: &str = "From a sample to the frame that shows it, by stage.";
 
 /// All figures but the histograms.
-pub fn figures(watched: &Watched) -> Vec<Figure> {
+pub fn all_metrics(watched: &Watched) -> Vec<Metric> {
     let p = watched.published.load();
     let f = &p.figures;
     let counter =
-        |name, help, value| Figure { name, kind: FigureKind::Counter, help, value: value as f64 };
-    let gauge = |name, help, value: f64| Figure { name, kind: FigureKind::Gauge, help, value };
+        |name, help, value| Metric { name, kind: MetricKind::Counter, help, value: value as f64 };
+    let gauge = |name, help, value: f64| Metric { name, kind: MetricKind::Gauge, help, value };
     let mut all = vec![
         counter("ticks_total", "Ticks stepped.", p.tick),
         counter("overruns_total", "Ticks that came late.", f.overruns),
