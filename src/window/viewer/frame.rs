@@ -43,7 +43,7 @@ impl WindowState {
         }
         let samples = self.gpu.samples(self.ui_state.prefs.smooth_edges);
         if samples != self.samples {
-            self.renderer = Renderer::new(&self.gpu, self.clay_format, samples);
+            self.renderer = Renderer::of_window(&self.gpu, self.clay_format, samples);
             self.samples = samples;
             self.look_again();
             self.forget_clay();

@@ -4,8 +4,10 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
+use super::coarse_pages::{CoarsePages, MANY, is_far};
+use super::page_place::place;
 use crate::look::with_set;
 use sculptd_clay::{Page, Snapshot};
 
@@ -125,6 +127,8 @@ pub struct Pages {
     slot: usize,
     scratch: Vec<Vertex>,
     runs: Vec<std::ops::Range<usize>>,
+    /// Of a large clay: what far pages are drawn with.
+    coarse: Option<CoarsePages>,
     /// Bytes sent by the last [`Pages::update`].
     pub uploaded: u64,
 }
@@ -165,13 +169,23 @@ impl Pages {
             slot,
             scratch: Vec::with_capacity(slot),
             runs: Vec::with_capacity(slot.div_ceil(GAP)),
+            coarse: None,
             uploaded: 0,
         }
     }
 
-    /// Pages that changed and are not sent yet.
+    /// Pages that changed and are not sent yet, or may be made coarse.
     pub fn waiting(&self) -> usize {
-        self.queue.len()
+        let coarse = self.coarse.as_ref().zip(self.seen.as_ref());
+        self.queue.len() + coarse.map_or(0, |(coarse, mesh)| coarse.waiting(mesh))
+    }
+
+    /// From now on far pages of a large clay are drawn with fewer triangles, as these are made.
+    pub fn coarsen(&mut self, device: &wgpu::Device, mesh: &Snapshot) {
+        let count = mesh.triangle_count();
+        if count >= MANY && self.coarse.is_none() {
+            self.coarse = Some(CoarsePages::new(device, count));
+        }
     }
 
     /// Whether this snapshot has the topology that the buffers were made for.
@@ -246,6 +260,9 @@ impl Pages {
             }
         }
         self.queue.drain(..sent);
+        if let Some(coarse) = &mut self.coarse {
+            coarse.advance(queue, mesh, &self.ranges, self.slot);
+        }
     }
 
     /// Sends the values of pages whose map changed; returns the bytes.
@@ -305,6 +322,25 @@ impl Pages {
         self.runs(pass, &self.ranges, visible)
     }
 
+    /// As [`Pages::draw`]; what takes few pixels of a screen of that height is drawn with fewer
+    /// triangles, where there are many. `matrix` leads from the clay to the screen. How many were
+    /// drawn, and how many of them so.
+    pub fn draw_by_size(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        (matrix, height): (&Mat4, u32),
+        visible: impl Fn(u32, &Page) -> bool,
+    ) -> (usize, usize) {
+        let Some(coarse) = &self.coarse else { return (self.draw(pass, visible), 0) };
+        let few = |i: u32, page: &Page| coarse.range(i).is_some() && is_far(matrix, height, page);
+        let drawn = self.draw(pass, |i, page| visible(i, page) && !few(i, page));
+        pass.set_index_buffer(coarse.buffer().slice(..), wgpu::IndexFormat::Uint32);
+        let range = |i: usize| coarse.range(i as u32).unwrap_or_default();
+        let ranges: Vec<std::ops::Range<u32>> = (0..self.ranges.len()).map(range).collect();
+        let coarse = self.runs(pass, &ranges, |i, page| visible(i, page) && few(i, page));
+        (drawn + coarse, coarse)
+    }
+
     /// The edges of every page whose bounds `visible` accepts, if there are edges.
     pub fn draw_edges(
         &self,
@@ -354,18 +390,4 @@ fn corners(page: &Page, p: usize, slot: usize, out: &mut Vec<u32>) {
         let corners = t.map(|v| place(page, p, slot, v));
         out.extend(if page.is_triangle_hidden(i) { [corners[0]; 3] } else { corners });
     }
-}
-
-/// Where a page's vertex lies on the card. A halo vertex is drawn from its home's slot: every
-/// vertex is there once.
-fn place(page: &Page, p: usize, slot: usize, v: impl Into<u64>) -> u32 {
-    let v = v.into() as usize;
-    let (home, local) = match v.checked_sub(page.own()) {
-        None => (p, v),
-        Some(k) => {
-            let (home, local) = page.topology().halo_home(k);
-            (home as usize, local as usize)
-        }
-    };
-    (home * slot + local) as u32
 }

@@ -49,6 +49,11 @@ impl Painter {
         self.renderer.surroundings.set_environment(&self.gpu, environment);
     }
 
+    /// Far pages of large objects may be drawn with fewer triangles, as in a window.
+    pub fn set_coarsens(&mut self, on: bool) {
+        self.renderer.coarsens = on;
+    }
+
     pub fn renderer(&self) -> &Renderer {
         &self.renderer
     }

@@ -110,9 +110,19 @@ pub struct Renderer {
     pub waiting: usize,
     /// Pages that were in view, of all.
     pub drawn: (usize, usize),
+    /// Of the active object's, those that were so small that fewer triangles did.
+    pub coarse: usize,
+    /// Far pages of a large object may be drawn with fewer triangles: in a window, not in a picture
+    /// that is kept.
+    pub coarsens: bool,
 }
 
 impl Renderer {
+    /// As [`Renderer::new`], for what is seen and not kept.
+    pub fn of_window(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Renderer {
+        Renderer { coarsens: true, ..Renderer::new(gpu, format, samples) }
+    }
+
     /// `samples` a pixel: 1 or 4.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Renderer {
         let device = &gpu.device;
@@ -238,6 +248,8 @@ impl Renderer {
             uploaded: 0,
             waiting: 0,
             drawn: (0, 0),
+            coarse: 0,
+            coarsens: false,
         }
     }
 
@@ -352,6 +364,9 @@ impl Renderer {
         let lines = &scene.lines[..scene.lines.len().min(MAX_LINE_ENDS)];
         gpu.queue.write_buffer(&self.line_ends, 0, bytemuck::cast_slice(lines));
         if let Some(pages) = &mut self.pages {
+            if self.coarsens {
+                pages.coarsen(&gpu.device, scene.mesh);
+            }
             pages.update(&gpu.queue, scene.mesh, scene.look.sets);
             (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
             if let Some(values) = scene.values.filter(|_| kind == 2.0) {
@@ -389,7 +404,8 @@ impl Renderer {
             if let Some(pages) = &self.pages {
                 pass.set_pipeline(&self.clay);
                 pass.set_bind_group(0, self.objects.active_group(), &[]);
-                let drawn = pages.draw(&mut pass, shown);
+                let (drawn, coarse) = pages.draw_by_size(&mut pass, (&own, size.1), shown);
+                self.coarse = coarse;
                 let all = others.iter().map(|o| o.clay.page_count()).sum::<usize>();
                 self.drawn = (drawn, scene.mesh.page_count() + all);
                 if preview.is_some() {

@@ -208,7 +208,7 @@ impl WindowState {
         ui_state.brush_panel.saves = wiring.brushes.is_some();
         ui_state.walls.presets.clone_from(&wiring.thickness_presets);
         let samples = gpu.samples(ui_state.prefs.smooth_edges);
-        let renderer = Renderer::new(&gpu, clay_format, samples);
+        let renderer = Renderer::of_window(&gpu, clay_format, samples);
         let context = egui::Context::default();
         let scale = window.scale_factor() as f32;
         let mut egui = egui_winit::State::new(

@@ -249,6 +249,42 @@ fn a_line_within_the_clay_is_seen_dim_where_it_is_to_be_seen_through_it() {
     assert!(within > hidden + 40, "{within} to {hidden}");
 }
 
+/// Far pages are drawn with fewer triangles once these are made: the picture stays.
+#[test]
+fn far_pages_of_a_large_work_look_as_all_their_triangles_do() {
+    let Some(mut painter) = painter() else { return };
+    let mut mesh = sphere(300_000);
+    dab(&mut mesh, 0.3);
+    let (camera, snapshot) = (framed(&mesh, 4.0 / 3.0), mesh.snapshot());
+    let scene = Scene {
+        mesh: &snapshot,
+        camera: &camera,
+        brush: None,
+        lines: &[],
+        look: Look::default(),
+        values: None,
+        beside: Default::default(),
+    };
+    let size = (640, 480);
+    let first = painter.paint(&scene, size.0, size.1).expect("a picture");
+    let begun = painter.renderer().coarse;
+    painter.set_coarsens(true);
+    let last = painter.paint(&scene, size.0, size.1).expect("a picture");
+    let (coarse, drawn) = (painter.renderer().coarse, painter.renderer().drawn.0);
+    let differs = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
+        a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 12)
+    };
+    let many = first.pixels().zip(last.pixels()).filter(|p| differs(*p)).count();
+    println!("{coarse} of {drawn} pages coarse, {many} pixels differ");
+    assert!(begun == 0 && coarse > drawn * 3 / 4, "{begun}, {coarse} of {drawn}");
+    assert!(many * 500 < (size.0 * size.1) as usize, "{many} pixels differ");
+    // From near all triangles are drawn again.
+    let mut near = camera;
+    near.distance *= 0.08;
+    painter.paint(&Scene { camera: &near, ..scene }, size.0, size.1).expect("a picture");
+    assert!(painter.renderer().coarse * 2 < drawn, "{}", painter.renderer().coarse);
+}
+
 /// With `SCULPTD_LONG=1`: whole frames, waited for, while a dab changes the clay before each.
 #[test]
 fn large_works_are_drawn_at_interactive_rates() {
@@ -259,12 +295,15 @@ fn large_works_are_drawn_at_interactive_rates() {
     let Some(painter) = painter() else { return };
     let gpu = painter.gpu();
     let works: &[usize] = if gpu.software { &[500_000] } else { &[500_000, 5_000_000] };
-    for &vertices in works {
+    let cases = [(1.0, false), (4.0, false), (4.0, true)];
+    for (&vertices, (away, coarsens)) in works.iter().flat_map(|w| cases.map(|c| (w, c))) {
         let mut mesh = sphere(vertices);
-        let camera = framed(&mesh, 16.0 / 9.0);
+        let mut camera = framed(&mesh, 16.0 / 9.0);
+        camera.distance *= away;
         let format = wgpu::TextureFormat::Rgba8UnormSrgb;
         let mut renderer =
             sculptd_window::viewer::renderer::Renderer::new(gpu, format, gpu.samples(false));
+        renderer.coarsens = coarsens;
         let size = wgpu::Extent3d { width: 1920, height: 1080, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -306,9 +345,12 @@ fn large_works_are_drawn_at_interactive_rates() {
         }
         let (frame, cpu) = (whole[whole.len() / 2], own[own.len() / 2]);
         println!(
-            "{}: {} triangles at 1920x1080: frame {frame:.2} ms, own work {cpu:.2} ms",
+            "{}: {} triangles at 1920x1080, {away} times as far, {} of {} pages coarse: frame \
+             {frame:.2} ms, own work {cpu:.2} ms",
             gpu.name(),
-            mesh.triangle_count()
+            mesh.triangle_count(),
+            renderer.coarse,
+            renderer.drawn.0
         );
         // Where a processor draws, the time is the processor's: told, not promised.
         assert!(gpu.software || frame < 33.0, "{frame} ms");
