@@ -147,13 +147,14 @@ impl ZenohLink {
 
 impl ZenohLink {
     /// A thread for each receiver: one whose connection stands still holds up nobody else.
-    fn send_bulk(&mut self, key: String, bytes: Vec<u8>) {
+    fn send_bulk(&mut self, to: Address, bytes: Vec<u8>) {
+        let key = self.key(To::Bulk(to));
         if !self.bulk.contains_key(&key) {
             self.bulk.retain(|_, sender| !sender.is_empty());
             let (sender, waiting) = cc::bounded(BULK);
-            let (session, to) = (self.session.clone(), key.clone());
+            let (session, of) = (self.session.clone(), key.clone());
             let thread = std::thread::Builder::new().name("sculptd-bulk".into());
-            if let Err(e) = thread.spawn(move || send_bulk(&session, to, &waiting)) {
+            if let Err(e) = thread.spawn(move || send_bulk(&session, of, &waiting)) {
                 return tracing::warn!("a checkpoint is not sent: no thread: {e}");
             }
             self.bulk.insert(key.clone(), sender);
@@ -181,8 +182,8 @@ impl Transport for ZenohLink {
     }
 
     fn send(&mut self, to: To, bytes: Vec<u8>) {
-        if let To::Bulk(_) = to {
-            return self.send_bulk(self.key(to), bytes);
+        if let To::Bulk(to) = to {
+            return self.send_bulk(to, bytes);
         }
         if let Err(e) = self.put(to, bytes) {
             tracing::debug!("a datagram was not sent: {e}");

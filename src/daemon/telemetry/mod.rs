@@ -73,11 +73,9 @@ impl Telemetry {
         let mut exporter = Exporter { options, watched, poster, begun_ns, failing: false };
         let thread =
             std::thread::Builder::new().name("sculptd-telemetry".into()).spawn(move || {
-                loop {
-                    match stopped.recv_timeout(exporter.options.every) {
-                        Err(cc::RecvTimeoutError::Timeout) => exporter.export(PATIENCE),
-                        _ => break,
-                    }
+                let passed = cc::RecvTimeoutError::Timeout;
+                while stopped.recv_timeout(exporter.options.every) == Err(passed) {
+                    exporter.export(PATIENCE);
                 }
                 exporter.export(LAST_PATIENCE);
                 exporter.options.logs.close();

@@ -77,7 +77,7 @@ impl CoarsePages {
             }
             let worth = !self.indices.is_empty() && self.indices.len() <= room;
             let end = self.next + self.indices.len() as u32;
-            self.ranges.push(worth.then(|| self.next..end));
+            self.ranges.push(worth.then_some(self.next..end));
             if worth {
                 let at = u64::from(self.next) * size_of::<u32>() as u64;
                 queue.write_buffer(&self.buffer, at, bytemuck::cast_slice(&self.indices));
