@@ -19,6 +19,8 @@ enum Manner {
     Closes,
     /// Answers with this status.
     Answers(u16),
+    /// Takes figures, and no logs.
+    NoLogs,
     /// Never answers.
     Silent,
     /// Answers well, and at a length that nobody reads.
@@ -94,7 +96,12 @@ fn answer(stream: TcpStream, manner: Manner, tell: &crossbeam_channel::Sender<(S
     let mut body = vec![0; length];
     reader.read_exact(&mut body).expect("all of it");
     assert!(json && secret, "{head}");
-    let (mut stream, status) = (stream, if let Manner::Answers(s) = manner { s } else { 200 });
+    let mut stream = stream;
+    let status = match manner {
+        Manner::Answers(status) => status,
+        Manner::NoLogs if head.contains("/v1/logs") => 404,
+        _ => 200,
+    };
     let _ = write!(stream, "HTTP/1.1 {status} So\r\n");
     if manner == Manner::Endless {
         let _ = stream.write_all(b"Transfer-Encoding: chunked\r\n\r\n");
@@ -102,7 +109,7 @@ fn answer(stream: TcpStream, manner: Manner, tell: &crossbeam_channel::Sender<(S
     } else {
         let _ = stream.write_all(b"Content-Length: 2\r\n\r\n{}");
     }
-    if status == 200 {
+    if status != 503 && status != 500 {
         let path = head.split(' ').nth(1).expect("a path").to_owned();
         let _ = tell.send((path, serde_json::from_slice(&body).expect("JSON")));
     }
@@ -210,6 +217,27 @@ fn a_collector_that_is_away_is_told_of_once_and_catches_up() {
     let grown = memory_kib(daemon.id()).saturating_sub(memory);
     assert!(grown < 8 << 10, "{grown} KiB for a collector that was away");
     assert!(daemon.end() < 30.0);
+}
+
+#[test]
+fn a_collector_that_takes_no_logs_makes_none() {
+    let collector = Collector::start(Manner::Answers(503));
+    let daemon = daemon(&collector);
+    until("it has failed some times", || collector.met() >= 3);
+    collector.behaves(Manner::NoLogs);
+    let (mut exports, mut lines) = (0, 0);
+    while exports < 20 {
+        match collector.taken.recv_timeout(PATIENCE).expect("a request comes") {
+            (path, _) if path == "/in/v1/metrics" => exports += 1,
+            (_, body) => {
+                let records = &body["resourceLogs"][0]["scopeLogs"][0]["logRecords"];
+                lines += records.as_array().map_or(0, Vec::len);
+            }
+        }
+    }
+    // That none went, that figures go again, and that logs do not.
+    assert!(lines <= 3, "{lines} lines in {exports} exports");
+    drop(daemon);
 }
 
 #[test]

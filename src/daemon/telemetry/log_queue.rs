@@ -8,6 +8,19 @@ const MOST: usize = 3600;
 /// Bytes of a record's text.
 const MAX_TEXT: usize = 4000;
 
+/// Fields of a record, and bytes of each.
+const MAX_FIELDS: usize = 16;
+/// See [`MAX_FIELDS`].
+const MAX_FIELD: usize = 250;
+
+fn shorten(text: &mut String, most: usize) {
+    let mut end = most.min(text.len());
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    text.truncate(end);
+}
+
 /// One line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogRecord {
@@ -64,11 +77,9 @@ impl LogQueue {
         if !waiting.open {
             return;
         }
-        let mut end = MAX_TEXT.min(record.text.len());
-        while !record.text.is_char_boundary(end) {
-            end -= 1;
-        }
-        record.text.truncate(end);
+        shorten(&mut record.text, MAX_TEXT);
+        record.fields.truncate(MAX_FIELDS);
+        record.fields.iter_mut().for_each(|(_, value)| shorten(value, MAX_FIELD));
         waiting.last += 1;
         record.number = waiting.last;
         if waiting.records.len() >= MOST {

@@ -14,6 +14,7 @@ pub mod otlp;
 mod post;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -30,6 +31,10 @@ use crate::systemd::Watched;
 const PATIENCE: Duration = Duration::from_secs(3);
 /// See [`PATIENCE`].
 const LAST_PATIENCE: Duration = Duration::from_millis(900);
+/// Where figures go, and lines of the log.
+const METRICS: &str = "/v1/metrics";
+/// See [`METRICS`].
+const LOGS: &str = "/v1/logs";
 /// Records of one request.
 const BATCH: usize = 512;
 
@@ -56,6 +61,8 @@ pub fn host_name() -> String {
 /// The export; it ends, with a last one, when this is dropped.
 #[derive(Debug)]
 pub struct Telemetry {
+    /// What is under way is given up.
+    ending: Arc<AtomicBool>,
     stop: Option<cc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -70,22 +77,26 @@ impl Telemetry {
         let (stop, stopped) = cc::bounded(0);
         options.logs.open();
         let begun_ns = (options.now_ns)();
-        let mut exporter = Exporter { options, watched, poster, begun_ns, failing: false };
+        let ending = Arc::new(AtomicBool::new(false));
+        let (poster, failing) = (poster.until(ending.clone()), [false; 2]);
+        let mut exporter = Exporter { options, watched, poster, begun_ns, failing };
         let thread =
             std::thread::Builder::new().name("sculptd-telemetry".into()).spawn(move || {
                 let passed = cc::RecvTimeoutError::Timeout;
                 while stopped.recv_timeout(exporter.options.every) == Err(passed) {
-                    exporter.export(PATIENCE);
+                    exporter.export(PATIENCE, None);
                 }
-                exporter.export(LAST_PATIENCE);
+                exporter.poster.go_on();
+                exporter.export(PATIENCE, Some(LAST_PATIENCE));
                 exporter.options.logs.close();
             })?;
-        Ok(Telemetry { stop: Some(stop), thread: Some(thread) })
+        Ok(Telemetry { ending, stop: Some(stop), thread: Some(thread) })
     }
 }
 
 impl Drop for Telemetry {
     fn drop(&mut self) {
+        self.ending.store(true, Relaxed);
         drop(self.stop.take());
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
@@ -98,18 +109,22 @@ struct Exporter {
     watched: Watched,
     poster: Poster,
     begun_ns: u64,
-    /// The last request failed, and that was told.
-    failing: bool,
+    /// The last request with figures failed, and the last with lines of the log, and that was told:
+    /// a collector may take the ones and not the others.
+    failing: [bool; 2],
 }
 
 impl Exporter {
     /// All figures as they are now, then what the log holds.
-    fn export(&mut self, patience: Duration) {
+    /// Each request may take `patience`; `last`: all together.
+    fn export(&mut self, patience: Duration, mut last: Option<Duration>) {
         let (options, watched) = (&self.options, &self.watched);
         let latency = stages(&watched.window.present_latency());
         let times = (self.begun_ns, (options.now_ns)());
         let body = otlp::metrics(&options.resource, &all_metrics(watched), &latency, times);
-        if self.told(self.poster.post("/v1/metrics", body, patience)) {
+        let (mut each, of) = (patience, &mut last);
+        let sent = self.poster.post(METRICS, body, of.as_mut().unwrap_or(&mut each));
+        if self.told(METRICS, sent) {
             return;
         }
         loop {
@@ -118,29 +133,30 @@ impl Exporter {
                 return;
             }
             let body = otlp::logs(&self.options.resource, &records);
-            let sent = self.poster.post("/v1/logs", body, patience);
+            let mut each = patience;
+            let sent = self.poster.post(LOGS, body, last.as_mut().unwrap_or(&mut each));
             // What the collector will never take stands in nobody's way.
             let done = !matches!(&sent, Err(e) if e.may_pass());
             if done {
                 self.options.logs.remove(&records);
             }
-            if self.told(sent) {
+            if self.told(LOGS, sent) {
                 return;
             }
         }
     }
 
     /// Tells of a failure, or of its end, once. Whether it failed.
-    fn told(&mut self, result: Result<(), PostError>) -> bool {
-        let (to, failed) = (self.options.endpoint.shown(), result.is_err());
+    fn told(&mut self, path: &str, result: Result<(), PostError>) -> bool {
+        let (to, failed) = (self.options.endpoint.shown() + path, result.is_err());
+        let failing = std::mem::replace(&mut self.failing[usize::from(path == LOGS)], failed);
         match result {
-            Err(e) if !self.failing => {
+            Err(e) if !failing => {
                 tracing::warn!("no telemetry goes to the collector at {to}: {e}; it is tried again")
             }
-            Ok(()) if self.failing => tracing::info!("the collector at {to} takes telemetry again"),
+            Ok(()) if failing => tracing::info!("the collector at {to} takes telemetry again"),
             _ => {}
         }
-        self.failing = failed;
         failed
     }
 }

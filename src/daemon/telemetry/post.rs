@@ -1,7 +1,9 @@
 //! One request to a collector, within a time.
 
 use std::future::poll_fn;
-use std::pin::Pin;
+use std::pin::{Pin, pin};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use hyper::body::{Body, Incoming};
@@ -14,6 +16,8 @@ use super::endpoint::Endpoint;
 
 /// Bytes of an answer that are read; more is cut off.
 const MAX_ANSWER: usize = 64 << 10;
+/// How often it is asked whether a request is to be given up.
+const STEP: Duration = Duration::from_millis(50);
 /// Characters of an answer that are told.
 const TOLD: usize = 200;
 
@@ -42,7 +46,18 @@ impl PostError {
 #[derive(Debug)]
 pub struct Poster {
     endpoint: Endpoint,
-    runtime: tokio::runtime::Runtime,
+    runtime: Option<tokio::runtime::Runtime>,
+    /// What is under way is given up once this is true.
+    ending: Arc<AtomicBool>,
+}
+
+impl Drop for Poster {
+    fn drop(&mut self) {
+        // The look-up of a name cannot be given up, and is not waited for.
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
 }
 
 impl Poster {
@@ -53,18 +68,39 @@ impl Poster {
     pub fn new(endpoint: Endpoint) -> std::io::Result<Poster> {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_io().enable_time().build()?;
-        Ok(Poster { endpoint, runtime })
+        Ok(Poster { endpoint, runtime: Some(runtime), ending: Arc::default() })
     }
 
-    /// Sends a body of JSON. Waits for at most `patience`.
+    /// Gives up what is under way once this is true.
+    pub fn until(mut self, ending: Arc<AtomicBool>) -> Poster {
+        self.ending = ending;
+        self
+    }
+
+    /// Sends on although it ends.
+    pub fn go_on(&mut self) {
+        self.ending = Arc::default();
+    }
+
+    /// Sends a body of JSON. Waits for at most `patience`, which becomes less by that.
     ///
     /// # Errors
     /// [`PostError`]
-    pub fn post(&self, path: &str, body: String, patience: Duration) -> Result<(), PostError> {
-        let exchange = exchange(&self.endpoint, path, body);
-        let (status, answer) = self.runtime.block_on(async {
-            let late = |_| PostError::Unreachable(format!("no answer within {patience:?}"));
-            tokio::time::timeout(patience, exchange).await.map_err(late)?
+    pub fn post(&self, path: &str, body: String, patience: &mut Duration) -> Result<(), PostError> {
+        let Some(runtime) = &self.runtime else {
+            return Err(PostError::Unreachable("it has ended".into()));
+        };
+        let (status, answer) = runtime.block_on(async {
+            let mut exchange = pin!(exchange(&self.endpoint, path, body));
+            loop {
+                if let Ok(done) = tokio::time::timeout(STEP, exchange.as_mut()).await {
+                    return done;
+                }
+                *patience = patience.saturating_sub(STEP);
+                if patience.is_zero() || self.ending.load(Relaxed) {
+                    return Err(PostError::Unreachable("no answer in time".into()));
+                }
+            }
         })?;
         match status.is_success() {
             true => Ok(()),
