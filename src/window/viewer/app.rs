@@ -4,6 +4,7 @@
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
+#[cfg(feature = "accessibility")]
 use egui_winit::accesskit_winit::WindowEvent as AccessibilityRequest;
 use glam::Vec2;
 use winit::application::ApplicationHandler;
@@ -55,6 +56,7 @@ impl ApplicationHandler<AccessibilityEvent> for App {
         }
     }
 
+    #[cfg(feature = "accessibility")]
     fn user_event(&mut self, _: &ActiveEventLoop, event: AccessibilityEvent) {
         let Some(open) = &mut self.open else { return };
         let context = open.egui.egui_ctx();

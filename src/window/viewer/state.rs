@@ -41,8 +41,12 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::{MenuItem, Similarity};
 use sculptd_engine::scene::{ObjectId, ObjectTransform};
 
-/// What a screen reader asks for, from its own thread.
+/// A screen reader's request, sent from its own thread.
+#[cfg(feature = "accessibility")]
 pub(super) type AccessibilityEvent = egui_winit::accesskit_winit::Event;
+/// No screen reader is connected in a build without the feature `accessibility`.
+#[cfg(not(feature = "accessibility"))]
+pub(super) type AccessibilityEvent = ();
 
 /// What the mesh over the clay was made from: the held object and its transform, the Boolean that
 /// is previewed, the menu.
@@ -151,6 +155,7 @@ impl WindowState {
     pub(super) fn new(
         events: &ActiveEventLoop,
         wiring: &Wiring,
+        #[cfg_attr(not(feature = "accessibility"), allow(unused_variables))]
         accessibility: &EventLoopProxy<AccessibilityEvent>,
     ) -> Result<WindowState, NoViewer> {
         let no_window = |e: String| NoViewer::Window(e);
@@ -220,6 +225,7 @@ impl WindowState {
             None,
         );
         // A screen reader meets a window that is not shown yet, else it would miss its first state.
+        #[cfg(feature = "accessibility")]
         egui.init_accesskit(events, &window, accessibility.clone());
         window.set_visible(true);
         if wiring.full_screen {
