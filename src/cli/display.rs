@@ -52,6 +52,10 @@ pub struct Shown {
     pub open_next: super::library::OpenNext,
 }
 
+/// Answers that wait for the window: more than it sends commands between two looks.
+#[cfg(feature = "viewer")]
+const ANSWERS: usize = 1024;
+
 /// Gives what shows the window until it is closed or the run ends; its `Err` says why there is
 /// none. It holds nothing of the run but handles.
 #[cfg(feature = "viewer")]
@@ -61,8 +65,10 @@ pub fn window(
     rate_hz: u32,
 ) -> Result<impl FnOnce() -> Result<(), String> + use<>, String> {
     let adaptors = run.adaptors.clone();
+    let (reports, answers) = crossbeam_channel::bounded(ANSWERS);
     let wiring = sculptd_window::viewer::Wiring {
-        commands: run.live.commands.clone(),
+        commands: run.live.commands.reporting_to(reports),
+        answers,
         published: run.live.published.clone(),
         pen_trail: run.live.pen_trail.clone(),
         pointer: run.factory.sender(),

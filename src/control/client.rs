@@ -134,6 +134,11 @@ impl Client {
             }
             let response: Response = serde_json::from_value(answer)
                 .map_err(|e| ClientError::Malformed(e.to_string()))?;
+            // An answer to an earlier request, which nobody waited for any more. A refusal without
+            // an id is about the line or the connection.
+            if !response.id.is_null() && response.id != Value::from(self.sent) {
+                continue;
+            }
             return match (response.result, response.error) {
                 (Some(value), None) => Ok(value),
                 (_, Some(e)) => Err(ClientError::Refused(e)),

@@ -54,6 +54,9 @@ pub struct Response {
     /// Why there is no reply.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<RpcError>,
+    /// The tick of the request's effect, where it had one: every state from that tick on shows it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tick: Option<u64>,
 }
 
 impl Response {
@@ -63,7 +66,12 @@ impl Response {
             Ok(v) => (Some(v), None),
             Err(e) => (None, Some(e)),
         };
-        Response { jsonrpc: "2.0".into(), id, result, error }
+        Response { jsonrpc: "2.0".into(), id, result, error, tick: None }
+    }
+
+    /// The same, with the tick of the request's effect.
+    pub fn with_effect(self, tick: Option<u64>) -> Self {
+        Response { tick, ..self }
     }
 }
 

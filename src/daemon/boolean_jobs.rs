@@ -7,143 +7,99 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use serde::Serialize;
 
-use super::command_queue::{CommandSender, QueuedCommand};
+use super::command_queue::{CommandSender, NoAnswer};
 use super::hand_jobs;
 pub use super::hand_jobs::operation;
+use super::operations::{self, Computed, OperationError, Target};
 use super::published::Published;
-use sculptd_clay::{Clay, Grafted, Level, LevelError, Levels, PAGE_VERTICES, Snapshot};
-use sculptd_engine::command::{Carving, Command, NewClay, OfClay};
+use super::remesh_job::in_place;
+use sculptd_clay::{Grafted, Level, LevelError, Levels, PAGE_VERTICES};
+use sculptd_engine::answer::Answer;
+use sculptd_engine::command::{Carving, Command};
 use sculptd_engine::hand::MenuItem;
-use sculptd_engine::payload::Payload;
-use sculptd_engine::scene::ObjectId;
+use sculptd_engine::scene::{ObjectId, SceneError};
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
-use sculptd_geometry::job::{Cancelled, Job};
-use sculptd_geometry::quads::QuadError;
-use sculptd_geometry::remesh::RemeshError;
+use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
-/// Tries before a work that never rests is told so.
-const TRIES: usize = 3;
 /// Pages that a cut may concern: the tick that makes it waits for no more than this.
 const MOST_PAGES: usize = 64;
-/// For the loop to say whether a cut was made.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-#[derive(Debug, thiserror::Error)]
-pub enum JoinError {
-    #[error("nothing is in the hands")]
-    Empty,
-    #[error(transparent)]
-    Boolean(#[from] boolean::BooleanError),
-    #[error("this part of the view holds nothing that could be cut off")]
-    NoPart,
-    #[error(transparent)]
-    Level(#[from] LevelError),
-    #[error("nothing of the work would be left")]
-    Nothing,
-    #[error("the result cannot be sculpted: {0}")]
-    Build(String),
-    #[error("the work was changed while it was joined, {TRIES} times over")]
-    Restless,
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    #[error(transparent)]
-    Remesh(#[from] RemeshError),
-    #[error("voxel = {voxel}: expected {least} to {most}, 1024 to 8 along the longest side")]
-    Voxel { voxel: f32, least: f32, most: f32 },
-    #[error(transparent)]
-    Quads(#[from] QuadError),
-    #[error("levels = {0}: expected 0 to 6")]
-    QuadLevels(u32),
-    #[error("triangles = {0}: expected at least 4, or a max_error")]
-    Triangles(usize),
-    #[error("the loop has ended")]
-    Ended,
-    #[error(transparent)]
-    Combine(#[from] crate::scene_jobs::CombineError),
-    #[error(transparent)]
-    Snap(#[from] crate::snap_jobs::SnapError),
-    #[error(transparent)]
-    FaceSets(#[from] crate::face_set_jobs::ExtractionError),
-    #[error(transparent)]
-    Mask(#[from] sculptd_clay::measured_mask::MeasuredMaskError),
+/// What a Boolean with the active object gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Joined {
+    /// Computed and written only where the tool is.
+    pub local: bool,
+    /// Pages written anew, and pages that stayed as they were.
+    pub pages_written: usize,
+    pub pages_shared: usize,
+    /// How often it was computed: again where the sculpture changed meanwhile.
+    pub tries: usize,
 }
 
-/// The work and a tool made one: the commands that put the result in place. Where the tool reaches
-/// little of the work, only that is computed and written; every other page stays as it is. `held`:
-/// the tool is the thing in the hands.
+/// Computes the active object and a tool, in the world's frame, made one. Where the tool reaches
+/// little of the object, only that is computed and written; every other page stays as it is.
+/// `held`: the tool is the thing in the hands.
+///
+/// # Errors
+/// Where there is no result.
 pub fn join(
-    work: &Snapshot,
-    tool: &PolyMesh,
+    shown: &Published,
+    tool: PolyMesh,
     held: bool,
     operation: Operation,
     job: &Job,
-) -> Result<Vec<QueuedCommand>, JoinError> {
+) -> Result<Computed<usize>, OperationError> {
+    let (work, tool) = (&shown.mesh, in_own_frame(shown, tool));
     let options = BooleanOptions::default();
-    if let Some(cut) = sculptd_clay::local_boolean::local(work, tool, operation, &options, job)?
+    let then = held.then_some(Command::PutDown);
+    if let Some(cut) = sculptd_clay::local_boolean::local(work, &tool, operation, &options, job)?
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
     {
         let carving = Carving { cut: Arc::new(cut), put_down: held };
-        return Ok(vec![Command::Cut(carving).into()]);
+        return Ok(Computed::of_clay(shown, Command::Cut(carving).into(), 0));
     }
     let masks = work.masks();
     let work = work.to_tri().to_poly();
     job.check().map_err(boolean::BooleanError::from)?;
-    let (solids, _) = boolean::compute([&work, tool], &[operation], &options, job, || 0.0)?;
-    let solid = solids.into_iter().next().ok_or(JoinError::Nothing)?;
+    let (solids, _) = boolean::compute([&work, &tool], &[operation], &options, job, || 0.0)?;
+    let solid = solids.into_iter().next().ok_or(OperationError::Nothing)?;
     if solid.mesh.face_count() == 0 {
-        return Err(JoinError::Nothing);
+        return Err(OperationError::Nothing);
     }
     let plain: TriMesh = solid.mesh.triangulate().0;
     let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
-    let built = Clay::build_masked(&plain, masks.as_deref().unwrap_or(&[]), job);
-    let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
-    let new = NewClay::new(Arc::new(plain), true);
-    let command = match masks {
-        Some(masks) => Command::ReplaceMasked(new, Arc::new(masks)),
-        None => Command::Replace(new),
-    };
-    let mut out = vec![QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)))];
-    out.extend(held.then(|| Command::PutDown.into()));
-    Ok(out)
+    let pages = plain.positions.len().div_ceil(PAGE_VERTICES);
+    let new = in_place(Arc::new(plain), masks, None, job)?;
+    Ok(Computed { then, ..Computed::of_clay(shown, new, pages) })
 }
 
-/// The work one level finer or coarser: the command that puts it in place, and which level of how
-/// many it is.
+/// Computes the active object one level finer or coarser. The result says which level of how many.
+///
+/// # Errors
+/// Where there is no such level.
 pub fn level(
-    shown: &ArcSwap<Published>,
+    now: &Published,
     finer: bool,
-) -> Result<(QueuedCommand, (usize, usize)), JoinError> {
-    settled(shown, |now| {
-        let (work, job) =
-            (Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() }, Job::default());
-        let levels = now.mesh.levels().map(|l| &**l);
-        let (level, levels) = match (finer, levels) {
-            // Where triangles were cut the levels end: what is there now is the lowest of new ones.
-            (true, levels) => Levels::up(levels.filter(|l| l.fits(&work.mesh)), &work, &job)?,
-            (false, Some(levels)) => levels.down(&work, &job)?,
-            (false, None) => return Err(LevelError::Lowest.into()),
-        };
-        let built = Clay::build_masked(&level.mesh, level.masks.as_deref().unwrap_or(&[]), &job);
-        let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
-        let at = levels.at();
-        let mut clay = NewClay::new(Arc::new(level.mesh), true);
-        clay.levels = Some(Arc::new(levels));
-        let command = match level.masks {
-            Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
-            None => Command::Replace(clay),
-        };
-        let queued = QueuedCommand::with_payload(command, Payload::Clay(Box::new(built)));
-        Ok((of_clay(now, queued), at))
-    })
+    job: &Job,
+) -> Result<Computed<(usize, usize)>, OperationError> {
+    let work = Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() };
+    let levels = now.mesh.levels().map(|l| &**l);
+    let (level, levels) = match (finer, levels) {
+        // Where triangles were cut the levels end: what is there now is the lowest of new ones.
+        (true, levels) => Levels::up(levels.filter(|l| l.fits(&work.mesh)), &work, job)?,
+        (false, Some(levels)) => levels.down(&work, job)?,
+        (false, None) => return Err(LevelError::Lowest.into()),
+    };
+    let at = levels.at();
+    let queued = in_place(Arc::new(level.mesh), level.masks, Some(levels), job)?;
+    Ok(Computed::of_clay(now, queued, at))
 }
 
 /// What hands ask for.
@@ -169,10 +125,11 @@ impl BooleanJobs {
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for request in todo {
                 // A bug in one Boolean must not end those that follow.
-                let join = || by_hand(&shown, request, &Job::default(), &commands);
+                let to = Target { published: &shown, commands: &commands };
+                let join = || by_hand(to, request, &Job::default());
                 match catch_unwind(AssertUnwindSafe(join)) {
                     Ok(Ok(())) => {}
-                    Ok(Err(JoinError::Ended)) => return,
+                    Ok(Err(OperationError::NoAnswer(NoAnswer::Ended))) => return,
                     Ok(Err(e)) => tracing::warn!("{request:?}: {e}"),
                     Err(_) => tracing::error!("{request:?}: it ended by a bug"),
                 }
@@ -188,59 +145,48 @@ impl BooleanJobs {
 }
 
 /// Carries out what hands asked for.
-fn by_hand(
-    shown: &ArcSwap<Published>,
-    request: HandRequest,
-    job: &Job,
-    commands: &CommandSender,
-) -> Result<(), JoinError> {
-    let now = shown.load_full();
-    let send = |queued| commands.send(queued).map_err(|_| JoinError::Ended);
-    match (request, now.object_in_hand) {
-        (HandRequest::Join(choice), Some(held)) => send(hand_jobs::join(&now, held, choice, job)?),
-        (HandRequest::Join(choice), None) => at_rest(shown, choice, job, commands).map(|_| ()),
+fn by_hand(to: Target<'_>, request: HandRequest, job: &Job) -> Result<(), OperationError> {
+    match (request, to.published.load().object_in_hand) {
+        (HandRequest::Join(choice), Some(held)) => {
+            operations::carry_out(to, job, |now| hand_jobs::join(now, held, choice, job))?;
+        }
+        (HandRequest::Join(choice), None) => {
+            at_rest(to, choice, job)?;
+        }
         (HandRequest::LayDown(id), _) => {
             // The state that shows where it was put down comes right after the tick that asked.
-            match hand_jobs::lay_down(&now, id)? {
-                Some(queued) => send(queued),
-                None => Ok(()),
+            let near = |now: &Published| hand_jobs::lay_down(now, id);
+            if near(&to.published.load_full())?.is_some() {
+                operations::carry_out(to, job, |now| {
+                    near(now)?.ok_or(OperationError::Refused(SceneError::Stale))
+                })?;
             }
         }
     }
+    Ok(())
 }
 
-/// What a join came to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Joined {
-    /// Computed and written only where the tool is.
-    pub local: bool,
-    /// Pages written anew, and pages that stayed as they were.
-    pub pages_written: usize,
-    pub pages_shared: usize,
-    /// Times that it was computed: again where the work was changed meanwhile.
-    pub tries: usize,
+/// Joins the active object with the thing in the hands, by a choice of the hands' menu.
+///
+/// # Errors
+/// Why nothing was changed.
+pub fn at_rest(to: Target<'_>, choice: MenuItem, job: &Job) -> Result<Joined, OperationError> {
+    join_held(to, operation(choice).ok_or(OperationError::Empty)?, job)
 }
 
-/// Joins the work as it is now with the thing in the hands, by a choice of the hands' menu.
-pub fn at_rest(
-    shown: &ArcSwap<Published>,
-    choice: MenuItem,
-    job: &Job,
-    commands: &CommandSender,
-) -> Result<Joined, JoinError> {
-    join_held(shown, operation(choice).ok_or(JoinError::Empty)?, job, commands)
-}
-
-/// A Boolean of the object as it is now and what the hands hold.
+/// A Boolean of the active object and what the hands hold.
+///
+/// # Errors
+/// Why nothing was changed.
 pub fn join_held(
-    shown: &ArcSwap<Published>,
+    to: Target<'_>,
     operation: Operation,
     job: &Job,
-    commands: &CommandSender,
-) -> Result<Joined, JoinError> {
-    let held =
-        |now: &Published| now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(JoinError::Empty);
-    carry_out(shown, held, true, operation, job, commands)
+) -> Result<Joined, OperationError> {
+    let held = |now: &Published| {
+        now.thing.as_ref().map(|t| t.placed().to_poly()).ok_or(OperationError::Empty)
+    };
+    carry_out(to, held, true, operation, job)
 }
 
 /// A tool of the world in the frame of the active object.
@@ -252,87 +198,22 @@ pub fn in_own_frame(shown: &Published, mut tool: PolyMesh) -> PolyMesh {
     tool
 }
 
-/// A command that was computed for the active clay, to be carried out only while that is active. In
-/// a scene of one object nothing else can be.
-pub fn of_clay(shown: &Published, queued: QueuedCommand) -> QueuedCommand {
-    if shown.scene.objects.len() == 1 {
-        return queued;
-    }
-    let (clay, revision) = shown.clay_revision();
-    let wrap = |command: Command| match command {
-        // A cut says itself whether it still fits.
-        Command::Cut(_) => Command::OfClay(Box::new(OfClay { clay, revision: None, command })),
-        Command::Replace(_) | Command::ReplaceMasked(..) => {
-            Command::OfClay(Box::new(OfClay { clay, revision: Some(revision), command }))
-        }
-        other => other,
-    };
-    QueuedCommand { command: wrap(queued.command), ..queued }
-}
-
-/// What `of` makes of the work; made again when the work was changed meanwhile.
-pub fn settled<T>(
-    shown: &ArcSwap<Published>,
-    of: impl Fn(&Published) -> Result<T, JoinError>,
-) -> Result<T, JoinError> {
-    for _ in 0..TRIES {
-        let before = shown.load_full();
-        let done = of(&before)?;
-        if shown.load().clay_revision() == before.clay_revision() {
-            return Ok(done);
-        }
-    }
-    Err(JoinError::Restless)
-}
-
-/// Joins the work as it is now with the tool; again where the work was changed there meanwhile.
+/// Joins the active object with a tool, and waits for the loop to install the result.
+///
+/// # Errors
+/// Why nothing was changed.
 pub fn carry_out(
-    shown: &ArcSwap<Published>,
-    tool: impl Fn(&Published) -> Result<PolyMesh, JoinError>,
+    to: Target<'_>,
+    tool: impl Fn(&Published) -> Result<PolyMesh, OperationError>,
     held: bool,
     operation: Operation,
     job: &Job,
-    commands: &CommandSender,
-) -> Result<Joined, JoinError> {
-    let send = |c: QueuedCommand| commands.send(c).map_err(|_| JoinError::Ended);
-    for tries in 1..=TRIES {
-        let before = shown.load_full();
-        let tool = in_own_frame(&before, tool(&before)?);
-        let done = join(&before.mesh, &tool, held, operation, job)?;
-        let mut done: Vec<_> = done.into_iter().map(|c| of_clay(&before, c)).collect();
-        job.check().map_err(boolean::BooleanError::from)?;
-        if let [one] = &mut done[..]
-            && one.command.is_cut()
-        {
-            let (answer, made) = cc::bounded(1);
-            one.result = Some(answer);
-            done.into_iter().try_for_each(send)?;
-            match made.recv_timeout(PATIENCE) {
-                Ok(Some(Grafted { written, shared })) => {
-                    return Ok(Joined {
-                        local: true,
-                        pages_written: written,
-                        pages_shared: shared,
-                        tries,
-                    });
-                }
-                Ok(None) => continue,
-                Err(_) => return Err(JoinError::Ended),
-            }
-        }
-        if shown.load().clay_revision() == before.clay_revision() {
-            let pages = done.iter_mut().find_map(|queued| {
-                let new = queued.command.new_clay_mut()?;
-                Some(new.plain.positions.len().div_ceil(PAGE_VERTICES))
-            });
-            done.into_iter().try_for_each(send)?;
-            return Ok(Joined {
-                local: false,
-                pages_written: pages.unwrap_or(0),
-                pages_shared: 0,
-                tries,
-            });
-        }
-    }
-    Err(JoinError::Restless)
+) -> Result<Joined, OperationError> {
+    let compute = |now: &Published| join(now, tool(now)?, held, operation, job);
+    let done = operations::carry_out(to, job, compute)?;
+    let (local, pages_written, pages_shared) = match done.answer {
+        Answer::Cut(Grafted { written, shared }) => (true, written, shared),
+        _ => (false, done.made, 0),
+    };
+    Ok(Joined { local, pages_written, pages_shared, tries: done.tries })
 }

@@ -1,14 +1,15 @@
 //! The bounded queue of commands on their way to the loop, each with what it needs besides its own
-//! data and with where its result goes.
+//! data and with where its answer goes.
 
 use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use sculptd_clay::Grafted;
+use sculptd_engine::answer::CommandResult;
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::Payload;
-use sculptd_engine::world::{SceneResult, World};
+use sculptd_engine::scene::SceneError;
+use sculptd_engine::world::World;
 
 /// A command on its way to the loop.
 #[derive(Debug)]
@@ -17,16 +18,37 @@ pub struct QueuedCommand {
     pub command: Command,
     /// What the command needs, built or fetched already.
     pub payload: Option<Payload>,
-    /// Told what came of a [`Command::Cut`]; `None`: the clay had changed there. The loop never
-    /// waits for whoever listens.
-    pub result: Option<cc::Sender<Option<Grafted>>>,
-    /// Told what came of a [`Command::Scene`].
-    pub scene_result: Option<cc::Sender<SceneResult>>,
+    /// Where the answer goes. It is sent once the state that shows the effect is published; the
+    /// loop never waits for whoever listens.
+    pub answer: Option<cc::Sender<CommandAnswer>>,
+}
+
+/// What came of a command, and the tick of its effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CommandAnswer {
+    /// The tick that carried the command out, or refused it.
+    pub tick: u64,
+    /// What came of it.
+    pub result: CommandResult,
+}
+
+/// Why no answer came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NoAnswer {
+    /// The queue stayed full: nothing was sent.
+    #[error("the loop has more commands waiting than it can take. Try again")]
+    Full,
+    /// The command was sent and may still be carried out.
+    #[error("no answer came within {0} s; the command may still be carried out")]
+    Late(u64),
+    /// The loop has ended, or the sculpture was replaced before it came to the command.
+    #[error("the loop ended before it came to the command")]
+    Ended,
 }
 
 impl From<Command> for QueuedCommand {
     fn from(command: Command) -> Self {
-        QueuedCommand { command, payload: None, result: None, scene_result: None }
+        QueuedCommand { command, payload: None, answer: None }
     }
 }
 
@@ -53,15 +75,53 @@ pub struct QueueClosed;
 
 /// The senders' end of the queue.
 #[derive(Debug, Clone)]
-pub struct CommandSender(cc::Sender<QueuedCommand>);
+pub struct CommandSender {
+    queue: cc::Sender<QueuedCommand>,
+    /// Where answers go that nobody waits for.
+    answers: Option<cc::Sender<CommandAnswer>>,
+}
 
 impl CommandSender {
+    /// Returns a sender whose commands report what came of them to `answers`, so that no refusal
+    /// is lost where nobody waits for it.
+    pub fn reporting_to(&self, answers: cc::Sender<CommandAnswer>) -> CommandSender {
+        CommandSender { answers: Some(answers), ..self.clone() }
+    }
+
+    fn with_answer(&self, command: impl Into<QueuedCommand>) -> QueuedCommand {
+        let mut queued = command.into();
+        queued.answer = queued.answer.or_else(|| self.answers.clone());
+        queued
+    }
+
     /// Sends a command; waits while the queue is full.
     ///
     /// # Errors
     /// When the loop has ended.
     pub fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), QueueClosed> {
-        self.0.send(command.into()).map_err(|_| QueueClosed)
+        self.queue.send(self.with_answer(command)).map_err(|_| QueueClosed)
+    }
+
+    /// Sends a command and waits for its answer: when this returns, the published state shows the
+    /// effect. Waits for at most `patience` for room in the queue, and as long for the answer.
+    ///
+    /// # Errors
+    /// Where no answer came. That the command was refused is an answer.
+    pub fn carry_out(
+        &self,
+        command: impl Into<QueuedCommand>,
+        patience: Duration,
+    ) -> Result<CommandAnswer, NoAnswer> {
+        let (answer, answered) = cc::bounded(1);
+        let queued = QueuedCommand { answer: Some(answer), ..command.into() };
+        self.queue.send_timeout(queued, patience).map_err(|e| match e {
+            cc::SendTimeoutError::Timeout(_) => NoAnswer::Full,
+            cc::SendTimeoutError::Disconnected(_) => NoAnswer::Ended,
+        })?;
+        answered.recv_timeout(patience).map_err(|e| match e {
+            cc::RecvTimeoutError::Timeout => NoAnswer::Late(patience.as_secs()),
+            cc::RecvTimeoutError::Disconnected => NoAnswer::Ended,
+        })
     }
 
     /// Sends a command without waiting.
@@ -69,7 +129,12 @@ impl CommandSender {
     /// # Errors
     /// When the queue is full or the loop has ended.
     pub fn try_send(&self, command: impl Into<QueuedCommand>) -> Result<(), QueueClosed> {
-        self.0.try_send(command.into()).map_err(|_| QueueClosed)
+        self.queue.try_send(self.with_answer(command)).map_err(|e| {
+            if let cc::TrySendError::Full(QueuedCommand { answer: Some(answer), .. }) = e {
+                let _ = answer.try_send(CommandAnswer { tick: 0, result: Err(SceneError::Busy) });
+            }
+            QueueClosed
+        })
     }
 
     /// Sends a command; waits for at most `patience` while the queue is full.
@@ -81,12 +146,12 @@ impl CommandSender {
         command: impl Into<QueuedCommand>,
         patience: Duration,
     ) -> Result<(), QueueClosed> {
-        self.0.send_timeout(command.into(), patience).map_err(|_| QueueClosed)
+        self.queue.send_timeout(self.with_answer(command), patience).map_err(|_| QueueClosed)
     }
 }
 
 /// A queue for at most `capacity` commands: the senders' end and the loop's.
 pub fn command_queue(capacity: usize) -> (CommandSender, cc::Receiver<QueuedCommand>) {
     let (sender, receiver) = cc::bounded(capacity);
-    (CommandSender(sender), receiver)
+    (CommandSender { queue: sender, answers: None }, receiver)
 }

@@ -4,10 +4,7 @@
 
 use std::sync::Arc;
 
-use arc_swap::ArcSwap;
-
-use crate::boolean_jobs::{JoinError, of_clay, settled};
-use crate::command_queue::QueuedCommand;
+use crate::operations::{Computed, OperationError};
 use crate::remesh_job::in_place;
 use crate::{Published, carry_over};
 use sculptd_geometry::decimate::{DecimationTarget, decimate};
@@ -44,49 +41,47 @@ pub struct DecimateMade {
     pub repeated: usize,
 }
 
-/// The command that puts the decimated object in place, as one step of undo, and what it is.
+/// Computes the decimated object: one step of undo.
 ///
 /// # Errors
 /// A target out of range, a cancelled job, and an object that is changed again and again.
 pub fn decimated(
-    shown: &ArcSwap<Published>,
+    now: &Published,
     wanted: &DecimateWanted,
     job: &Job,
-) -> Result<(QueuedCommand, DecimateMade), JoinError> {
+) -> Result<Computed<DecimateMade>, OperationError> {
     if wanted.triangles < LEAST && wanted.max_error.is_none() {
-        return Err(JoinError::Triangles(wanted.triangles));
+        return Err(OperationError::Triangles(wanted.triangles));
     }
-    settled(shown, |now| {
-        let old = now.mesh.to_tri();
-        let masks = now.mesh.masks();
-        let marked: Option<Vec<bool>> =
-            masks.as_ref().map(|m| m.iter().map(|&x| x >= MASKED).collect());
-        let target = DecimationTarget {
-            triangles: wanted.triangles,
-            error: wanted.max_error.map_or(f64::INFINITY, f64::from),
-            single: true,
-        };
-        let done = decimate(&old.to_poly(), marked.as_deref(), target, job)?;
-        let mut new = done.mesh.triangulate().0;
-        if new.triangles.is_empty() {
-            return Err(JoinError::Nothing);
-        }
-        let mut carried = None;
-        if masks.is_some() || old.colours.is_some() {
-            let solid = DistanceSolid::build(&old, job)?;
-            let places = carry_over::places(&old, &solid, &new.positions, job)?;
-            new.colours = carry_over::colours(&old, &places);
-            carried = masks.map(|m| carry_over::values(&old, &m, &places));
-        }
-        let made = DecimateMade {
-            vertices: new.positions.len(),
-            triangles: new.triangles.len(),
-            triangles_before: old.triangles.len(),
-            volume: [measures(&old).volume, measures(&new).volume],
-            new_crossings: done.new_crossings,
-            repeated: done.repeated,
-        };
-        let queued = in_place(Arc::new(new), carried, None, job)?;
-        Ok((of_clay(now, queued), made))
-    })
+    let old = now.mesh.to_tri();
+    let masks = now.mesh.masks();
+    let marked: Option<Vec<bool>> =
+        masks.as_ref().map(|m| m.iter().map(|&x| x >= MASKED).collect());
+    let target = DecimationTarget {
+        triangles: wanted.triangles,
+        error: wanted.max_error.map_or(f64::INFINITY, f64::from),
+        single: true,
+    };
+    let done = decimate(&old.to_poly(), marked.as_deref(), target, job)?;
+    let mut new = done.mesh.triangulate().0;
+    if new.triangles.is_empty() {
+        return Err(OperationError::Nothing);
+    }
+    let mut carried = None;
+    if masks.is_some() || old.colours.is_some() {
+        let solid = DistanceSolid::build(&old, job)?;
+        let places = carry_over::places(&old, &solid, &new.positions, job)?;
+        new.colours = carry_over::colours(&old, &places);
+        carried = masks.map(|m| carry_over::values(&old, &m, &places));
+    }
+    let made = DecimateMade {
+        vertices: new.positions.len(),
+        triangles: new.triangles.len(),
+        triangles_before: old.triangles.len(),
+        volume: [measures(&old).volume, measures(&new).volume],
+        new_crossings: done.new_crossings,
+        repeated: done.repeated,
+    };
+    let queued = in_place(Arc::new(new), carried, None, job)?;
+    Ok(Computed::of_clay(now, queued, made))
 }

@@ -1,28 +1,18 @@
 //! What is computed of the face sets of the active object on the thread of whoever asks: which set
 //! is seen at a place, and a part of the surface as a new object.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::Vec2;
 
+use crate::operations::{Computed, OperationError};
 use crate::published::Published;
-use sculptd_clay::face_sets::{self, ExtractError, FaceSetPart, Partition, SetsEdit, SetsError};
-use sculptd_clay::{BuildError, Clay, Ray};
-use sculptd_engine::scene::{NewObject, ObjectSource, SceneError};
+use sculptd_clay::face_sets::{self, FaceSetPart, Partition, SetsEdit};
+use sculptd_clay::{Clay, Ray};
+use sculptd_engine::payload::Payload;
+use sculptd_engine::scene::{NewObject, ObjectSource, SceneCommand, SceneError};
 use sculptd_geometry::job::Job;
-
-/// Why no face sets were made, or no object extracted.
-#[derive(Debug, thiserror::Error)]
-pub enum ExtractionError {
-    #[error(transparent)]
-    Extract(#[from] ExtractError),
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Sets(#[from] SetsError),
-    #[error("the shell cannot be sculpted: {0}")]
-    Build(#[from] BuildError),
-}
 
 /// The face set of the active object that is seen at a place of the view, (0, 0) top left to
 /// (1, 1) bottom right; `None`: the object is not seen there.
@@ -35,15 +25,22 @@ pub fn set_seen(shown: &Published, at: Vec2) -> Option<u16> {
     Some(shown.mesh.set_at(&hit))
 }
 
-/// The edit that gives the active object face sets by its shape.
+/// Computes face sets of the active object by its shape. The result is how many there are.
 ///
 /// # Errors
 /// Where there are more parts than numbers of sets.
-pub fn parted(shown: &Published, by: Partition) -> Result<SetsEdit, ExtractionError> {
-    Ok(face_sets::partition(&shown.mesh, by)?)
+pub fn parted(shown: &Published, by: Partition) -> Result<Computed<u64>, OperationError> {
+    let edit = face_sets::partition(&shown.mesh, by)?;
+    let SetsEdit::Assign { pages, .. } = &edit else {
+        return Ok(Computed::of_scene(SceneCommand::Sets(edit), None, 0));
+    };
+    let all: BTreeSet<u16> = pages.iter().flat_map(|p| p.1.iter().copied()).collect();
+    let made = all.len() as u64 - u64::from(all.contains(&0));
+    Ok(Computed::of_scene(SceneCommand::Sets(edit), None, made))
 }
 
-/// A part of the active object as a new one that stands where it does. `thickness` is in the unit
+/// Computes a part of the active object as a new one that stands where it does. The result is how
+/// many vertices it has. `thickness` is in the unit
 /// of the scene.
 ///
 /// # Errors
@@ -54,10 +51,12 @@ pub fn extract(
     thickness: f64,
     name: &str,
     job: &Job,
-) -> Result<(NewObject, Clay), ExtractionError> {
+) -> Result<Computed<usize>, OperationError> {
     let transform = shown.scene.active().ok_or(SceneError::Last)?.settings.transform;
     let own = (thickness / transform.scale) as f32;
     let shell = face_sets::extract(&shown.mesh, part, own)?;
-    let clay = Clay::build(&shell, job)?;
-    Ok((NewObject::new(name, ObjectSource::Mesh(Arc::new(shell)), transform), clay))
+    let clay = Clay::build(&shell, job).map_err(|e| OperationError::Build(e.to_string()))?;
+    let new = NewObject::new(name, ObjectSource::Mesh(Arc::new(shell)), transform);
+    let (vertices, payload) = (clay.vertex_count(), Payload::Clay(Box::new(clay)));
+    Ok(Computed::of_scene(SceneCommand::Add(new), Some(payload), vertices))
 }

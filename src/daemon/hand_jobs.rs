@@ -1,16 +1,15 @@
 //! What hands ask of workers: a held object joined with another, or laid flush on a face near it.
 //! What comes of it is a command, which the loop carries out only where nothing has changed.
 
-use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
-use sculptd_engine::scene::{ObjectId, ObjectView, SceneCommand, SceneError};
+use sculptd_engine::scene::{ObjectId, ObjectView, SceneError};
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
 
-use crate::command_queue::QueuedCommand;
+use crate::operations::{Computed, OperationError};
 use crate::published::Published;
 use crate::scene_jobs::{self, CombineError, SceneBoolean};
-use crate::snap_jobs::{NearFace, SnapError, onto_what_is_near};
+use crate::snap_jobs::{NearFace, Placed, onto_what_is_near};
 
 /// How near a face must be to be laid on, mm of the hand: a little more than a hand is steady.
 const NEAR_MM: f32 = 15.0;
@@ -31,11 +30,13 @@ pub fn operation(choice: MenuItem) -> Option<Operation> {
 ///
 /// # Errors
 /// Where the object is gone or locked.
-pub fn lay_down(shown: &Published, id: ObjectId) -> Result<Option<QueuedCommand>, SnapError> {
+pub fn lay_down(
+    shown: &Published,
+    id: ObjectId,
+) -> Result<Option<Computed<Placed>>, OperationError> {
     let near = NearFace { distance: f64::from(NEAR_MM * shown.volume.scale), cosine: COSINE };
     let placed = onto_what_is_near(shown, id, near)?;
-    let command = |placing| Command::Scene(SceneCommand::Snap(Box::new(placing)));
-    Ok(placed.map(|p| command(p.placing).into()))
+    Ok(placed.map(Computed::of_snap))
 }
 
 /// The object that a held one is joined with: the active one, or where that is held, of the visible
@@ -65,12 +66,12 @@ pub fn join(
     held: ObjectId,
     choice: MenuItem,
     job: &Job,
-) -> Result<QueuedCommand, CombineError> {
+) -> Result<Computed<()>, OperationError> {
     let operation = operation(choice).ok_or(CombineError::Nothing)?;
     let other = partner(shown, held).ok_or(SceneError::Last)?;
     let done = scene_jobs::boolean(shown, [other, held], SceneBoolean::new(operation), job)?;
     let (command, payload) = done.command();
-    Ok(QueuedCommand::with_payload(Command::Scene(command), payload))
+    Ok(Computed::of_scene(command, Some(payload), ()))
 }
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ pub mod mask_jobs;
 pub mod metric_table;
 #[cfg(unix)]
 pub mod metrics;
+pub mod operations;
 pub mod pacer;
 pub mod page_thread;
 pub mod pen_trail;

@@ -16,7 +16,7 @@ use super::pacer::Pacer;
 use super::page_thread::PageThread;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::boolean_jobs::{BooleanJobs, HandRequest};
-use crate::command_queue::{CommandSender, QueuedCommand, command_queue};
+use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
@@ -26,12 +26,14 @@ use crate::shared_input::{NextTick, SharedInput};
 use crate::tablet_actions::TabletActions;
 use crate::tick::{Journal, in_order_of_time, published_figures};
 use crate::tick_statistics::{TickStatistics, thread_cpu_ns};
-use sculptd_clay::{GarbageSink, Grafted, PageSupply};
+use sculptd_clay::{GarbageSink, PageSupply};
 use sculptd_devices::queue::Receiver;
 use sculptd_devices::{Clock, Sample};
+use sculptd_engine::answer::{Answer, CommandResult};
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::PayloadStore;
-use sculptd_engine::world::{SceneResult, World};
+use sculptd_engine::scene::SceneError;
+use sculptd_engine::world::World;
 
 /// Commands waiting for the loop; a sender beyond it is told so and tries again.
 pub const COMMANDS: usize = 1024;
@@ -176,22 +178,23 @@ struct Ticking {
     trail: PenTrailSender,
 }
 
-/// Where the results of a command go.
-type ResultSenders = (Option<cc::Sender<Option<Grafted>>>, Option<cc::Sender<SceneResult>>);
+/// Where the answer of a command goes; `None`: nobody waits for it.
+type AnswerSender = Option<cc::Sender<CommandAnswer>>;
 
 /// What the loop keeps from tick to tick.
 struct TickBuffers {
     samples: Vec<Sample>,
     commands: Vec<Command>,
-    /// Where the result of each cut of this tick goes, in the order of the commands.
-    results: Vec<Option<cc::Sender<Option<Grafted>>>>,
-    scene_results: Vec<Option<cc::Sender<SceneResult>>>,
-    /// Where the result goes of an edit whose pages are still to follow.
-    late_result: Option<cc::Sender<SceneResult>>,
+    /// Where the answer of each command of this tick goes.
+    senders: Vec<AnswerSender>,
+    /// Where the answer goes of an edit whose pages are still to follow.
+    late: AnswerSender,
+    /// Answers that are sent once the state that shows them is published.
+    answers: Vec<(cc::Sender<CommandAnswer>, CommandAnswer)>,
     /// Commands that wait until such an edit is done, in their order, and ahead of the inbox.
     held: VecDeque<QueuedCommand>,
     /// Of a shared sculpture: where those of the own commands go that are on their way.
-    waiting: VecDeque<ResultSenders>,
+    waiting: VecDeque<AnswerSender>,
     /// What hands asked workers for, to be told once the state that it is about is published.
     asked: Vec<HandRequest>,
     figures: TickStatistics,
@@ -211,9 +214,9 @@ impl Ticking {
         let mut now = TickBuffers {
             samples: Vec::with_capacity(self.drain_per_tick),
             commands: Vec::with_capacity(COMMANDS_PER_TICK),
-            results: Vec::with_capacity(COMMANDS_PER_TICK),
-            scene_results: Vec::with_capacity(COMMANDS_PER_TICK),
-            late_result: None,
+            senders: Vec::with_capacity(COMMANDS_PER_TICK),
+            late: None,
+            answers: Vec::with_capacity(COMMANDS_PER_TICK),
             held: VecDeque::with_capacity(COMMANDS_PER_TICK),
             asked: Vec::new(),
             waiting: VecDeque::new(),
@@ -249,18 +252,19 @@ impl Ticking {
                 begins |= self.shared.is_none() && queued.command.begins_surface_edit();
                 edits |= begins;
                 if let Some(shared) = &mut self.shared {
-                    if !shared.refuses(&queued) {
-                        now.waiting.push_back((queued.result.take(), queued.scene_result.take()));
-                        // Every replica builds what the command needs.
-                        queued.payload.take().into_iter().for_each(|p| garbage.discard_owned(p));
-                        now.commands.push(queued.command);
+                    let answer = queued.answer.take();
+                    if shared.refuses(&queued) {
+                        now.answer(answer, tick, Err(SceneError::NotShared));
+                        continue;
                     }
+                    now.waiting.push_back(answer);
+                    // Every replica builds what the command needs.
+                    queued.payload.take().into_iter().for_each(|p| garbage.discard_owned(p));
+                    now.commands.push(queued.command);
                     continue;
                 }
-                let (result, scene_result) = (queued.result.take(), queued.scene_result.take());
-                let command = queued.deliver(&mut self.world);
-                now.expect(&command, (result, scene_result));
-                now.commands.push(command);
+                now.senders.push(queued.answer.take());
+                now.commands.push(queued.deliver(&mut self.world));
             }
             if let Some(actions) = &mut self.actions {
                 let first = now.commands.len();
@@ -292,6 +296,12 @@ impl Ticking {
                 }
             }
             self.publisher.publish(state, &garbage);
+            // A layer is asked for and its pages follow: until then nothing of it is seen.
+            if !self.world.is_in_layer_edit() {
+                for (sender, answer) in now.answers.drain(..) {
+                    let _ = sender.try_send(answer);
+                }
+            }
             // After the state that they are about is to be seen.
             for request in now.asked.drain(..) {
                 if !self.joiner.as_ref().is_some_and(|j| j.ask(request)) {
@@ -310,31 +320,24 @@ impl Ticking {
         let (begun, begun_cpu) = (self.clock.now_ns(), thread_cpu_ns());
         let report = *self.world.step(tick, &now.samples, &now.commands);
         if let Some(journal) = self.journal.as_deref_mut() {
-            journal.tick(tick, &now.samples, &now.commands, &self.world);
+            journal.tick(tick, &now.samples, &now.commands, &mut self.world);
         }
         if asks {
             now.asked.extend(report.join.map(HandRequest::Join));
             now.asked.extend(report.put_down.map(HandRequest::LayDown));
         }
-        for (result, made) in now.results.drain(..).zip(self.world.cut_results()) {
-            if let Some(result) = result {
-                let _ = result.try_send(*made);
+        if let Some(result) = self.world.late_answer() {
+            let late = now.late.take();
+            now.answer(late, tick, result);
+        }
+        let mut senders = std::mem::take(&mut now.senders);
+        for (sender, result) in senders.drain(..).zip(self.world.answers()) {
+            match result {
+                Ok(Answer::UnderWay) => now.late = sender,
+                result => now.answer(sender, tick, *result),
             }
         }
-        if let Some(done) = self.world.late_result()
-            && let Some(result) = now.late_result.take()
-        {
-            let _ = result.try_send(done);
-        }
-        let unsettled = self.world.unsettled();
-        let results = now.scene_results.drain(..).zip(self.world.scene_results());
-        for (place, (result, done)) in results.enumerate() {
-            if unsettled == Some(place) {
-                now.late_result = result;
-            } else if let Some(result) = result {
-                let _ = result.try_send(*done);
-            }
-        }
+        now.senders = senders;
         discard_commands(&mut now.commands, garbage);
         now.stepped = self.clock.now_ns() - begun;
         now.figures.tick(&report, now.stepped, thread_cpu_ns() - begun_cpu);
@@ -354,7 +357,7 @@ impl Ticking {
     ) {
         // Commands of the tablets' keys have nobody who waits for a result.
         let told = now.commands.len().min(now.waiting.len());
-        (told..now.commands.len()).for_each(|_| now.waiting.push_back((None, None)));
+        (told..now.commands.len()).for_each(|_| now.waiting.push_back(None));
         let own_us = now.samples.last().map(|s| s.t_us);
         shared.submit(&self.world, &mut now.samples, &mut now.commands);
         let newest = now.newest;
@@ -376,15 +379,15 @@ impl Ticking {
                     world.set_page_supply(self.pages.clone());
                     world.warm();
                     now.waiting.clear();
-                    now.late_result = None;
+                    now.late = None;
                     garbage.discard_owned(std::mem::replace(&mut self.world, *world));
                 }
                 NextTick::Step(next) => {
                     let mut own = next.own.iter().peekable();
-                    for (i, command) in next.commands.iter().enumerate() {
+                    for i in 0..next.commands.len() {
                         let is_own = own.next_if(|o| **o == i).is_some();
                         let to = if is_own { now.waiting.pop_front() } else { None };
-                        now.expect(command, to.unwrap_or_default());
+                        now.senders.push(to.flatten());
                     }
                     (now.samples, now.commands) = (next.samples, next.commands);
                     self.step(next.tick, now, garbage, shared.hosts());
@@ -407,13 +410,8 @@ impl Ticking {
 }
 
 impl TickBuffers {
-    /// The results of a command of this tick go there.
-    fn expect(&mut self, command: &Command, (result, scene_result): ResultSenders) {
-        if command.is_cut() {
-            self.results.push(result);
-        }
-        if command.is_scene() {
-            self.scene_results.push(scene_result);
-        }
+    /// Keeps an answer until its effect is published.
+    fn answer(&mut self, sender: AnswerSender, tick: u64, result: CommandResult) {
+        self.answers.extend(sender.map(|sender| (sender, CommandAnswer { tick, result })));
     }
 }

@@ -73,6 +73,8 @@ pub struct Published {
     pub fatigue: (f32, bool),
     /// The next hands are measured for their reach.
     pub calibrating: bool,
+    /// Dabs, or triangles under them, still wait for a tick that has time for them.
+    pub is_behind: bool,
     /// Steps that an undo can take back, with the edit under way where it is one.
     pub undo_steps: usize,
     pub redo_steps: usize,
@@ -176,6 +178,7 @@ impl Published {
             menu: tools.menu().showing(),
             fatigue: (tools.fatigue().spent(), tools.fatigue().wants_lower()),
             calibrating: tools.is_calibrating(),
+            is_behind: world.report().paused,
             undo_steps: world.undo_steps() + usize::from(world.is_taken_back_by(&Command::Undo)),
             redo_steps: world.redo_steps(),
             people: None,

@@ -6,12 +6,10 @@
 
 use std::sync::Arc;
 
-use arc_swap::ArcSwap;
 use glam::{DVec3, Vec3};
 
-use crate::boolean_jobs::{JoinError, of_clay, settled};
 use crate::carry_over::OldPlace;
-use crate::command_queue::QueuedCommand;
+use crate::operations::{Computed, OperationError};
 use crate::remesh_job::in_place;
 use crate::{Published, carry_over, polygons};
 use sculptd_clay::{Level, Levels};
@@ -69,68 +67,66 @@ pub struct QuadsMade {
 /// Numbers out of range, a surface that [`quad_remesh`] refuses, a cancelled job, and an object
 /// that is changed again and again.
 pub fn quads(
-    shown: &ArcSwap<Published>,
+    now: &Published,
     wanted: &QuadsWanted,
     job: &Job,
-) -> Result<(QueuedCommand, QuadsMade), JoinError> {
+) -> Result<Computed<QuadsMade>, OperationError> {
     if wanted.levels > MOST_LEVELS {
-        return Err(JoinError::QuadLevels(wanted.levels));
+        return Err(OperationError::QuadLevels(wanted.levels));
     }
-    settled(shown, |now| {
-        let old = now.mesh.to_tri();
-        let settings = QuadSettings {
-            quads: wanted.quads,
-            creases: wanted.creases,
-            guides: wanted.guides.clone(),
-        };
-        let done = quad_remesh(&old.to_poly(), &settings, job)?;
-        let quads = done.mesh.faces().filter(|f| f.len() == 4).count();
-        let other_faces = done.mesh.face_count() - quads;
-        let mut plain = done.mesh.triangulate().0;
-        let solid = DistanceSolid::build(&old, job)?;
-        let old_masks = now.mesh.masks();
-        // Masks and colours of the old surface, for a level.
-        let dressed = |mut mesh: TriMesh, places: &[Option<OldPlace>]| {
-            mesh.colours = carry_over::colours(&old, places);
-            let masks = old_masks.as_ref().map(|m| carry_over::values(&old, m, places));
-            Level { mesh, masks }
-        };
-        let places = carry_over::places(&old, &solid, &plain.positions, job)?;
-        plain.colours = carry_over::colours(&old, &places);
-        polygons::remember(done.mesh, &plain);
-        let mut level = dressed(plain, &places);
-        let mut levels: Option<Levels> = None;
-        let mut without_detail = 0;
-        for _ in 0..wanted.levels {
-            let (mut finer, all) = Levels::up(levels.as_ref(), &level, job)?;
-            let places = carry_over::places(&old, &solid, &finer.mesh.positions, job)?;
-            let normals = normals(&finer.mesh);
-            without_detail = 0;
-            for ((p, n), place) in finer.mesh.positions.iter_mut().zip(&normals).zip(&places) {
-                match place.filter(|place| place.normal(&old).dot(*n) > 0.0) {
-                    Some(place) => *p = place.point.as_vec3(),
-                    None => without_detail += 1,
-                }
+    let old = now.mesh.to_tri();
+    let settings = QuadSettings {
+        quads: wanted.quads,
+        creases: wanted.creases,
+        guides: wanted.guides.clone(),
+    };
+    let done = quad_remesh(&old.to_poly(), &settings, job)?;
+    let quads = done.mesh.faces().filter(|f| f.len() == 4).count();
+    let other_faces = done.mesh.face_count() - quads;
+    let mut plain = done.mesh.triangulate().0;
+    let solid = DistanceSolid::build(&old, job)?;
+    let old_masks = now.mesh.masks();
+    // Masks and colours of the old surface, for a level.
+    let dressed = |mut mesh: TriMesh, places: &[Option<OldPlace>]| {
+        mesh.colours = carry_over::colours(&old, places);
+        let masks = old_masks.as_ref().map(|m| carry_over::values(&old, m, places));
+        Level { mesh, masks }
+    };
+    let places = carry_over::places(&old, &solid, &plain.positions, job)?;
+    plain.colours = carry_over::colours(&old, &places);
+    polygons::remember(done.mesh, &plain);
+    let mut level = dressed(plain, &places);
+    let mut levels: Option<Levels> = None;
+    let mut without_detail = 0;
+    for _ in 0..wanted.levels {
+        let (mut finer, all) = Levels::up(levels.as_ref(), &level, job)?;
+        let places = carry_over::places(&old, &solid, &finer.mesh.positions, job)?;
+        let normals = normals(&finer.mesh);
+        without_detail = 0;
+        for ((p, n), place) in finer.mesh.positions.iter_mut().zip(&normals).zip(&places) {
+            match place.filter(|place| place.normal(&old).dot(*n) > 0.0) {
+                Some(place) => *p = place.point.as_vec3(),
+                None => without_detail += 1,
             }
-            level = dressed(finer.mesh, &places);
-            levels = Some(all);
         }
-        let new = level.mesh;
-        let positions: Vec<DVec3> = new.positions.iter().map(|p| p.as_dvec3()).collect();
-        let crossings = self_intersection::count(&positions, &new.triangles, job)?;
-        let made = QuadsMade {
-            quads,
-            other_faces,
-            vertices: new.positions.len(),
-            triangles: new.triangles.len(),
-            volume: [measures(&old).volume, measures(&new).volume],
-            self_intersections: crossings.pairs,
-            without_detail,
-            warnings: done.warnings,
-        };
-        let queued = in_place(Arc::new(new), level.masks, levels, job)?;
-        Ok((of_clay(now, queued), made))
-    })
+        level = dressed(finer.mesh, &places);
+        levels = Some(all);
+    }
+    let new = level.mesh;
+    let positions: Vec<DVec3> = new.positions.iter().map(|p| p.as_dvec3()).collect();
+    let crossings = self_intersection::count(&positions, &new.triangles, job)?;
+    let made = QuadsMade {
+        quads,
+        other_faces,
+        vertices: new.positions.len(),
+        triangles: new.triangles.len(),
+        volume: [measures(&old).volume, measures(&new).volume],
+        self_intersections: crossings.pairs,
+        without_detail,
+        warnings: done.warnings,
+    };
+    let queued = in_place(Arc::new(new), level.masks, levels, job)?;
+    Ok(Computed::of_clay(now, queued, made))
 }
 
 /// The normal of each vertex, weighted by area; not of length 1.

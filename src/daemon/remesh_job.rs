@@ -3,11 +3,10 @@
 
 use std::sync::Arc;
 
-use arc_swap::ArcSwap;
 use glam::Vec3;
 
-use crate::boolean_jobs::{JoinError, of_clay, settled};
 use crate::command_queue::QueuedCommand;
+use crate::operations::{Computed, OperationError};
 use crate::{Published, carry_over};
 use sculptd_clay::{Clay, Levels};
 use sculptd_engine::command::{Command, NewClay};
@@ -54,43 +53,41 @@ pub fn mean_edge(mesh: &TriMesh) -> f32 {
     (sum / (3 * n.max(1)) as f64) as f32
 }
 
-/// The command that puts the remeshed object in place, as one step of undo, and what it is.
+/// Computes the remeshed object: one step of undo.
 ///
 /// # Errors
 /// A voxel that gives fewer or more than [`SIDE`] along the longest side, an object that encloses
 /// nothing, a cancelled job, and an object that is changed again and again.
 pub fn remeshed(
-    shown: &ArcSwap<Published>,
+    now: &Published,
     wanted: &Wanted,
     job: &Job,
-) -> Result<(QueuedCommand, Remeshed), JoinError> {
-    settled(shown, |now| {
-        let old = now.mesh.to_tri();
-        let (lo, hi) = old.bounds();
-        let longest = (hi - lo).max_element();
-        let voxel = wanted.voxel.unwrap_or_else(|| mean_edge(&old)).max(f32::MIN_POSITIVE);
-        let side = (longest / voxel).round();
-        if !(side >= SIDE.0 as f32 && side <= SIDE.1 as f32) {
-            let (least, most) = (longest / SIDE.1 as f32, longest / SIDE.0 as f32);
-            return Err(JoinError::Voxel { voxel, least, most });
-        }
-        let solid = DistanceSolid::build(&old, job)?;
-        let settings = RemeshSettings { side: side as usize, sharp: wanted.sharp };
-        let Remade { mesh: new, crossings } = remesh(&old, &solid, settings, job)?;
-        let masks = now.mesh.masks();
-        let places = |_: &Vec<f32>| carry_over::places(&old, &solid, &new.positions, job);
-        let at = masks.as_ref().map(places).transpose()?;
-        let masks = masks.zip(at).map(|(m, at)| carry_over::values(&old, &m, &at));
-        let found = Remeshed {
-            voxel: longest / side,
-            vertices: new.positions.len(),
-            triangles: new.triangles.len(),
-            volume: [measures(&old).volume, measures(&new).volume],
-            crossings,
-        };
-        let queued = in_place(Arc::new(new), masks, None, job)?;
-        Ok((of_clay(now, queued), found))
-    })
+) -> Result<Computed<Remeshed>, OperationError> {
+    let old = now.mesh.to_tri();
+    let (lo, hi) = old.bounds();
+    let longest = (hi - lo).max_element();
+    let voxel = wanted.voxel.unwrap_or_else(|| mean_edge(&old)).max(f32::MIN_POSITIVE);
+    let side = (longest / voxel).round();
+    if !(side >= SIDE.0 as f32 && side <= SIDE.1 as f32) {
+        let (least, most) = (longest / SIDE.1 as f32, longest / SIDE.0 as f32);
+        return Err(OperationError::Voxel { voxel, least, most });
+    }
+    let solid = DistanceSolid::build(&old, job)?;
+    let settings = RemeshSettings { side: side as usize, sharp: wanted.sharp };
+    let Remade { mesh: new, crossings } = remesh(&old, &solid, settings, job)?;
+    let masks = now.mesh.masks();
+    let places = |_: &Vec<f32>| carry_over::places(&old, &solid, &new.positions, job);
+    let at = masks.as_ref().map(places).transpose()?;
+    let masks = masks.zip(at).map(|(m, at)| carry_over::values(&old, &m, &at));
+    let found = Remeshed {
+        voxel: longest / side,
+        vertices: new.positions.len(),
+        triangles: new.triangles.len(),
+        volume: [measures(&old).volume, measures(&new).volume],
+        crossings,
+    };
+    let queued = in_place(Arc::new(new), masks, None, job)?;
+    Ok(Computed::of_clay(now, queued, found))
 }
 
 /// The command that puts these triangles, with masks and levels, in the place of the object's. Its
@@ -100,9 +97,9 @@ pub fn in_place(
     masks: Option<Vec<f32>>,
     levels: Option<Levels>,
     job: &Job,
-) -> Result<QueuedCommand, JoinError> {
+) -> Result<QueuedCommand, OperationError> {
     let built = Clay::build_masked(&new, masks.as_deref().unwrap_or(&[]), job);
-    let built = built.map_err(|e| JoinError::Build(e.to_string()))?;
+    let built = built.map_err(|e| OperationError::Build(e.to_string()))?;
     let mut clay = NewClay::new(new, true);
     clay.levels = levels.map(Arc::new);
     let command = match masks {

@@ -213,7 +213,7 @@ fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
 }
 
 /// What a Boolean of two objects gives, in the frame of the first.
-struct Computed {
+struct ComputedBoolean {
     /// Those that are not empty, each with its operation; at least one.
     results: Vec<(Operation, TriMesh, Clay)>,
     names: [String; 2],
@@ -236,7 +236,7 @@ fn compute(
     [(a, a_clay), (b, b_clay)]: [(&ObjectView, &Snapshot); 2],
     asked: SceneBoolean,
     job: &Job,
-) -> Result<Computed, CombineError> {
+) -> Result<ComputedBoolean, CombineError> {
     let frame = a.settings.transform;
     let first = seen_from(a_clay, &frame, &frame);
     let second = seen_from(b_clay, &b.settings.transform, &frame);
@@ -268,7 +268,7 @@ fn compute(
     }
     let operands = [as_operand(a, a_clay), as_operand(b, b_clay)];
     let names = [a, b].map(|o| o.settings.name.clone());
-    Ok(Computed { results, names, transform: frame, operands })
+    Ok(ComputedBoolean { results, names, transform: frame, operands })
 }
 
 /// A Boolean of two objects where they stand. The result stands where the first does.
@@ -286,7 +286,7 @@ pub fn boolean(
     }
     let (a, a_clay, _) = operand(shown, ids[0])?;
     let (b, b_clay, _) = operand(shown, ids[1])?;
-    let Computed { results, names, transform, operands } =
+    let ComputedBoolean { results, names, transform, operands } =
         compute([(a, a_clay), (b, b_clay)], asked, job)?;
     let (mut add, mut clays) = (Vec::new(), Vec::new());
     for (operation, plain, clay) in results {

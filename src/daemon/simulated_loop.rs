@@ -11,6 +11,7 @@ use std::time::Duration;
 use super::pacer::Pacer;
 use super::published::{Published, PublishedFigures, Publisher};
 use crate::command_queue::QueuedCommand;
+use crate::operations::Computed;
 use crate::tick::{Journal, in_order_of_time};
 use crate::tick_statistics::{Losses, Summary, TickStatistics, thread_cpu_ns};
 use crate::{boolean_jobs, hand_jobs};
@@ -130,14 +131,9 @@ impl SimulatedLoop<'_> {
             if let Some(operation) = report.join.and_then(boolean_jobs::operation)
                 && let Some(tool) = self.world.thing().map(|t| t.placed().to_poly())
             {
-                match boolean_jobs::join(
-                    &self.world.snapshot(),
-                    &tool,
-                    true,
-                    operation,
-                    &Job::default(),
-                ) {
-                    Ok(done) => joined = done,
+                let shown = Published::of(self.world, PublishedFigures::default());
+                match boolean_jobs::join(&shown, tool, true, operation, &Job::default()) {
+                    Ok(done) => joined = done.into_commands(),
                     Err(e) => tracing::warn!("{}: {e}", operation.name()),
                 }
             }
@@ -169,21 +165,24 @@ impl SimulatedLoop<'_> {
 
 impl SimulatedLoop<'_> {
     /// What hands ask about objects of the scene, carried out at once.
-    fn of_hands(&mut self, report: &StepReport) -> Option<QueuedCommand> {
+    fn of_hands(&mut self, report: &StepReport) -> Vec<QueuedCommand> {
         let join = report.join.zip(self.world.object_in_hand());
         if join.is_none() && report.put_down.is_none() {
-            return None;
+            return Vec::new();
         }
         let shown = Published::of(self.world, PublishedFigures::default());
         match (join, report.put_down) {
             (Some((choice, held)), _) => hand_jobs::join(&shown, held, choice, &Job::default())
                 .inspect_err(|e| tracing::warn!("{}: {e}", choice.label()))
-                .ok(),
+                .map(Computed::into_commands)
+                .unwrap_or_default(),
             (None, Some(id)) => hand_jobs::lay_down(&shown, id)
                 .inspect_err(|e| tracing::warn!("put down: {e}"))
                 .ok()
-                .flatten(),
-            (None, None) => None,
+                .flatten()
+                .map(Computed::into_commands)
+                .unwrap_or_default(),
+            (None, None) => Vec::new(),
         }
     }
 }

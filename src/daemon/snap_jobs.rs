@@ -5,10 +5,9 @@
 use glam::DVec3;
 
 use sculptd_clay::Snapshot;
-use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
     FaceAlignment, FlatFace, FlushPlacing, ObjectId, ObjectTransform, ObjectView, Operand,
-    SceneCommand, SceneError, flush,
+    SceneError, flush,
 };
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::nearest_on_triangle;
@@ -114,16 +113,6 @@ pub fn face_to_face(
     let transform = transform.ok_or(SnapError::NoSide)?;
     let placing = FlushPlacing { moved: own.operand, target: other.operand, transform };
     Ok(Placed { placing, off: own_off + other_off, areas: [own_area, other_area] })
-}
-
-/// The command that lays the first face on the second by the shortest way.
-///
-/// # Errors
-/// [`SnapError`]
-pub fn command(shown: &Published, faces: [PickedFace; 2]) -> Result<Command, SnapError> {
-    let [moved, target] = faces;
-    let placed = face_to_face(shown, moved, target, FaceAlignment::Nearest, 0.0)?;
-    Ok(Command::Scene(SceneCommand::Snap(Box::new(placed.placing))))
 }
 
 /// How near a held object's face must be to another's to be laid on it when it is let go.
@@ -237,6 +226,7 @@ mod tests {
     use crate::published::PublishedFigures;
     use crate::scene_jobs::{CombineError, SceneBoolean, boolean};
     use glam::DQuat;
+    use sculptd_engine::answer::Answer;
     use sculptd_engine::scene::{NewObject, ObjectSource};
     use sculptd_engine::world::World;
     use sculptd_geometry::boolean::Operation;
@@ -314,7 +304,8 @@ mod tests {
             Command::Scene(SceneCommand::Add(NewObject::new("part", source, *placed)))
         };
         world.step(1, &[], &[add(&made[0]), add(&made[1])]);
-        let ids: Vec<ObjectId> = world.scene_results().iter().map(|r| r.expect("added")).collect();
+        let ids: Vec<ObjectId> =
+            world.answers().iter().filter_map(|a| a.expect("added").object()).collect();
         let picked = [0, 1].map(|k| PickedFace { id: ids[k], at: made[k].2 });
         (world, picked)
     }
@@ -340,7 +331,7 @@ mod tests {
             assert!((placed.areas[1] / parts[0].area - 1.0).abs() < 1e-4, "{i}");
             let command = SceneCommand::Snap(Box::new(placed.placing));
             world.step(2, &[], &[Command::Scene(command)]);
-            assert_eq!(world.scene_results(), [Ok(moved.id)], "{i}");
+            assert_eq!(world.answers(), [Ok(Answer::Object(moved.id))], "{i}");
 
             let shown = published(&mut world);
             let of = |asked: SceneBoolean| {

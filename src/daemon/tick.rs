@@ -10,7 +10,7 @@ use sculptd_engine::world::World;
 /// What a tick gave, for the journal: everything that changed the world.
 pub trait Journal: Send {
     /// Called on the tick thread after every tick that had input; must not wait.
-    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &World);
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World);
 }
 
 /// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion

@@ -1,14 +1,12 @@
 //! Trimming: what is seen within a box, or on one side of a line, is cut off the work, all the way
 //! through, by a Boolean.
 
-use arc_swap::ArcSwap;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::published::Published;
-use crate::boolean_jobs;
-use crate::boolean_jobs::{JoinError, Joined};
-use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::boolean_jobs::{self, Joined};
+use crate::operations::{OperationError, Target};
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
@@ -87,40 +85,24 @@ pub fn trim_solid(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Op
     Some(out)
 }
 
-/// Cuts the part off the work as it is seen now: the commands that put the result in place.
-pub fn at_rest(shown: &ArcSwap<Published>, part: &Part) -> Result<Vec<QueuedCommand>, JoinError> {
-    boolean_jobs::settled(shown, |now| {
-        // What the hands hold stays in them.
-        let tool = boolean_jobs::in_own_frame(now, tool(now, part)?);
-        let done =
-            boolean_jobs::join(&now.mesh, &tool, false, Operation::Difference, &Job::default())?;
-        Ok(done.into_iter().map(|c| boolean_jobs::of_clay(now, c)).collect())
-    })
+/// Cuts the part off the active object and waits for the loop to install the result.
+///
+/// # Errors
+/// Why nothing was changed.
+pub fn carry_out(to: Target<'_>, part: &Part, job: &Job) -> Result<Joined, OperationError> {
+    // What the hands hold stays in them.
+    boolean_jobs::carry_out(to, |now| tool(now, part), false, Operation::Difference, job)
 }
 
-/// Cuts the part off the work and waits for the loop to say what came of it: again where the work
-/// was changed there meanwhile.
-pub fn carry_out(
-    shown: &ArcSwap<Published>,
-    part: &Part,
-    job: &Job,
-    commands: &CommandSender,
-) -> Result<Joined, JoinError> {
-    boolean_jobs::carry_out(
-        shown,
-        |now| tool(now, part),
-        false,
-        Operation::Difference,
-        job,
-        commands,
-    )
-}
-
-/// What is cut off, as a solid around all of the work that is seen there.
-fn tool(now: &Published, part: &Part) -> Result<PolyMesh, JoinError> {
+/// Returns what is cut off, in the world's frame: a solid around all of the active object that is
+/// seen there.
+///
+/// # Errors
+/// Where nothing is seen there.
+pub fn tool(now: &Published, part: &Part) -> Result<PolyMesh, OperationError> {
     let (lo, hi) = now.transform().bounds(now.mesh.bounds());
     let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);
-    let plain = trim_solid(&now.camera, part, middle, radius).ok_or(JoinError::NoPart)?;
+    let plain = trim_solid(&now.camera, part, middle, radius).ok_or(OperationError::NoPart)?;
     Ok(plain.to_poly())
 }
 

@@ -4,8 +4,8 @@
 //! A command is plain data and serialises whole: no lock, channel or thread handle is part of one.
 //! What takes long to make (built clay, pages of the session file) is named by a
 //! [`PayloadId`] and lies in the store beside the world, see [`crate::payload`]. What came of a
-//! command is told by the step, see [`crate::world::StepReport`] and
-//! [`crate::world::World::cut_results`]. [`crate::world::World::step`] is the only reader.
+//! command is told by [`crate::world::World::answers`]. [`crate::world::World::step`] is the only
+//! reader.
 
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ pub enum Command {
     /// The object in the hands is placed here.
     Place(Similarity),
     /// A Boolean with a small tool: made where the clay around it is as it was when the cut was
-    /// computed, else not at all. [`crate::world::World::cut_results`] says which.
+    /// computed, else not at all.
     Cut(Carving),
     /// The object becomes what it was at another node of its history, as the session file keeps it.
     Jump(Box<Jump>),
@@ -68,8 +68,7 @@ pub enum Command {
     /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
     /// view. A desktop with values that are not finite is ignored.
     DesktopLayout(DesktopLayout),
-    /// Objects are added, removed, moved, made active. What came of each is told by
-    /// [`crate::world::World::scene_results`].
+    /// Objects are added, removed, moved, made active.
     Scene(SceneCommand),
     /// Another command, carried out only where the clay that it was computed for is the active one.
     OfClay(Box<OfClay>),
@@ -219,25 +218,6 @@ impl Command {
             ) => true,
             Command::OfClay(of) => of.command.begins_surface_edit(),
             Command::OfPerson(of) => of.command.begins_surface_edit(),
-            _ => false,
-        }
-    }
-
-    /// Whether its result stands among [`crate::world::World::cut_results`].
-    pub fn is_cut(&self) -> bool {
-        match self {
-            Command::Cut(_) => true,
-            Command::OfClay(of) => matches!(of.command, Command::Cut(_)),
-            Command::OfPerson(of) => of.command.is_cut(),
-            _ => false,
-        }
-    }
-
-    /// Whether its result stands among [`crate::world::World::scene_results`].
-    pub fn is_scene(&self) -> bool {
-        match self {
-            Command::Scene(_) => true,
-            Command::OfPerson(of) => of.command.is_scene(),
             _ => false,
         }
     }

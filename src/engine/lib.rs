@@ -12,6 +12,7 @@
 // Tests compare with the functions that the bans of clippy.toml keep out of the clay.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+pub mod answer;
 pub mod camera;
 pub mod checkpoint;
 pub mod command;

@@ -37,18 +37,19 @@ pub use self::people::UndoRefusal;
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
 pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext};
+use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
-use crate::command::{Carving, Command, NewClay};
+use crate::command::{Beginning, Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
 use crate::payload::{Payload, PayloadStore};
-use crate::scene::{ObjectId, Scene, Timeline};
+use crate::scene::{ObjectId, Scene, SceneError, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::surface_edit::SurfaceWork;
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
-use sculptd_clay::{Author, Clay, Garbage, GarbageSink, Grafted, PageSupply, Workers};
+use sculptd_clay::{Author, Clay, Garbage, GarbageSink, PageSupply, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
@@ -83,6 +84,8 @@ pub struct StepReport {
     pub topology_dropped: u64,
     /// Jumps within the history that were made.
     pub jumps: u64,
+    /// Jumps that fitted the sculpture and were not made, because their pages were not delivered.
+    pub jumps_missing: u64,
 }
 
 /// Fixed for the life of a world.
@@ -142,11 +145,9 @@ pub struct World {
     /// Gives pages that dynamic topology needs.
     pages: PageSupply,
     payloads: PayloadStore,
-    /// What came of the cuts of this tick, in the order of their commands.
-    cuts: Vec<Option<Grafted>>,
-    /// What came of the commands to the scene of this tick, in their order.
-    scene_results: Vec<SceneResult>,
-    late_result: Option<SceneResult>,
+    /// What came of the commands of this tick, each at its command's place.
+    answers: Vec<CommandResult>,
+    late_answer: Option<CommandResult>,
     /// Clays put in place so far: each has a number of its own.
     lineages: u32,
     /// The object that is dragged, and the step that the drag is.
@@ -205,9 +206,8 @@ impl World {
             garbage: GarbageSink::default(),
             pages: PageSupply::default(),
             payloads: PayloadStore::new(),
-            cuts: Vec::with_capacity(PayloadStore::CAPACITY),
-            scene_results: Vec::with_capacity(PayloadStore::CAPACITY),
-            late_result: None,
+            answers: Vec::with_capacity(PayloadStore::CAPACITY),
+            late_answer: None,
             lineages: 0,
             dragged: None,
             moments: None,
@@ -223,16 +223,16 @@ impl World {
     pub fn step(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) -> &StepReport {
         self.tick = tick;
         self.report = StepReport { samples: samples.len() as u64, ..StepReport::default() };
-        self.cuts.clear();
-        self.scene_results.clear();
-        self.late_result = None;
+        self.answers.clear();
+        self.late_answer = None;
         self.surface.next_tick();
         self.let_entries_go();
         self.act_as_hands();
         self.timeline.set_person(self.person());
         self.author(None);
         for command in commands {
-            self.apply_command(command);
+            let answer = self.apply_command(command);
+            self.answers.push(answer);
         }
         for sample in samples {
             self.apply_sample(sample);
@@ -244,20 +244,9 @@ impl World {
         &self.report
     }
 
-    fn apply_command(&mut self, command: &Command) {
+    fn apply_command(&mut self, command: &Command) -> CommandResult {
         match command {
-            Command::Brush(brush) => {
-                self.keep_brush(brush);
-                self.brush = brush.clamped();
-                if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
-                    self.scene.active_mut().clay.prepare_topology();
-                }
-                let lays = self.brush.kind.grip() == Grip::Surface
-                    && self.brush.path.method == Method::Curve;
-                if !lays {
-                    self.put_away();
-                }
-            }
+            Command::Brush(brush) => self.take_brush(brush),
             // A curve that a pen has laid is newer than the last step.
             Command::Undo if self.put_away() || self.take_back_remesh() => {}
             Command::CurveStroke(act) => match act {
@@ -266,88 +255,49 @@ impl World {
                     self.put_away();
                 }
                 CurveAction::Delete(handle) => {
-                    let _ = self.own_pens().any(|s| s.track.delete(*handle));
+                    if !self.own_pens().any(|s| s.track.delete(*handle)) {
+                        return Err(SceneError::Value("the number of a handle of the curve"));
+                    }
                 }
             },
-            Command::Camera(camera) => {
-                if camera.is_sane() {
-                    self.camera = *camera;
-                }
+            Command::Camera(camera) if camera.is_sane() => self.camera = *camera,
+            Command::DesktopLayout(desktop) if desktop.is_sane() => self.desktop = *desktop,
+            Command::Camera(_) | Command::DesktopLayout(_) => {
+                return Err(SceneError::Value("values that are finite"));
             }
-            Command::DesktopLayout(desktop) => {
-                if desktop.is_sane() {
-                    self.desktop = *desktop;
-                }
-            }
-            Command::Undo => {
-                self.lift_for_undo(false);
-                match self.undo_step() {
-                    true => self.note(HistoryEvent::Undo),
-                    false => self.report.missed -= i32::from(!self.has_people()),
-                }
-            }
-            Command::Redo => {
-                self.lift_for_undo(true);
-                match self.redo_step() {
-                    true => self.note(HistoryEvent::Redo),
-                    false => self.report.missed += i32::from(!self.has_people()),
-                }
-            }
+            Command::Undo | Command::Redo => return self.go_in_history(command),
             Command::LiftAll => {
                 self.lift_own();
             }
-            Command::TakeUp(plain) => self.take_up(plain.clone()),
+            Command::TakeUp(plain) => return self.take_up(plain.clone()),
             Command::PutDown => self.put_down(),
             Command::CalibrateReach => self.hands.calibrate(),
-            Command::Reach(reach) => self.set_reach(*reach),
+            Command::Reach(reach) => return self.set_reach(*reach),
             Command::Picture(picture) => {
-                if picture.is_sane()
-                    && let Some(old) = self.scratch.picture.replace(picture.clone())
-                {
+                if !picture.is_sane() {
+                    return Err(SceneError::Value("a picture whose heights fill its size"));
+                }
+                if let Some(old) = self.scratch.picture.replace(picture.clone()) {
                     self.garbage.discard(Garbage::Shared(old));
                 }
             }
-            Command::Begin(new) => {
-                self.lift_all();
-                if new.camera.is_sane()
-                    && let Some(mesh) = self.built(&new.clay, &[])
-                {
-                    let workers = std::mem::replace(&mut self.workers, Workers::new(1));
-                    let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
-                    let mut old = std::mem::replace(self, fresh);
-                    self.lineages = old.lineages + 1;
-                    self.scene.active_mut().clay.set_object_id(self.lineages);
-                    self.moments = old.moments.take();
-                    self.desktop = old.desktop;
-                    self.people = std::mem::take(&mut old.people);
-                    self.tick = old.tick;
-                    self.report = old.report;
-                    std::mem::swap(&mut self.payloads, &mut old.payloads);
-                    std::mem::swap(&mut self.cuts, &mut old.cuts);
-                    std::mem::swap(&mut self.scene_results, &mut old.scene_results);
-                    self.late_result = old.late_result.take();
-                    self.set_garbage_sink(old.garbage.clone());
-                    self.set_page_supply(old.pages.clone());
-                    self.garbage.discard_owned(old);
-                    self.note(HistoryEvent::Begin);
-                }
-            }
-            Command::Mask(action) => self.mask(*action),
-            Command::MaskRegion(region) => self.mask_seen(region),
-            Command::Place(place) => {
-                if let Some(thing) = self.thing.as_mut().filter(|_| place.is_sane()) {
-                    thing.place = *place;
-                }
-            }
-            Command::Cut(carving) => self.cut(carving),
-            Command::Replace(new) => self.replace(new, &[]),
-            Command::ReplaceMasked(new, masks) => self.replace(new, masks),
-            Command::Jump(jump) => self.jump(jump),
-            Command::Scene(scene) => self.apply_scene(scene),
-            Command::OfClay(of) => self.apply_of_clay(of),
-            Command::OfPerson(of) => self.apply_of_person(of),
+            Command::Begin(new) => return self.begin_anew(new),
+            Command::Mask(action) => return self.mask(*action),
+            Command::MaskRegion(region) => return self.mask_seen(region),
+            Command::Place(place) => match self.thing.as_mut() {
+                Some(thing) if place.is_sane() => thing.place = *place,
+                Some(_) => return Err(SceneError::Transform),
+                None => return Err(SceneError::NothingHeld),
+            },
+            Command::Cut(carving) => return self.cut(carving),
+            Command::Replace(new) => return self.replace(new, &[]),
+            Command::ReplaceMasked(new, masks) => return self.replace(new, masks),
+            Command::Jump(jump) => return self.jump(jump),
+            Command::Scene(scene) => return self.apply_scene(scene),
+            Command::OfClay(of) => return self.apply_of_clay(of),
+            Command::OfPerson(of) => return self.apply_of_person(of),
             Command::OnePerson => self.forget_people(),
-            Command::JumpScene(jump) => self.jump_scene(jump),
+            Command::JumpScene(jump) => return self.jump_scene(jump),
             Command::Reopened => {
                 self.lift_all();
                 // It was of a window that is gone: who opens the session says its own.
@@ -355,6 +305,65 @@ impl World {
                 self.forget_steps();
             }
         }
+        Ok(Answer::Done)
+    }
+
+    fn take_brush(&mut self, brush: &BrushSettings) {
+        self.keep_brush(brush);
+        self.brush = brush.clamped();
+        if self.brush.topology.by != Measure::Off && self.brush.kind.cuts() {
+            self.scene.active_mut().clay.prepare_topology();
+        }
+        let lays =
+            self.brush.kind.grip() == Grip::Surface && self.brush.path.method == Method::Curve;
+        if !lays {
+            self.put_away();
+        }
+    }
+
+    /// Undoes or redoes one step.
+    fn go_in_history(&mut self, command: &Command) -> CommandResult {
+        let redo = matches!(command, Command::Redo);
+        self.lift_for_undo(redo);
+        let done = if redo { self.redo_step() } else { self.undo_step() };
+        if done {
+            self.note(if redo { HistoryEvent::Redo } else { HistoryEvent::Undo });
+            return Ok(Answer::Done);
+        }
+        if self.has_people() {
+            return match self.people.take_refusal() {
+                true => Err(SceneError::OthersStep),
+                false => Ok(Answer::NothingInMemory),
+            };
+        }
+        self.report.missed += if redo { 1 } else { -1 };
+        Ok(Answer::NothingInMemory)
+    }
+
+    fn begin_anew(&mut self, new: &Beginning) -> CommandResult {
+        self.lift_all();
+        if !new.camera.is_sane() {
+            return Err(SceneError::Value("values that are finite"));
+        }
+        let mesh = self.built(&new.clay, &[]).ok_or(SceneError::Build)?;
+        let workers = std::mem::replace(&mut self.workers, Workers::new(1));
+        let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
+        let mut old = std::mem::replace(self, fresh);
+        self.lineages = old.lineages + 1;
+        self.scene.active_mut().clay.set_object_id(self.lineages);
+        self.moments = old.moments.take();
+        self.desktop = old.desktop;
+        self.people = std::mem::take(&mut old.people);
+        self.tick = old.tick;
+        self.report = old.report;
+        std::mem::swap(&mut self.payloads, &mut old.payloads);
+        std::mem::swap(&mut self.answers, &mut old.answers);
+        self.late_answer = old.late_answer.take();
+        self.set_garbage_sink(old.garbage.clone());
+        self.set_page_supply(old.pages.clone());
+        self.garbage.discard_owned(old);
+        self.note(HistoryEvent::Begin);
+        Ok(Answer::Done)
     }
 
     /// The pens of the person whose command is applied.
@@ -378,20 +387,21 @@ impl World {
         Clay::build_masked(&new.plain, masks, &Default::default()).ok()
     }
 
-    fn cut(&mut self, carving: &Carving) {
+    fn cut(&mut self, carving: &Carving) -> CommandResult {
         self.lift_all();
-        if self.scene.active().settings.locked {
-            self.cuts.push(None);
-            return;
+        let active = self.scene.active();
+        if active.settings.locked {
+            return Err(SceneError::Locked(active.id));
         }
         let clay = &mut self.scene.active_mut().clay;
         clay.begin_step();
         let made = clay.graft(&carving.cut);
         self.close();
-        if made.is_some() && carving.put_down {
+        let made = made.ok_or(SceneError::Stale)?;
+        if carving.put_down {
             self.put_down();
         }
-        self.cuts.push(made);
+        Ok(Answer::Cut(made))
     }
 
     /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
@@ -461,7 +471,7 @@ impl World {
                     self.author(None);
                 }
                 if before != self.hands.settings.reach {
-                    self.set_reach(self.hands.settings.reach);
+                    self.lay_hands();
                 }
             }
             Body::Pad(_) => {}

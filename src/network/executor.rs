@@ -1,15 +1,14 @@
 //! Steps a world by frames. Every replica does nothing else: same frames, same bits.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::wire::frame::{Frame, Mark, PersonId};
 use crate::wire::hands::with_unit_lengths;
-use sculptd_clay::{PageHashes, Snapshot};
+use sculptd_clay::Snapshot;
 use sculptd_devices::{DeviceId, Sample};
 use sculptd_engine::checkpoint::Captured;
 use sculptd_engine::command::{Command, OfPerson};
-use sculptd_engine::scene::{ObjectId, SceneView};
+use sculptd_engine::scene::{KnownHashes, SceneView};
 use sculptd_engine::world::World;
 
 /// Ticks without input that are stepped while a stroke goes on by itself: a minute at 120 a second.
@@ -38,17 +37,8 @@ impl HashView {
     /// replicas, whose pages are the same. Costs as much as what changed since the last view that
     /// `known` saw.
     pub fn hash(&self, known: &mut KnownHashes) -> u64 {
-        known.of.retain(|id, _| self.scene.object(*id).is_some());
-        self.scene.hash_with(&self.active, |object, clay| {
-            known.of.entry(object.id).or_default().hash(clay)
-        })
+        self.scene.page_hash(&self.active, known)
     }
-}
-
-/// What is known of each object that was hashed before.
-#[derive(Debug, Default)]
-pub struct KnownHashes {
-    of: BTreeMap<ObjectId, PageHashes>,
 }
 
 /// The input of one tick.

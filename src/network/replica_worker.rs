@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use crossbeam_channel as cc;
 
-use crate::executor::{HashView, KnownHashes};
+use crate::executor::HashView;
 use crate::shared_session::SharedSession;
 use sculptd_clay::Workers;
 use sculptd_daemon::shared_input::SharedJournal;
 use sculptd_engine::checkpoint::{Captured, Restoring};
+use sculptd_engine::scene::KnownHashes;
 use sculptd_engine::world::World;
 use sculptd_geometry::io::write_mesh;
 

@@ -3,6 +3,7 @@
 //! a replay from the start gives.
 
 mod bound;
+mod random;
 mod scene;
 
 use std::path::{Path, PathBuf};
@@ -112,7 +113,7 @@ impl Studio {
         self.world.verify_invariants().expect("sound");
         if let Some(writer) = &mut self.writer {
             let before = self.clock.now_ns();
-            writer.tick(tick, samples, &all, &self.world);
+            writer.tick(tick, samples, &all, &mut self.world);
             self.handed.push(self.clock.now_ns() - before);
         }
     }

@@ -220,7 +220,7 @@ fn session_file() {
             commands.push(Command::Mask(sculptd_clay::brush::MaskAction::Invert));
         }
         world.step(tick, &[], &commands);
-        writer.tick(tick, &[], &commands, &world);
+        writer.tick(tick, &[], &commands, &mut world);
     }
     drop(writer);
     assert_eq!(thread.finish(), None);

@@ -96,7 +96,7 @@ impl Script {
         self.world.step(tick, &input, &[]);
         self.hashes.push(self.world.hash());
         if let Some(writer) = &mut self.writer {
-            writer.tick(tick, &input, &[], &self.world);
+            writer.tick(tick, &input, &[], &mut self.world);
         }
         tick
     }
@@ -323,7 +323,7 @@ fn a_session_of_layout_3_opens_at_its_newest_checkpoint_and_goes_on() {
         let tick = begun.world.tick() + 1;
         let input = samples(tick);
         begun.world.step(tick, &input, &[]);
-        writer.tick(tick, &input, &[], &begun.world);
+        writer.tick(tick, &input, &[], &mut begun.world);
     }
     drop(writer);
     assert_eq!(thread.finish(), None);

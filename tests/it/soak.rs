@@ -214,7 +214,7 @@ fn soak(seed: u64, ticks: u64, calendar: Calendar) -> Result<(), String> {
             samples.clear();
             receiver.drain(4096, &mut samples);
             world.step(tick, &samples, &[]);
-            writer.tick(tick, &samples, &[], &world);
+            writer.tick(tick, &samples, &[], &mut world);
             continue;
         }
         busy += 1;
@@ -252,7 +252,7 @@ fn soak(seed: u64, ticks: u64, calendar: Calendar) -> Result<(), String> {
         };
         let report = *world.step(tick, &samples, &commands);
         (dabs, taken) = (dabs + report.dabs, taken + samples.len() as u64);
-        writer.tick(tick, &samples, &commands, &world);
+        writer.tick(tick, &samples, &commands, &mut world);
         let state = Published::of(&mut world, PublishedFigures::default());
         publisher.publish(state, &GarbageSink::default());
         let at = |e: String| format!("tick {tick}: {e}");

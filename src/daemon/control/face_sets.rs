@@ -1,22 +1,19 @@
 //! What the methods of face sets do: they are about the active object.
 
-use std::collections::BTreeSet;
-
 use glam::Vec2;
 
-use super::host::{Host, failed};
-use super::scene::{QueuedSceneCommand, ask};
+use super::host::Host;
+use super::scene::{ask, object_of};
 use super::view_region::sets_region;
 use crate::Published;
 use crate::face_set_jobs;
-use sculptd_clay::face_sets::{FaceSetPart, PartEdit, Partition, SetsEdit, partition};
+use sculptd_clay::face_sets::{FaceSetPart, PartEdit, Partition, SetsEdit};
 use sculptd_control::RpcError;
 use sculptd_control::face_sets::{
     FaceSetExtractParams, FaceSetInfo, FaceSetMakeParams, FaceSetNameParams, FaceSetParams,
     FaceSetRegionParams, FaceSetReply, FaceSetSource, FaceSetsReply,
 };
 use sculptd_control::scene::ObjectReply;
-use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::job::Job;
 
@@ -48,14 +45,7 @@ pub(super) fn count(host: &Host) -> u64 {
 
 /// Hands an edit to the loop and waits for what came of it.
 pub(super) fn edit(host: &Host, edit: SetsEdit) -> SetsDone {
-    let made = match &edit {
-        SetsEdit::FromMask | SetsEdit::FromVisible => 1,
-        SetsEdit::Assign { pages, .. } => {
-            let all: BTreeSet<u16> = pages.iter().flat_map(|p| p.1.iter().copied()).collect();
-            all.len() as u64 - u64::from(all.contains(&0))
-        }
-        _ => 0,
-    };
+    let made = u64::from(matches!(edit, SetsEdit::FromMask | SetsEdit::FromVisible));
     let done = ask(host, SceneCommand::Sets(edit))?;
     let set = u16::try_from(done.id).ok().filter(|set| *set > 0);
     Ok(FaceSetReply { set, made })
@@ -70,8 +60,10 @@ pub(super) fn make(host: &Host, p: FaceSetMakeParams) -> SetsDone {
         FaceSetSource::Normals => Partition::Normals(degrees),
         FaceSetSource::Crease => Partition::Crease(degrees),
     };
-    let made = partition(&host.published.load_full().mesh, by).map_err(failed)?;
-    edit(host, made)
+    let job = Job::default();
+    let done = host.operate(&job, |now| face_set_jobs::parted(now, by))?;
+    let set = u16::try_from(object_of(done.answer)).ok().filter(|set| *set > 0);
+    Ok(FaceSetReply { set, made: done.made })
 }
 
 pub(super) fn region(host: &Host, p: FaceSetRegionParams) -> SetsDone {
@@ -111,10 +103,8 @@ pub(super) fn rename(host: &Host, p: FaceSetNameParams) -> SetsDone {
 
 pub(super) fn extract(host: &Host, p: &FaceSetExtractParams) -> Result<ObjectReply, RpcError> {
     let part = p.set.map_or(FaceSetPart::Masked, FaceSetPart::Set);
-    let shown = host.published.load_full();
-    let name = p.name.as_deref().unwrap_or("extract");
-    let (new, clay) =
-        face_set_jobs::extract(&shown, part, p.thickness, name, &Job::default()).map_err(failed)?;
-    let payload = Some(Payload::Clay(Box::new(clay)));
-    ask(host, QueuedSceneCommand { command: SceneCommand::Add(new), payload })
+    let (name, job) = (p.name.as_deref().unwrap_or("extract"), Job::default());
+    let extract = |now: &Published| face_set_jobs::extract(now, part, p.thickness, name, &job);
+    let done = host.operate(&job, extract)?;
+    Ok(ObjectReply { id: object_of(done.answer), warnings: Vec::new() })
 }

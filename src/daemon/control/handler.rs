@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
+use std::time::Duration;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -17,6 +18,7 @@ use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
 use super::{mask, measurement, people_reply, retopology, scene, snap};
+use crate::operations::{OperationError, Target};
 use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
@@ -40,6 +42,7 @@ use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::{Handler, Request, RpcError, event};
 use sculptd_devices::Clock;
+use sculptd_engine::answer::Answer;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
@@ -50,6 +53,9 @@ use sculptd_geometry::repair;
 
 /// Longest picture file, bytes.
 pub const MAX_PICTURE_FILE: u64 = 256 << 20;
+
+/// For the history to fetch what an undo or a jump needs.
+const HISTORY_PATIENCE: Duration = Duration::from_secs(60);
 
 const SENT: SentReply = SentReply { sent: true };
 
@@ -129,13 +135,13 @@ fn history(host: &Host) -> Result<&Handle, RpcError> {
 /// Runs a Boolean that `progress` and `cancel` know of. One at a time.
 fn boolean(
     host: &Host,
-    work: impl FnOnce(&Job) -> Result<boolean_jobs::Joined, boolean_jobs::JoinError>,
+    work: impl FnOnce(Target<'_>, &Job) -> Result<boolean_jobs::Joined, OperationError>,
 ) -> Result<edit::BooleanReply, RpcError> {
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let (layers, sets) = (layers::count(host), face_sets::count(host));
-    let joined = work(&place.job).map_err(failed)?;
+    let joined = work(host.link().target(), &place.job).map_err(failed)?;
     Ok(edit::BooleanReply {
         layers_baked: if joined.local { 0 } else { layers },
         sets_dropped: if joined.local { 0 } else { sets },
@@ -145,6 +151,30 @@ fn boolean(
         tries: joined.tries as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
     })
+}
+
+/// Undoes or redoes a step; where memory holds none, the history in the session file does it.
+fn go_in_history(host: &Host, command: Command) -> Result<SentReply, RpcError> {
+    let answer = host.carry_out(command)?;
+    if let (Answer::NothingInMemory, Some(history)) = (answer, &host.history) {
+        await_history(host, history)?;
+    }
+    Ok(SENT)
+}
+
+/// Waits until the history has done what it was asked for, and the published state shows it.
+fn await_history(host: &Host, history: &Handle) -> Result<(), RpcError> {
+    let (clock, quiet) = (Clock::monotonic(), crossbeam_channel::never::<()>());
+    let give_up = clock.now_us() + HISTORY_PATIENCE.as_micros() as u64;
+    while history.is_going() {
+        if host.link().stopped() || clock.now_us() > give_up {
+            return Err(RpcError::failed("the history in the session file gave no answer"));
+        }
+        let _ = quiet.recv_timeout(Duration::from_millis(1));
+    }
+    let shown = host.published.load().tick;
+    host.effect.store(shown, Relaxed);
+    Ok(())
 }
 
 impl Handler for Host {
@@ -167,11 +197,11 @@ impl Handler for Host {
     fn brush(&self, named: asked::BrushSettings) -> Result<asked::BrushSettings, RpcError> {
         let (brush, picture) = merged_brush(&self.presets, &self.published.load(), &named)?;
         if let Some(picture) = picture {
-            self.send(Command::Picture(picture))?;
+            self.carry_out(Command::Picture(picture))?;
         }
         // A question changes nothing: the answer may be older than what another has just sent.
         if named != asked::BrushSettings::default() {
-            self.send(Command::Brush(brush))?;
+            self.carry_out(Command::Brush(brush))?;
         }
         convert(brush)
     }
@@ -206,14 +236,13 @@ impl Handler for Host {
         let bytes = read_regular(&params.path, MAX_PICTURE_FILE).map_err(|e| named(&e))?;
         let picture = Picture::decode(&bytes).map_err(|e| named(&e))?;
         let size = asked::PictureReply { width: picture.width, height: picture.height };
-        self.send(Command::Picture(Arc::new(picture)))?;
+        self.carry_out(Command::Picture(Arc::new(picture)))?;
         Ok(size)
     }
 
     fn mask(&self, params: asked::MaskParams) -> Result<SentReply, RpcError> {
         let command = Command::Mask(convert(params.action)?);
-        mask::may_mask(self)?;
-        self.send(command)?;
+        self.carry_out(command)?;
         Ok(SENT)
     }
 
@@ -226,14 +255,13 @@ impl Handler for Host {
 
     fn mask_region(&self, params: asked::MaskRegionParams) -> Result<SentReply, RpcError> {
         let command = Command::MaskRegion(mask_region(params)?);
-        mask::may_mask(self)?;
-        self.send(command)?;
+        self.carry_out(command)?;
         Ok(SENT)
     }
 
     fn curve(&self, params: asked::CurveParams) -> Result<asked::CurveReply, RpcError> {
         let points = self.published.load().draft.points().len() as u64;
-        self.send(Command::CurveStroke(match params.act {
+        self.carry_out(Command::CurveStroke(match params.act {
             asked::CurveAction::Apply => CurveAction::Apply,
             asked::CurveAction::Cancel => CurveAction::Cancel,
             asked::CurveAction::Delete(handle) => CurveAction::Delete(handle as usize),
@@ -270,19 +298,17 @@ impl Handler for Host {
             return Err(RpcError::bad_params("no view can be made of this camera"));
         }
         if !asks {
-            self.send(Command::Camera(camera))?;
+            self.carry_out(Command::Camera(camera))?;
         }
         convert(camera)
     }
 
     fn undo(&self, _: NoParams) -> Result<SentReply, RpcError> {
-        self.send(Command::Undo)?;
-        Ok(SENT)
+        go_in_history(self, Command::Undo)
     }
 
     fn redo(&self, _: NoParams) -> Result<SentReply, RpcError> {
-        self.send(Command::Redo)?;
-        Ok(SENT)
+        go_in_history(self, Command::Redo)
     }
 
     fn history(&self, _: NoParams) -> Result<edit::HistoryReply, RpcError> {
@@ -296,6 +322,12 @@ impl Handler for Host {
             return Err(failed(format!("no way leads to {node}; 'history' lists the places")));
         }
         history.want(Want::Node(node));
+        await_history(self, history)?;
+        let here = history.tree().cursor;
+        if here != node {
+            let text = format!("the sculpture changed meanwhile: it is at {here}, not at {node}");
+            return Err(RpcError::failed(text + ". Try again"));
+        }
         Ok(SENT)
     }
 
@@ -483,20 +515,18 @@ impl Handler for Host {
     fn take_up(&self, params: asked::PathParams) -> Result<edit::TakeUpReply, RpcError> {
         let loaded = load(&params.path)?;
         let triangles = loaded.plain.triangles.len() as u64;
-        self.send(Command::TakeUp(Arc::new(loaded.plain)))?;
+        self.carry_out(Command::TakeUp(Arc::new(loaded.plain)))?;
         Ok(edit::TakeUpReply { triangles, warnings: loaded.warnings })
     }
 
     fn put_down(&self, _: NoParams) -> Result<SentReply, RpcError> {
-        self.send(Command::PutDown)?;
+        self.carry_out(Command::PutDown)?;
         Ok(SENT)
     }
 
     fn join(&self, params: edit::JoinParams) -> Result<edit::BooleanReply, RpcError> {
         let operation = operation(params.operation);
-        boolean(self, |job| {
-            boolean_jobs::join_held(&self.published, operation, job, &self.commands)
-        })
+        boolean(self, |to, job| boolean_jobs::join_held(to, operation, job))
     }
 
     fn trim(&self, params: edit::TrimParams) -> Result<edit::BooleanReply, RpcError> {
@@ -504,15 +534,15 @@ impl Handler for Host {
             TrimRegion::Box(corners) => Part::Box(corners),
             TrimRegion::Line(ends) => Part::Line(ends),
         };
-        boolean(self, |job| trim::carry_out(&self.published, &part, job, &self.commands))
+        boolean(self, |to, job| trim::carry_out(to, &part, job))
     }
 
     fn level(&self, params: edit::LevelParams) -> Result<edit::LevelReply, RpcError> {
         let finer = params.to == LevelStep::Up;
-        let (command, (level, levels)) =
-            boolean_jobs::level(&self.published, finer).map_err(failed)?;
+        let place = self.begin_boolean()?;
         let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
-        self.send(command)?;
+        let done = self.operate(&place.job, |now| boolean_jobs::level(now, finer, &place.job))?;
+        let (level, levels) = done.made;
         let (level, levels) = (level as u64, levels as u64);
         Ok(edit::LevelReply { level, levels, layers_baked, sets_dropped })
     }
@@ -540,10 +570,7 @@ impl Handler for Host {
         repair::weld(&mut tool, 0.0);
         tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(params.at));
         let (given, operation) = (|_: &Published| Ok(tool.clone()), operation(params.operation));
-        boolean(self, |job| {
-            let (shown, commands) = (&self.published, &self.commands);
-            boolean_jobs::carry_out(shown, given, false, operation, job, commands)
-        })
+        boolean(self, |to, job| boolean_jobs::carry_out(to, given, false, operation, job))
     }
 
     fn progress(&self, _: NoParams) -> Result<edit::ProgressReply, RpcError> {
@@ -568,7 +595,7 @@ impl Handler for Host {
             let text = "expected a place within 2 m and half a side of 30 to 1000 mm";
             return Err(RpcError::bad_params(text));
         }
-        self.send(reach.map_or(Command::CalibrateReach, Command::Reach))?;
+        self.carry_out(reach.map_or(Command::CalibrateReach, Command::Reach))?;
         Ok(ReachReply { measuring: reach.is_none() })
     }
 

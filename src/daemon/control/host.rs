@@ -1,6 +1,6 @@
 //! What a request may touch.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use arc_swap::ArcSwap;
@@ -9,12 +9,14 @@ use super::loop_link::LoopLink;
 use super::stroke::VirtualPen;
 use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::operations::{self, Computed, Installed, OperationError};
 use crate::session::Health;
 use crate::session::history::Handle;
 use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::RpcError;
+use sculptd_engine::answer::Answer;
 use sculptd_geometry::job::Job;
 
 /// What a request may touch. Cloning it gives another handle to the same.
@@ -38,6 +40,8 @@ pub struct Host {
     pub window: WindowLink,
     /// Raised by `shutdown` and `window`.
     pub stop: Arc<AtomicBool>,
+    /// The tick of the newest effect that this client's requests had.
+    pub effect: Arc<AtomicU64>,
 }
 
 impl Host {
@@ -58,17 +62,39 @@ impl Host {
             pen: None,
             window: WindowLink::default(),
             stop: Arc::default(),
+            effect: Arc::default(),
         }
     }
 
-    /// Hands a command to the loop.
-    pub(super) fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), RpcError> {
-        self.link().send(command)
+    /// Hands a command to the loop and waits for what came of it, see [`LoopLink::carry_out`].
+    pub(super) fn carry_out(&self, command: impl Into<QueuedCommand>) -> Result<Answer, RpcError> {
+        self.link().carry_out(command)
+    }
+
+    /// Computes a result from the published state and has the loop install it.
+    pub(super) fn operate<T>(
+        &self,
+        job: &Job,
+        compute: impl Fn(&Published) -> Result<Computed<T>, OperationError>,
+    ) -> Result<Installed<T>, RpcError> {
+        let done = operations::carry_out(self.link().target(), job, compute).map_err(failed)?;
+        self.effect.store(done.tick, Relaxed);
+        Ok(done)
     }
 
     /// The loop alone.
     pub(super) fn link(&self) -> LoopLink<'_> {
-        LoopLink { commands: &self.commands, published: &self.published, stop: &self.stop }
+        LoopLink {
+            commands: &self.commands,
+            published: &self.published,
+            stop: &self.stop,
+            effect: &self.effect,
+        }
+    }
+
+    /// Returns a handle for one client, with a record of its own effects.
+    pub fn for_client(&self) -> Host {
+        Host { effect: Arc::default(), ..self.clone() }
     }
 
     /// Takes the one place for a Boolean. It is given back when the guard is dropped, by a panic
@@ -77,7 +103,8 @@ impl Host {
         let job = Arc::new(Job::default());
         let mut place = locked(&self.joining);
         if place.is_some() {
-            return Err(RpcError::failed("another join is under way"));
+            let text = "another operation is under way. Wait for it, or cancel it";
+            return Err(RpcError::failed(text));
         }
         *place = Some(job.clone());
         Ok(BooleanPlace { host: self, job })

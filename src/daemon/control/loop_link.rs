@@ -1,13 +1,19 @@
 //! The tick loop as a request reaches it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::time::Duration;
 
 use arc_swap::ArcSwap;
 
 use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::operations::Target;
 use sculptd_control::RpcError;
+use sculptd_engine::answer::Answer;
+
+/// For the loop to say what came of a command.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Where commands go to and what the loop shows.
 #[derive(Debug, Clone, Copy)]
@@ -18,16 +24,26 @@ pub struct LoopLink<'a> {
     pub published: &'a Arc<ArcSwap<Published>>,
     /// Raised when the daemon ends.
     pub stop: &'a AtomicBool,
+    /// The tick of the newest effect that this client's requests had.
+    pub effect: &'a AtomicU64,
 }
 
 impl LoopLink<'_> {
-    /// Hands a command to the loop.
+    /// Hands a command to the loop and waits for what came of it: the published state shows the
+    /// effect when this returns.
     ///
     /// # Errors
-    /// Where the queue is full.
-    pub fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), RpcError> {
-        let full = "the loop has more commands waiting than it can take; try again";
-        self.commands.try_send(command).map_err(|_| RpcError::failed(full))
+    /// Where the world refused it, and where no answer came.
+    pub fn carry_out(&self, command: impl Into<QueuedCommand>) -> Result<Answer, RpcError> {
+        let failed = |e: &dyn std::fmt::Display| RpcError::failed(e.to_string());
+        let answered = self.commands.carry_out(command, PATIENCE).map_err(|e| failed(&e))?;
+        self.effect.store(answered.tick, Relaxed);
+        answered.result.map_err(|e| failed(&e))
+    }
+
+    /// The loop, as operations see it.
+    pub fn target(&self) -> Target<'_> {
+        Target { published: self.published, commands: self.commands }
     }
 
     /// Whether the daemon ends.

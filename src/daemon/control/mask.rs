@@ -1,24 +1,11 @@
 //! What the methods do that measure a mask.
 
-use super::host::{Host, failed};
-use super::scene::ask;
+use super::host::Host;
 use crate::mask_jobs;
 use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_control::RpcError;
 use sculptd_control::brush as asked;
-use sculptd_engine::scene::{SceneCommand, SceneError};
 use sculptd_geometry::job::Job;
-
-/// Refuses to mask an object that is locked or hidden: the loop would leave it as it is.
-pub(super) fn may_mask(host: &Host) -> Result<(), RpcError> {
-    let shown = host.published.load();
-    let Some(active) = shown.scene.active() else { return Ok(()) };
-    match (active.settings.locked, active.settings.visible) {
-        (true, _) => Err(failed(SceneError::Locked(active.id))),
-        (false, false) => Err(failed(SceneError::Hidden(active.id))),
-        (false, true) => Ok(()),
-    }
-}
 
 /// Measures the active object on this thread and has the loop mask it.
 pub(super) fn measured(
@@ -41,8 +28,7 @@ pub(super) fn measured(
             return Err(RpcError::bad_params(format!("occlusion = {share}: {expected}")));
         }
     };
-    let mask = mask_jobs::measured(&shown, by, &Job::default()).map_err(failed)?;
-    let protected = mask.protected();
-    ask(host, SceneCommand::MaskMeasured(mask))?;
-    Ok(asked::MaskMeasuredReply { protected })
+    let job = Job::default();
+    let done = host.operate(&job, |now| mask_jobs::measured(now, by, &job))?;
+    Ok(asked::MaskMeasuredReply { protected: done.made })
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::host::{Host, failed};
+use super::host::Host;
 use super::scene::ask;
 use super::view_region::region;
 use super::{face_sets, layers};
@@ -21,9 +21,8 @@ pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, R
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
-    let (command, made) = remeshed(&host.published, &wanted, &place.job).map_err(failed)?;
     let (layers_baked, sets_dropped) = (layers::count(host), face_sets::count(host));
-    host.send(command)?;
+    let made = host.operate(&place.job, |now| remeshed(now, &wanted, &place.job))?.made;
     Ok(RemeshReply {
         layers_baked,
         sets_dropped,
@@ -67,9 +66,8 @@ pub(super) fn remesh_quads(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
-    let (command, made) = quads(&host.published, &wanted, &place.job).map_err(failed)?;
     let layers_baked = layers::count(host);
-    host.send(command)?;
+    let made = host.operate(&place.job, |now| quads(now, &wanted, &place.job))?.made;
     Ok(asked::RemeshQuadsReply {
         quads: made.quads as u64,
         other_faces: made.other_faces as u64,
@@ -97,9 +95,8 @@ pub(super) fn decimate(
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
-    let (command, made) = decimated(&host.published, &wanted, &place.job).map_err(failed)?;
     let layers_baked = layers::count(host);
-    host.send(command)?;
+    let made = host.operate(&place.job, |now| decimated(now, &wanted, &place.job))?.made;
     Ok(asked::DecimateReply {
         vertices: made.vertices as u64,
         triangles: made.triangles as u64,

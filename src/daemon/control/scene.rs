@@ -1,14 +1,13 @@
 //! What the methods of the scene do.
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use crossbeam_channel as cc;
 use glam::{DQuat, DVec3};
 
 use super::host::{Host, MAX_MESH_FILE, failed};
 use crate::Published;
 use crate::command_queue::QueuedCommand;
+use crate::operations::Computed;
 use crate::scene_jobs::{self, Combined, Selection};
 use crate::startup;
 use sculptd_clay::Clay;
@@ -20,6 +19,7 @@ use sculptd_control::scene::{
     TransformParams, WorldAxis,
 };
 use sculptd_devices::Clock;
+use sculptd_engine::answer::Answer;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
@@ -28,9 +28,6 @@ use sculptd_engine::scene::{
 use sculptd_geometry::boolean;
 use sculptd_geometry::io::write_scene;
 use sculptd_geometry::job::Job;
-
-/// For the loop to say what came of a command.
-const PATIENCE: Duration = Duration::from_secs(60);
 
 fn placed(asked: &Placement) -> Result<ObjectTransform, RpcError> {
     let turn = DQuat::from_array(asked.turn);
@@ -123,20 +120,13 @@ pub(super) fn ask(
     command: impl Into<QueuedSceneCommand>,
 ) -> Result<ObjectReply, RpcError> {
     let QueuedSceneCommand { command, payload } = command.into();
-    let (answer, result) = cc::bounded(1);
-    let queued = QueuedCommand {
-        payload,
-        scene_result: Some(answer),
-        ..QueuedCommand::from(Command::Scene(command))
-    };
-    host.send(queued)?;
-    match result.recv_timeout(PATIENCE) {
-        Ok(done) => Ok(ObjectReply { id: done.map_err(failed)?.0, warnings: Vec::new() }),
-        Err(cc::RecvTimeoutError::Timeout) => {
-            Err(RpcError::failed("no result came within a minute; it may still be carried out"))
-        }
-        Err(cc::RecvTimeoutError::Disconnected) => Err(RpcError::failed("the loop has ended")),
-    }
+    let queued = QueuedCommand { payload, ..QueuedCommand::from(Command::Scene(command)) };
+    Ok(ObjectReply { id: object_of(host.carry_out(queued)?), warnings: Vec::new() })
+}
+
+/// The number of the object that a command made or was about.
+pub(super) fn object_of(answer: Answer) -> u32 {
+    answer.object().map_or(0, |id| id.0)
 }
 
 /// A command to the scene with what it needs.
@@ -193,7 +183,7 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
     let payload = Some(Payload::Clay(Box::new(clay)));
     let reply = ask(host, QueuedSceneCommand { command, payload })?;
     if params.held {
-        host.send(Command::PutDown)?;
+        host.carry_out(Command::PutDown)?;
     }
     if let Some(layers) = layers {
         ask(host, SceneCommand::Layers(layers))?;
@@ -225,27 +215,32 @@ pub(super) fn transform(host: &Host, params: &TransformParams) -> Result<ObjectR
 /// it.
 pub(super) fn combine(
     host: &Host,
-    of: impl FnOnce(&Published, &Job) -> Result<Combined, scene_jobs::CombineError>,
+    of: impl Fn(&Published, &Job) -> Result<Combined, scene_jobs::CombineError>,
 ) -> Result<CombineReply, RpcError> {
     let place = host.begin_boolean()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
-    let done = of(&host.published.load_full(), &place.job).map_err(failed)?;
-    let objects = done.clays.len() as u64;
-    let shown = host.published.load_full();
-    let operands = || {
-        let all = shown.scene.each(&shown.mesh);
-        all.filter(|(o, _)| done.exchange.from.iter().any(|from| from.id == o.id)).map(|o| o.1)
-    };
-    let layers = |clay: &sculptd_clay::Snapshot| clay.layers().map_or(0, |s| s.layers.len() as u64);
-    let layers_baked = operands().map(layers).sum();
-    let sets_dropped = operands().map(|clay| clay.face_set_count()).sum();
-    let vertices = done.clays.iter().map(|c| c.vertex_count() as u64).sum();
-    let (command, payload) = done.command();
-    let payload = Some(payload);
-    let ObjectReply { id, .. } = ask(host, QueuedSceneCommand { command, payload })?;
+    let done = host.operate(&place.job, |shown| {
+        let combined = of(shown, &place.job)?;
+        let operands = || {
+            let all = shown.scene.each(&shown.mesh);
+            all.filter(|(o, _)| combined.exchange.from.iter().any(|f| f.id == o.id)).map(|o| o.1)
+        };
+        let layers =
+            |clay: &sculptd_clay::Snapshot| clay.layers().map_or(0, |s| s.layers.len() as u64);
+        let made = CombineReply {
+            id: 0,
+            objects: combined.clays.len() as u64,
+            vertices: combined.clays.iter().map(|c| c.vertex_count() as u64).sum(),
+            seconds: 0.0,
+            layers_baked: operands().map(layers).sum(),
+            sets_dropped: operands().map(|clay| clay.face_set_count()).sum(),
+        };
+        let (command, payload) = combined.command();
+        Ok(Computed::of_scene(command, Some(payload), made))
+    })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
-    Ok(CombineReply { id, objects, vertices, seconds, layers_baked, sets_dropped })
+    Ok(CombineReply { id: object_of(done.answer), seconds, ..done.made })
 }
 
 /// A mesh in the place of the active object, with its morph targets as layers.
@@ -253,9 +248,9 @@ pub(super) fn load(host: &Host, loaded: startup::Loaded) -> Result<LoadReply, Rp
     let vertices = loaded.mesh.vertex_count() as u64;
     let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));
     let built = Payload::Clay(Box::new(loaded.mesh));
-    host.send(QueuedCommand::with_payload(command, built))?;
+    host.carry_out(QueuedCommand::with_payload(command, built))?;
     if let Some(targets) = scene_jobs::layers_of(&loaded.targets) {
-        host.send(Command::Scene(SceneCommand::Layers(targets)))?;
+        ask(host, SceneCommand::Layers(targets))?;
     }
     Ok(LoadReply { vertices, warnings: loaded.warnings })
 }

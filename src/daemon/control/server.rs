@@ -126,7 +126,7 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
             refuse(&stream, "another user's daemon");
             continue;
         }
-        let host = host.clone();
+        let host = host.for_client();
         // The last place is the owner's.
         if let Some(place) = ClientPlace::take(&clients, MAX_CLIENTS - 1) {
             start(place, move |_place| serve(stream, &host, idle));
@@ -303,6 +303,7 @@ fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
         Ok(asked) => asked,
     };
     let mut subscribes = false;
+    host.effect.store(0, SeqCst);
     let result = if flood {
         let text = format!("at most {MAX_RATE} requests a second");
         Err(RpcError::new(Code::TooManyRequests, text))
@@ -314,7 +315,8 @@ fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
             reply
         })
     };
-    (asked.id.map(|id| Response::new(id, result)), subscribes)
+    let effect = Some(host.effect.load(SeqCst)).filter(|tick| *tick > 0);
+    (asked.id.map(|id| Response::new(id, result).with_effect(effect)), subscribes)
 }
 
 #[cfg(test)]

@@ -2,16 +2,18 @@
 
 use glam::DVec3;
 
-use super::host::{Host, failed};
+use super::host::Host;
 use super::scene;
+use crate::operations::Computed;
 use crate::scene_jobs::{self, SceneBoolean};
 use crate::snap_jobs::{self, PickedFace};
 use sculptd_control::RpcError;
 use sculptd_control::edit::Operation as AskedOperation;
 use sculptd_control::scene::{CombineReply, SceneBooleanParams};
 use sculptd_control::snap::{SnapAlignment, SnapParams, SnapReply};
-use sculptd_engine::scene::{FaceAlignment, ObjectId, SceneCommand};
+use sculptd_engine::scene::{FaceAlignment, ObjectId};
 use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::job::Job;
 
 pub(super) fn snap(host: &Host, params: &SnapParams) -> Result<SnapReply, RpcError> {
     let picked = |id, at| PickedFace { id: ObjectId(id), at: DVec3::from_array(at) };
@@ -21,12 +23,14 @@ pub(super) fn snap(host: &Host, params: &SnapParams) -> Result<SnapReply, RpcErr
         SnapAlignment::Centre => FaceAlignment::Centre,
         SnapAlignment::Edge => FaceAlignment::Edge,
     };
-    let shown = host.published.load_full();
-    let placed = snap_jobs::face_to_face(&shown, moved, target, alignment, params.spin);
-    let placed = placed.map_err(failed)?;
-    let reply = scene::ask(host, SceneCommand::Snap(Box::new(placed.placing)))?;
+    let done = host.operate(&Job::default(), |now| {
+        let placed = snap_jobs::face_to_face(now, moved, target, alignment, params.spin)?;
+        Ok(Computed::of_snap(placed))
+    })?;
+    let placed = done.made;
     let transform = scene::placement(&placed.placing.transform);
-    Ok(SnapReply { id: reply.id, transform, off: placed.off, areas: placed.areas })
+    let id = scene::object_of(done.answer);
+    Ok(SnapReply { id, transform, off: placed.off, areas: placed.areas })
 }
 
 pub(super) fn boolean(host: &Host, p: &SceneBooleanParams) -> Result<CombineReply, RpcError> {

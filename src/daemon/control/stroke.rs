@@ -2,6 +2,7 @@
 //! those of a tablet. So they are recorded, replayed and bounded like any other.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use glam::{Vec2, Vec3};
@@ -18,8 +19,8 @@ use sculptd_engine::command::Command;
 
 /// Size of the virtual pen's active area, mm: the view's height, and its width by the aspect.
 const AREA_MM: f32 = 200.0;
-/// Longest wait for the loop to take what was sent.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// Longest wait for the loop to take what was sent and to lay every dab of it.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// Between two looks at the loop.
 const LOOK: Duration = Duration::from_millis(1);
 /// A point in space is seen where the first surface on the line of sight is no further from it than
@@ -70,22 +71,21 @@ impl VirtualPen {
         let points = in_view(&shown, stroke)?;
         if let Some(lent) = &brush {
             if let Some(picture) = &lent.picture {
-                link.send(Command::Picture(picture.clone()))?;
+                link.carry_out(Command::Picture(picture.clone()))?;
             }
-            link.send(Command::Brush(lent.settings))?;
+            link.carry_out(Command::Brush(lent.settings))?;
         }
         let drawn = self.send_samples(link, &points, shown.camera.aspect);
         if let Some(lent) = brush {
             // Whatever came of it: the brush in hand is the person's, and so are the picture and
             // what the other brush was set to. A stroke that follows finds them in place.
             if lent.picture.is_some() {
-                link.send(Command::Picture(shown.picture.clone().unwrap_or_else(no_picture)))?;
+                link.carry_out(Command::Picture(shown.picture.clone().unwrap_or_else(no_picture)))?;
             }
             if let Some(kept) = lent.kept {
-                link.send(Command::Brush(kept))?;
+                link.carry_out(Command::Brush(kept))?;
             }
-            link.send(Command::Brush(shown.brush))?;
-            self.await_tick(link)?;
+            link.carry_out(Command::Brush(shown.brush))?;
         }
         drawn
     }
@@ -142,9 +142,11 @@ impl VirtualPen {
         // The tick under way may have looked already.
         let by = link.published.load().tick + 2;
         loop {
-            let tick = link.published.load().tick;
-            if tick >= by {
-                return Ok(tick);
+            let shown = link.published.load();
+            // Dabs that wait for their budget belong to the stroke.
+            if shown.tick >= by && !shown.is_behind {
+                link.effect.store(shown.tick, Relaxed);
+                return Ok(shown.tick);
             }
             if link.stopped() || self.clock.now_us() > give_up {
                 return Err(not_taken());

@@ -100,7 +100,8 @@ fn bench(parts: &[(&str, PolyMesh)]) -> (World, Vec<ObjectId>) {
     let body = world.scene().active().id;
     commands.push(Command::Scene(SceneCommand::Activate(body)));
     world.step(1, &[], &commands);
-    let ids: Vec<ObjectId> = world.scene_results().iter().map(|r| r.expect("added")).collect();
+    let ids: Vec<ObjectId> =
+        world.answers().iter().filter_map(|a| a.expect("added").object()).collect();
     (world, ids[..parts.len() - 1].to_vec())
 }
 

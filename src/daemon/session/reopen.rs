@@ -2,9 +2,10 @@
 //! replay of what follows.
 //!
 //! Guaranteed: the world is, to the bit, the one that a replay from the start gives, but for undo,
-//! which a reopened session keeps in the file. Where that cannot be known (a damaged page, an undo
-//! that went back beyond the checkpoint in memory), there is no answer, and the caller replays from
-//! the start.
+//! which a reopened session keeps in the file. Each checkpoint carries the hash of the live
+//! sculpture, and the sculpture that is put together from its pages must have it. Where the world
+//! cannot be known (another hash, a damaged page, an undo that went back beyond the checkpoint in
+//! memory), the checkpoint before it is tried, and last the caller replays from the start.
 
 use std::path::Path;
 
@@ -13,6 +14,7 @@ use super::history::{Store, StoreError, Tree};
 use super::reader::Opened;
 use super::replay::{Replayed, Run};
 use sculptd_clay::{ObjectState, Snapshot, Workers};
+use sculptd_engine::scene::KnownHashes;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 
@@ -71,7 +73,7 @@ pub(super) fn from_checkpoint(
         return Ok(None);
     };
     let names = tree.names(node, c.rest.pages, base.page_count());
-    let (checkpoint, at) = (c.tick, c.node);
+    let (checkpoint, at, proof) = (c.tick, c.node, c.proof);
     let empty = c.rest.empty.clone();
     let active = c.rest.clone();
     let saved = store.saved(c)?;
@@ -105,7 +107,14 @@ pub(super) fn from_checkpoint(
     let options =
         WorldOptions { dab_budget: s.dab_budget, undo_bytes: s.undo_bytes, hands: s.hands };
     let damaged = |_| StoreError::Damaged("a checkpoint's state".into());
-    let world = World::restore(clays, saved, Workers::new(workers), options).map_err(damaged)?;
+    let mut world =
+        World::restore(clays, saved, Workers::new(workers), options).map_err(damaged)?;
+    let (scene, active) = (world.scene_view(), world.snapshot());
+    let given = scene.page_hash(&active, &mut KnownHashes::default());
+    if proof.is_some_and(|proof| proof != given) {
+        let why = format!("the sculpture of tick {checkpoint} (its pages give another hash)");
+        return Err(StoreError::Damaged(why));
+    }
     let mut odd = false;
     let mut see = |_: u64, world: &mut World| {
         let missed = world.report().missed;

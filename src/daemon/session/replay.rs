@@ -15,8 +15,8 @@ pub struct Replayed {
     pub world: World,
     /// The last tick that was stepped.
     pub ticks: u64,
-    /// Jumps within the history that were not made: what they name is not in the file, or the work
-    /// was another.
+    /// Jumps within the history that were not made, because what they name is not in the file. A
+    /// jump that the live world ignored is not counted.
     pub jumps_missed: u64,
 }
 
@@ -89,22 +89,15 @@ impl Run<'_> {
                 see(tick, &mut world);
             }
             tick = input.tick;
-            let mut wanted = 0;
             for command in &input.commands {
                 match command {
-                    Command::Jump(jump) => {
-                        wanted += 1;
-                        self.fetch(jump, &mut world);
-                    }
-                    Command::JumpScene(jump) => {
-                        wanted += 1;
-                        self.fetch_scene(jump, &mut world);
-                    }
+                    Command::Jump(jump) => self.fetch(jump, &mut world),
+                    Command::JumpScene(jump) => self.fetch_scene(jump, &mut world),
                     _ => {}
                 }
             }
             let report = *world.step(tick, &input.samples, &input.commands);
-            jumps_missed += wanted.max(report.jumps) - report.jumps;
+            jumps_missed += report.jumps_missing;
             busy = report.paused || report.resting;
             waits = report.paused;
             see(tick, &mut world);

@@ -246,7 +246,7 @@ fn start_thread(
 }
 
 impl Journal for SessionWriter {
-    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &World) {
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World) {
         self.log(tick, samples, commands);
         if let Some(history) = &self.history {
             self.owed |= history.tick(tick, world);

@@ -291,4 +291,26 @@ pub enum SceneError {
     /// An undo took back what was under way.
     #[error("taken back by an undo before it was done")]
     TakenBack,
+    /// The active object is another than the one that the result was computed from, or it was
+    /// sculpted meanwhile.
+    #[error("the sculpture changed while the result was computed")]
+    Stale,
+    /// A value out of range.
+    #[error("expected {0}")]
+    Value(&'static str),
+    /// The hands hold nothing that could be placed.
+    #[error("nothing is held")]
+    NothingHeld,
+    /// The pages that a jump within the history names were not delivered.
+    #[error("the history does not hold this place any more")]
+    NotInHistory,
+    /// Somebody else's step is in the way of an undo or a redo.
+    #[error("somebody else changed the same place since: ask them to undo first")]
+    OthersStep,
+    /// The loop has more commands waiting than it can take.
+    #[error("the loop has more commands waiting than it can take. Try again")]
+    Busy,
+    /// A command that cannot be shared with others.
+    #[error("this cannot be shared with the others at this sculpture")]
+    NotShared,
 }

@@ -37,7 +37,7 @@ pub use snap::{FaceAlignment, FlatFace, flush};
 pub(crate) use timeline::{Presence, ReplacedClay, SceneStep, Timeline};
 pub use transform::ObjectTransform;
 pub(crate) use view::combined_hash;
-pub use view::{ObjectView, SceneView};
+pub use view::{KnownHashes, ObjectView, SceneView};
 
 use sculptd_clay::{Clay, Garbage, GarbageSink};
 

@@ -1,9 +1,11 @@
 //! The scene as others see it, immutable.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use super::{LiveBoolean, ObjectId, ObjectSettings};
-use sculptd_clay::Snapshot;
+use sculptd_clay::{PageHashes, Snapshot};
 
 /// One object as others see it.
 #[derive(Debug, Clone)]
@@ -66,18 +68,24 @@ impl SceneView {
 
     /// One number for the state of all objects; costs as much as they are large.
     pub fn hash(&self, active: &Snapshot) -> u64 {
-        self.hash_with(active, |_, clay| clay.hash())
+        combined_hash(self.each(active).map(|(o, clay)| (&o.settings, clay.hash())), self.active)
     }
 
-    /// The same with another number for each object's clay.
-    pub fn hash_with(
-        &self,
-        active: &Snapshot,
-        mut of: impl FnMut(&ObjectView, &Snapshot) -> u64,
-    ) -> u64 {
-        let all = self.each(active).map(|(o, clay)| (&o.settings, of(o, clay)));
+    /// Returns one number for the state of all objects, equal for scenes whose clays have the same
+    /// pages: see [`PageHashes::hash`]. Costs as much as what changed since `known` was used last.
+    pub fn page_hash(&self, active: &Snapshot, known: &mut KnownHashes) -> u64 {
+        known.objects.retain(|id, _| self.object(*id).is_some());
+        let all = self
+            .each(active)
+            .map(|(o, clay)| (&o.settings, known.objects.entry(o.id).or_default().hash(clay)));
         combined_hash(all, self.active)
     }
+}
+
+/// The page hashes of each object that was hashed before.
+#[derive(Debug, Default)]
+pub struct KnownHashes {
+    objects: BTreeMap<ObjectId, PageHashes>,
 }
 
 /// The hash of one object that stands where it is, is that of its clay. Else FNV-1a over the clay,

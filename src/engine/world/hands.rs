@@ -5,30 +5,34 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::World;
+use crate::answer::{Answer, CommandResult};
 use crate::command::Command;
 use crate::hand::{Act, HeldObject, MenuItem, Similarity};
+use crate::scene::SceneError;
 use sculptd_clay::{Garbage, Kernel, Reach};
 use sculptd_geometry::portable::turn_about;
 use sculptd_geometry::{PolyMesh, TriMesh, shapes};
 
 impl World {
     /// An object appears beside the clay, a third as large as it, for the hands to carry.
-    pub(super) fn take_up(&mut self, plain: Arc<TriMesh>) {
+    pub(super) fn take_up(&mut self, plain: Arc<TriMesh>) -> CommandResult {
         let (lo, hi) = plain.bounds();
         let size = (hi - lo).length() * 0.5;
         if !(size.is_finite() && size > 0.0) {
-            return;
+            return Err(SceneError::Value("a mesh with an extent"));
         }
         let (middle, extent) = (self.middle(), self.extent());
         let scale = extent / 3.0 / size;
         let turn = turn_about(Vec3::Y, self.camera.yaw);
         let at = middle + turn * Vec3::new(extent * 1.2, extent * 0.4, 0.0);
         let place = Similarity { shift: at - turn * ((lo + hi) * 0.5 * scale), turn, scale };
-        if place.is_sane() {
-            self.put_down();
-            self.thing = Some(HeldObject { plain, place });
-            self.hands.carrying = true;
+        if !place.is_sane() {
+            return Err(SceneError::Transform);
         }
+        self.put_down();
+        self.thing = Some(HeldObject { plain, place });
+        self.hands.carrying = true;
+        Ok(Answer::Done)
     }
 
     pub(super) fn put_down(&mut self) {
@@ -41,16 +45,20 @@ impl World {
 
     pub(super) fn choose(&mut self, choice: MenuItem) {
         let primitive = |solid: PolyMesh| Arc::new(solid.triangulate().0);
-        match choice {
+        // Nobody waits for an answer here: what hands did is seen.
+        let _ = match choice {
             MenuItem::Undo => self.apply_command(&Command::Undo),
             MenuItem::Redo => self.apply_command(&Command::Redo),
-            MenuItem::PickUp => self.begin_picking(),
-            MenuItem::PutAway => self.put_down(),
+            MenuItem::PickUp => return self.begin_picking(),
+            MenuItem::PutAway => return self.put_down(),
             MenuItem::Ball => self.take_up(primitive(shapes::uv_sphere(1.0, 24, 48))),
             MenuItem::Box => self.take_up(primitive(shapes::cuboid(DVec3::NEG_ONE, DVec3::ONE))),
             MenuItem::Cylinder => self.take_up(primitive(shapes::cylinder(1.0, 2.0, 48))),
-            MenuItem::Add | MenuItem::Carve | MenuItem::Keep => self.report.join = Some(choice),
-        }
+            MenuItem::Add | MenuItem::Carve | MenuItem::Keep => {
+                self.report.join = Some(choice);
+                return;
+            }
+        };
     }
 
     /// One act of a hand; returns what is left of the budget.

@@ -227,7 +227,7 @@ fn edits_of_layers_are_the_same_from_their_bytes() {
         tell(&mut sent, command);
         tell(&mut read, postcard::from_bytes(&bytes).expect("plain data"));
         assert_eq!(sent.hash(), read.hash());
-        assert_eq!(sent.scene_results(), read.scene_results());
+        assert_eq!(sent.answers(), read.answers());
     }
-    assert!(sent.mesh().layer_count() == 2 && sent.scene_results()[0].is_ok());
+    assert!(sent.mesh().layer_count() == 2 && sent.answers()[0].is_ok());
 }

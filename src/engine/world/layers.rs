@@ -41,6 +41,11 @@ impl World {
         }
     }
 
+    /// Returns whether pages are still to follow an edit of layers, or a stroke on one.
+    pub fn is_in_layer_edit(&self) -> bool {
+        self.layers.is_pending()
+    }
+
     /// An edit that is under way is finished, and its step closed.
     pub(super) fn end_layer_edit(&mut self) {
         if self.layers.is_edit() {

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use super::World;
 use super::scene_tests::{ask, tell, world};
 use super::surface_edit_tests::settle;
+use crate::answer::Answer;
 use crate::command::{Command, NewClay};
 use crate::local_remesh::{LocalRemesh, WantedEdge};
 use crate::mask_region::MaskRegion;
@@ -64,7 +65,7 @@ fn what_was_stretched_is_refined_and_the_rest_stays() {
     assert!(longest(&before) > 4.0 * usual);
     let ticks = settle(&mut world, Command::Scene(remesh(1.0, true, None)));
     assert!(ticks > 2, "{ticks}: in portions");
-    assert!(matches!(world.late_result(), Some(Ok(changed)) if changed.0 > 1000));
+    assert!(matches!(world.late_answer(), Some(Ok(Answer::Object(changed))) if changed.0 > 1000));
     world.verify_invariants().expect("sound");
     let after = shape(&world);
     assert_whole(&after);
@@ -174,7 +175,7 @@ fn an_undo_takes_back_what_is_under_way() {
         assert!(world.is_taken_back_by(&Command::Undo));
         assert_ne!(shape(&world).triangles.len(), before.triangles.len());
         world.step(102, &samples, &[Command::Undo]);
-        assert_eq!(world.late_result(), Some(Err(SceneError::TakenBack)));
+        assert_eq!(world.late_answer(), Some(Err(SceneError::TakenBack)));
         assert!(!world.is_in_surface_edit() && !world.is_taken_back_by(&Command::Undo));
         assert!(shape(&world) == before, "to the bit");
         assert_eq!((world.undo_steps(), world.redo_steps()), (steps, 0));

@@ -11,9 +11,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use crate::answer::CommandResult;
 use crate::camera::Camera;
 use crate::command::{Command, OfPerson};
 use crate::desktop_layout::DesktopLayout;
+use crate::scene::SceneError;
 use sculptd_clay::Author;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
@@ -47,6 +49,9 @@ pub(super) struct People {
     /// Of the person that the world is shown to: the newest undo or redo that was refused.
     #[serde(skip)]
     refused: Option<UndoRefusal>,
+    /// The undo or redo that is being applied was refused.
+    #[serde(skip)]
+    refusal: bool,
 }
 
 /// An undo or redo that was refused, as a step of somebody else is in the way.
@@ -78,9 +83,15 @@ impl People {
 
     /// Something was refused to whoever acts now.
     pub(super) fn refuse(&mut self, refusal: UndoRefusal) {
+        self.refusal = true;
         if self.current == self.shown {
             self.refused = Some(refusal);
         }
+    }
+
+    /// Returns whether an undo or redo was refused since this was asked last.
+    pub(super) fn take_refusal(&mut self) -> bool {
+        std::mem::take(&mut self.refusal)
     }
 
     /// The newest that was refused to the person that the world is shown to.
@@ -144,14 +155,16 @@ impl World {
     }
 
     /// A command of a person.
-    pub(super) fn apply_of_person(&mut self, of: &OfPerson) {
-        if !matches!(of.command, Command::OfPerson(_)) {
-            self.act_as(of.person);
-            self.timeline.set_person(self.person());
-            self.author(self.person());
-            self.apply_command(&of.command);
-            self.author(None);
+    pub(super) fn apply_of_person(&mut self, of: &OfPerson) -> CommandResult {
+        if matches!(of.command, Command::OfPerson(_)) {
+            return Err(SceneError::Value("a command of one person"));
         }
+        self.act_as(of.person);
+        self.timeline.set_person(self.person());
+        self.author(self.person());
+        let answer = self.apply_command(&of.command);
+        self.author(None);
+        answer
     }
 
     /// The view and the brush are those of the person who holds hands over the tracker.

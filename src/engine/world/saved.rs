@@ -13,13 +13,14 @@ use serde::{Deserialize, Serialize};
 use super::in_hand::{ObjectsInHand, SavedHolding};
 use super::people::People;
 use super::{PenSlot, World, WorldOptions};
+use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
 use crate::command::Jump;
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandTools, HeldObject, Similarity};
 use crate::old_layout::{FieldCounts, take_from_bytes};
 use crate::payload::Payload;
-use crate::scene::{Object, ObjectId, ObjectSettings, Scene, SceneEvent, SceneView};
+use crate::scene::{Object, ObjectId, ObjectSettings, Scene, SceneError, SceneEvent, SceneView};
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
@@ -69,6 +70,18 @@ pub enum SideData {
     Picture(Arc<Picture>),
     /// The multiresolution levels that are not shown.
     Levels(Arc<Levels>),
+}
+
+impl SideData {
+    /// Returns whether both are the same piece of memory.
+    pub fn is_same(&self, other: &SideData) -> bool {
+        match (self, other) {
+            (SideData::HeldObject(a), SideData::HeldObject(b)) => Arc::ptr_eq(a, b),
+            (SideData::Picture(a), SideData::Picture(b)) => Arc::ptr_eq(a, b),
+            (SideData::Levels(a), SideData::Levels(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
 }
 
 /// A world at rest.
@@ -262,20 +275,23 @@ impl World {
         scene.active_mut().clay.jump(&[]);
     }
 
-    pub(super) fn jump(&mut self, jump: &Jump) {
+    pub(super) fn jump(&mut self, jump: &Jump) -> CommandResult {
         let from = |world: &World| {
             let clay = &world.scene.active().clay;
             (clay.object_id(), clay.revision())
         };
         if jump.from != from(self) {
-            return;
+            return Err(SceneError::Stale);
         }
-        let Some(payload) = self.payloads.take(jump.payload_id()) else { return };
+        let Some(payload) = self.payloads.take(jump.payload_id()) else {
+            self.report.jumps_missing += 1;
+            return Err(SceneError::NotInHistory);
+        };
         self.lift_all();
         // A stroke that ended here has changed the work after all.
         if jump.from != from(self) {
             self.garbage.discard_owned(payload);
-            return;
+            return Err(SceneError::Stale);
         }
         match (payload, &jump.other) {
             (Payload::Pages(pages), None) if self.scene.active_mut().clay.jump(&pages) => {
@@ -294,11 +310,12 @@ impl World {
             }
             (other, _) => {
                 self.garbage.discard_owned(other);
-                return;
+                return Err(SceneError::NotInHistory);
             }
         }
         self.report.jumps += 1;
         self.note(HistoryEvent::Jump(jump.node));
+        Ok(Answer::Done)
     }
 
     /// Whether nothing is under way: no stroke, nothing that waits, no open step.

@@ -2,7 +2,8 @@
 //! another.
 
 use super::{HistoryEvent, World};
-use crate::command::{JumpObject, NewClay, OfClay, SceneJump};
+use crate::answer::{Answer, CommandResult};
+use crate::command::{Command, JumpObject, NewClay, OfClay, SceneJump};
 use crate::hand::ReachBox;
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{
@@ -19,14 +20,8 @@ use sculptd_clay::Clay;
 pub type SceneResult = Result<ObjectId, SceneError>;
 
 impl World {
-    /// What came of each [`crate::command::Command::Scene`] of the last step, in the order of the
-    /// commands.
-    pub fn scene_results(&self) -> &[SceneResult] {
-        &self.scene_results
-    }
-
     /// Carries out a command to the scene.
-    pub(super) fn apply_scene(&mut self, command: &SceneCommand) {
+    pub(super) fn apply_scene(&mut self, command: &SceneCommand) -> CommandResult {
         let before = self.stance();
         let result = self.scene_command(command);
         let noted = matches!(
@@ -46,7 +41,8 @@ impl World {
                 self.note(HistoryEvent::Scene(event_of(command)));
             }
         }
-        self.scene_results.push(result);
+        let id = result?;
+        Ok(if self.follows_later() { Answer::UnderWay } else { Answer::Object(id) })
     }
 
     fn scene_command(&mut self, command: &SceneCommand) -> SceneResult {
@@ -395,11 +391,13 @@ impl World {
         self.hands.lay(middle, extent, self.camera.yaw);
     }
 
-    pub(super) fn set_reach(&mut self, reach: ReachBox) {
-        if reach.is_sane() {
-            self.hands.settings.reach = reach;
-            self.lay_hands();
+    pub(super) fn set_reach(&mut self, reach: ReachBox) -> CommandResult {
+        if !reach.is_sane() {
+            return Err(SceneError::Value("a place within 2 m and half a side of 30 to 1000 mm"));
         }
+        self.hands.settings.reach = reach;
+        self.lay_hands();
+        Ok(Answer::Done)
     }
 
     /// Turns the camera to the active object as a whole.
@@ -412,25 +410,24 @@ impl World {
     }
 
     /// Another command, where the clay that it was computed for is the active one.
-    pub(super) fn apply_of_clay(&mut self, of: &OfClay) {
+    pub(super) fn apply_of_clay(&mut self, of: &OfClay) -> CommandResult {
+        if matches!(of.command, Command::OfClay(_)) {
+            return Err(SceneError::Value("a command of one clay"));
+        }
         let now = &self.scene.active().clay;
         let fits = now.object_id() == of.clay
             && of.revision.is_none_or(|r| r == now.revision() && !now.is_in_step());
-        match &of.command {
-            crate::command::Command::OfClay(_) => {}
-            command if fits => self.apply_command(command),
-            crate::command::Command::Cut(_) => self.cuts.push(None),
-            _ => {}
-        }
+        if fits { self.apply_command(&of.command) } else { Err(SceneError::Stale) }
     }
 
     /// Other clay takes the place of the active object's: a Boolean's result, or a file.
-    pub(super) fn replace(&mut self, new: &NewClay, masks: &[f32]) {
+    pub(super) fn replace(&mut self, new: &NewClay, masks: &[f32]) -> CommandResult {
         self.lift_all();
-        if self.scene.active().settings.locked {
-            return;
+        let active = self.scene.active();
+        if active.settings.locked {
+            return Err(SceneError::Locked(active.id));
         }
-        let Some(mut clay) = self.built(new, masks) else { return };
+        let mut clay = self.built(new, masks).ok_or(SceneError::Build)?;
         clay.set_levels(new.levels.clone());
         clay.set_object_id(self.fresh_clay_number());
         let clay = self.adopted(clay);
@@ -462,27 +459,31 @@ impl World {
             self.scene.touch();
         }
         self.note(HistoryEvent::Replace);
+        Ok(Answer::Done)
     }
 
     /// The scene as it was at another node.
-    pub(super) fn jump_scene(&mut self, jump: &SceneJump) {
+    pub(super) fn jump_scene(&mut self, jump: &SceneJump) -> CommandResult {
         let from = |world: &World| {
             let clay = &world.scene.active().clay;
             (clay.object_id(), clay.revision())
         };
         if jump.from != from(self) {
-            return;
+            return Err(SceneError::Stale);
         }
-        let Some(payload) = self.payloads.take(jump.payload_id()) else { return };
+        let Some(payload) = self.payloads.take(jump.payload_id()) else {
+            self.report.jumps_missing += 1;
+            return Err(SceneError::NotInHistory);
+        };
         self.lift_all();
         let Payload::Clays(clays) = payload else {
             self.garbage.discard_owned(payload);
-            return;
+            return Err(SceneError::NotInHistory);
         };
         // A stroke that ended here has changed the object after all.
         if jump.from != from(self) || clays.len() != jump.objects.len() {
             self.garbage.discard_owned(clays);
-            return;
+            return Err(SceneError::Stale);
         }
         let object = |(of, clay): (&JumpObject, Clay)| Object {
             id: of.id,
@@ -493,13 +494,15 @@ impl World {
         };
         let objects = jump.objects.iter().zip(clays).map(object).collect();
         let next_id = self.scene.next_id();
-        let Some(scene) = Scene::restored(objects, jump.active as usize, next_id) else { return };
+        let scene = Scene::restored(objects, jump.active as usize, next_id);
+        let scene = scene.ok_or(SceneError::NotInHistory)?;
         let World { timeline, garbage, .. } = self;
         timeline.forget(&mut self.scene, garbage);
         self.garbage.discard_owned(std::mem::replace(&mut self.scene, scene));
         self.lay_hands();
         self.report.jumps += 1;
         self.note(HistoryEvent::Jump(jump.node));
+        Ok(Answer::Done)
     }
 }
 

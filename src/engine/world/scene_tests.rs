@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3, Vec2, Vec3};
 use super::layer_tests::edit_at_random;
 use super::scene_combine_tests::{Places, arrange_at_random, boolean_at_random};
 use super::{World, WorldOptions};
+use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
 use crate::command::{Command, NewClay, OfClay};
 use crate::hand::HandSettings;
@@ -35,16 +36,20 @@ pub(super) fn world(workers: usize, undo_bytes: u64) -> World {
 pub(super) fn ask(world: &mut World, command: SceneCommand) -> Result<ObjectId, SceneError> {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(command)]);
-    if world.unsettled() != Some(0) {
-        return world.scene_results()[0];
+    let object = |answer: CommandResult| match answer? {
+        Answer::Object(id) => Ok(id),
+        other => panic!("{other:?}"),
+    };
+    if world.answers()[0] != Ok(Answer::UnderWay) {
+        return object(world.answers()[0]);
     }
     for tick in world.tick() + 1..world.tick() + 1000 {
         world.step(tick, &[], &[]);
-        if let Some(late) = world.late_result() {
-            return late;
+        if let Some(late) = world.late_answer() {
+            return object(late);
         }
     }
-    panic!("no result after a thousand ticks")
+    panic!("no answer after a thousand ticks")
 }
 
 pub(super) fn tell(world: &mut World, command: Command) {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::{StepReport, World, WorldOptions};
+use crate::answer::CommandResult;
 use crate::camera::Camera;
 use crate::command::{Command, Jump, SceneJump};
 use crate::hand::{HandTools, HeldObject, Pose, Volume};
@@ -12,7 +13,7 @@ use crate::payload::{Payload, PayloadId};
 use crate::scene::{Scene, SceneView};
 use crate::stroke::{CurveStroke, PenPoint};
 use sculptd_clay::brush::{BrushSettings, Picture};
-use sculptd_clay::{Clay, GarbageSink, Grafted, PageSupply};
+use sculptd_clay::{Clay, GarbageSink, PageSupply};
 use sculptd_devices::{DeviceId, Hands};
 
 impl World {
@@ -228,10 +229,9 @@ impl World {
         }
     }
 
-    /// What came of each [`Command::Cut`] of the last step, in the order of the commands; `None`:
-    /// not made, because the clay had changed there.
-    pub fn cut_results(&self) -> &[Option<Grafted>] {
-        &self.cuts
+    /// Returns what came of each command of the last step, at the command's place.
+    pub fn answers(&self) -> &[CommandResult] {
+        &self.answers
     }
 
     /// One number for the whole state of all objects; costs as much as they are large. That of one

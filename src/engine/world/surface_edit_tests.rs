@@ -6,6 +6,7 @@ use glam::Vec2;
 
 use super::World;
 use super::scene_tests::{tell, world};
+use crate::answer::Answer;
 use crate::command::{Command, NewClay};
 use crate::mask_region::MaskRegion;
 use crate::scene::{ObjectId, SceneCommand, SceneError};
@@ -128,13 +129,12 @@ fn a_result_that_comes_late_is_told_and_a_refusal_changes_nothing() {
         let locked = SceneCommand::Activate(ObjectId(99));
         world.step(tick, &[], &[Command::Scene(locked), command]);
         let none = Err(SceneError::NoObject(ObjectId(99)));
-        assert_eq!((world.scene_results().len(), world.scene_results()[0]), (2, none));
-        assert_eq!((world.unsettled(), world.late_result()), (Some(1), None));
+        assert_eq!(world.answers(), [none, Ok(Answer::UnderWay)]);
+        assert_eq!(world.late_answer(), None);
         for _ in 0..1000 {
             let tick = world.tick() + 1;
             world.step(tick, &[], &[]);
-            assert_eq!(world.unsettled(), None);
-            if let Some(late) = world.late_result() {
+            if let Some(late) = world.late_answer() {
                 return late;
             }
         }
@@ -156,16 +156,16 @@ fn a_result_that_comes_late_is_told_and_a_refusal_changes_nothing() {
     let assign = SetsEdit::Assign { revision, pages };
     let tick = world.tick() + 1;
     world.step(tick, &[], &[sets(assign)]);
-    assert_eq!(world.scene_results(), [Err(SceneError::Sets(SetsError::Full))]);
+    assert_eq!(world.answers(), [Err(SceneError::Sets(SetsError::Full))]);
     assert_eq!((world.hash(), world.undo_steps()), start);
-    assert_eq!(edit(&mut world, part(PartEdit::NewSet)), Ok(ObjectId(1)));
-    assert_eq!(edit(&mut world, sets(SetsEdit::Isolate(1))), Ok(ObjectId(1)));
+    assert_eq!(edit(&mut world, part(PartEdit::NewSet)), Ok(Answer::Object(ObjectId(1))));
+    assert_eq!(edit(&mut world, sets(SetsEdit::Isolate(1))), Ok(Answer::Object(ObjectId(1))));
     // Another command finishes it, and both are told in their places.
     let tick = world.tick() + 1;
     world.step(tick, &[], &[sets(SetsEdit::ShowAll), sets(SetsEdit::FromVisible)]);
-    assert_eq!((world.scene_results()[0], world.unsettled()), (Ok(ObjectId(0)), Some(1)));
+    assert_eq!(world.answers(), [Ok(Answer::Object(ObjectId(0))), Ok(Answer::UnderWay)]);
     tell(&mut world, Command::LiftAll);
-    assert_eq!(world.late_result(), Some(Ok(ObjectId(2))));
+    assert_eq!(world.late_answer(), Some(Ok(Answer::Object(ObjectId(2)))));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! whole.
 
 use super::{HistoryEvent, SceneResult, World};
+use crate::answer::{Answer, CommandResult};
 use crate::command::Command;
 use crate::local_remesh::LocalRemesh;
 use crate::mask_region::MaskRegion;
@@ -23,34 +24,33 @@ impl World {
         self.surface.is_under_way()
     }
 
-    /// The place among [`World::scene_results`] of the edit whose pages are still to follow: what
-    /// came of it is told by [`World::late_result`] in a later tick.
-    pub fn unsettled(&self) -> Option<usize> {
-        match self.surface.asked() {
-            Asked::Now(place) => Some(place),
-            Asked::Untold | Asked::Earlier => None,
-        }
+    /// Returns what came of an edit of an earlier tick that was done in this one.
+    pub fn late_answer(&self) -> Option<CommandResult> {
+        self.late_answer
     }
 
-    /// What came of an edit of an earlier tick that was done in this one.
-    pub fn late_result(&self) -> Option<SceneResult> {
-        self.late_result
+    /// Returns whether the command that is being applied began an edit whose pages follow.
+    pub(super) fn follows_later(&self) -> bool {
+        self.surface.asked() == Asked::Now(self.answers.len())
     }
 
     /// Changes the mask of the whole active object: one step of undo.
-    pub(super) fn mask(&mut self, action: MaskAction) {
+    pub(super) fn mask(&mut self, action: MaskAction) -> CommandResult {
         self.lift_all();
         let extent = self.scene.active().extent;
-        self.begin_mask(SurfaceEdit::Mask(MaskAll { action, extent }), Asked::Untold);
+        self.begin_mask(SurfaceEdit::Mask(MaskAll { action, extent }))?;
+        Ok(Answer::UnderWay)
     }
 
     /// The same of what is seen in a region.
-    pub(super) fn mask_seen(&mut self, asked: &MaskRegion) {
-        if asked.is_sane() {
-            self.lift_all();
-            let seen = self.seen(&asked.region, asked.front_faces);
-            self.begin_mask(SurfaceEdit::MaskSeen(seen, asked.mask), Asked::Untold);
+    pub(super) fn mask_seen(&mut self, asked: &MaskRegion) -> CommandResult {
+        if !asked.is_sane() {
+            return Err(SceneError::Region);
         }
+        self.lift_all();
+        let seen = self.seen(&asked.region, asked.front_faces);
+        self.begin_mask(SurfaceEdit::MaskSeen(seen, asked.mask))?;
+        Ok(Answer::UnderWay)
     }
 
     /// The same of what was measured of it, unless it has changed since.
@@ -59,8 +59,7 @@ impl World {
         if !mask.fits(&self.scene.active().clay) {
             return Err(SceneError::MaskChanged);
         }
-        let place = Asked::Now(self.scene_results.len());
-        self.begin_mask(SurfaceEdit::MaskMeasured(mask.clone()), place);
+        self.begin_mask(SurfaceEdit::MaskMeasured(mask.clone()))?;
         Ok(ObjectId(0))
     }
 
@@ -75,7 +74,7 @@ impl World {
         let clay = &mut self.scene.active_mut().clay;
         let work = Box::new(RemeshWork::new(asked, seen, clay)?);
         clay.begin_step();
-        self.surface.begin(SurfaceEdit::Remesh(work), Asked::Now(self.scene_results.len()));
+        self.surface.begin(SurfaceEdit::Remesh(work), Asked::Now(self.answers.len()));
         Ok(ObjectId(0))
     }
 
@@ -89,12 +88,11 @@ impl World {
         }
     }
 
-    fn begin_mask(&mut self, edit: SurfaceEdit, asked: Asked) {
-        let object = self.scene.active_mut();
-        if object.is_editable() {
-            object.clay.begin_step();
-            self.surface.begin(edit, asked);
-        }
+    fn begin_mask(&mut self, edit: SurfaceEdit) -> Result<(), SceneError> {
+        self.open_to_edits()?;
+        self.scene.active_mut().clay.begin_step();
+        self.surface.begin(edit, Asked::Now(self.answers.len()));
+        Ok(())
     }
 
     /// A region as the active object sees it.
@@ -125,8 +123,8 @@ impl World {
         }
         let work = active.clay.begin_sets(task)?;
         active.clay.begin_step();
-        // Its place is the next one: the result stands there when the command has been applied.
-        let place = Asked::Now(self.scene_results.len());
+        // Its place is the next one: the answer stands there when the command has been applied.
+        let place = Asked::Now(self.answers.len());
         self.surface.begin(SurfaceEdit::Sets(work, seen), place);
         Ok(ObjectId(0))
     }
@@ -178,11 +176,12 @@ impl World {
     }
 
     fn tell_surface_edit(&mut self, result: SceneResult) {
+        let answer = result.map(Answer::Object);
         match self.surface.asked() {
             Asked::Untold => {}
-            Asked::Earlier => self.late_result = Some(result),
+            Asked::Earlier => self.late_answer = Some(answer),
             Asked::Now(place) => {
-                self.scene_results.get_mut(place).into_iter().for_each(|r| *r = result);
+                self.answers.get_mut(place).into_iter().for_each(|a| *a = answer);
             }
         }
     }

@@ -125,11 +125,28 @@ impl WindowState {
         known.map_or_else(|| "/".into(), std::path::Path::to_path_buf)
     }
 
+    /// Shows why the world refused what a panel, a key or the pointer asked for; `true` when it
+    /// refused anything.
+    fn take_answers(&mut self, wiring: &Wiring) -> bool {
+        let mut refused: Vec<String> = wiring
+            .answers
+            .try_iter()
+            .filter_map(|a| a.result.err())
+            .map(|e| e.to_string())
+            .collect();
+        // A drag over a locked object is refused many times over.
+        refused.dedup();
+        let any = !refused.is_empty();
+        refused.into_iter().for_each(|text| self.ui_state.say(text, true));
+        any
+    }
+
     /// Takes the reports of background tasks; `true` when there were any.
     fn take_reports(&mut self, state: &Published, wiring: &Wiring) -> bool {
         // Before the reports: a load that has ended since has reported.
         let loading = self.tasks.progress();
         let mut changed = loading != self.ui_state.loading;
+        changed |= self.take_answers(wiring);
         while let Ok(done) = self.tasks.done.try_recv() {
             changed = true;
             self.map_changes += 1;

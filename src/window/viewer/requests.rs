@@ -77,8 +77,8 @@ impl WindowState {
                 self.tasks.pair(pairing, wiring.published.clone(), wiring.commands.clone());
             }
             UiRequest::Mirror(id, axis) => {
-                let shown = wiring.published.load_full();
-                self.tasks.mirror(id, axis, shown, wiring.commands.clone());
+                let to = (wiring.published.clone(), wiring.commands.clone());
+                self.tasks.mirror(id, axis, to);
             }
             UiRequest::Trim(part) => {
                 self.ui_state.joining = true;

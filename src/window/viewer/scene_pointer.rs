@@ -45,7 +45,8 @@ impl WindowState {
             {
                 self.ui_state.outliner.snapping = None;
                 let faces = both.map(|(id, at)| PickedFace { id, at });
-                self.tasks.snap(faces, wiring.published.load_full(), wiring.commands.clone());
+                let to = (wiring.published.clone(), wiring.commands.clone());
+                self.tasks.snap(faces, to);
             }
             return true;
         }

@@ -216,6 +216,7 @@ impl WindowState {
         let renderer = Renderer::of_window(&gpu, clay_format, samples);
         let context = egui::Context::default();
         let scale = window.scale_factor() as f32;
+        #[cfg_attr(not(feature = "accessibility"), allow(unused_mut))]
         let mut egui = egui_winit::State::new(
             context,
             egui::ViewportId::ROOT,

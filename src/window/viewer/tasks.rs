@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
@@ -25,12 +26,12 @@ use crate::panels::state::{
 };
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_clay::measured_mask::MaskMeasure;
-use sculptd_clay::{Clay, Snapshot};
-use sculptd_daemon::boolean_jobs::JoinError;
+use sculptd_clay::{BuildError, Clay, Snapshot};
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
-use sculptd_daemon::decimate_job::DecimateWanted;
-use sculptd_daemon::quad_job::QuadsWanted;
-use sculptd_daemon::remesh_job::Wanted;
+use sculptd_daemon::decimate_job::{DecimateMade, DecimateWanted};
+use sculptd_daemon::operations::{self, Computed, Installed, OperationError, Target};
+use sculptd_daemon::quad_job::{QuadsMade, QuadsWanted};
+use sculptd_daemon::remesh_job::{Remeshed, Wanted};
 use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
 use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
@@ -40,12 +41,14 @@ use sculptd_daemon::{
     remesh_job, scene_jobs, startup,
 };
 use sculptd_devices::Clock;
+use sculptd_engine::answer::Answer;
 use sculptd_engine::command::{Command, NewClay};
 use sculptd_engine::hand::{HeldObject, MenuItem};
 use sculptd_engine::local_remesh::LocalRemesh;
 use sculptd_engine::payload::Payload;
 use sculptd_engine::scene::{
-    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand, SceneError,
+    FaceAlignment, NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
+    SceneError,
 };
 use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_scene};
 use sculptd_geometry::job::Job;
@@ -116,6 +119,20 @@ fn read_and_build(
     built
 }
 
+/// The loop: what it shows, and where commands go.
+pub type Loop = (Arc<ArcSwap<Published>>, CommandSender);
+
+/// For the loop to answer.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Hands a command to the loop and waits for what came of it.
+fn ask(
+    commands: &CommandSender,
+    command: impl Into<QueuedCommand>,
+) -> Result<Answer, OperationError> {
+    Ok(commands.carry_out(command, PATIENCE)?.result?)
+}
+
 #[derive(Debug)]
 pub struct Tasks {
     pub(super) say: cc::Sender<TaskReport>,
@@ -180,14 +197,13 @@ impl Tasks {
                     let new = NewClay::new(Arc::new(loaded.plain), false);
                     let built = Payload::Clay(Box::new(loaded.mesh));
                     let command = QueuedCommand::with_payload(Command::Replace(new), built);
-                    // Waits where the loop has many commands: this thread may.
-                    match commands.send(command) {
-                        Ok(()) => {
+                    match ask(&commands, command) {
+                        Ok(_) => {
                             let _ = say.send(TaskReport::Opened);
                             let _ = say.send(TaskReport::Used(path));
                             TaskReport::Message(text, false)
                         }
-                        Err(_) => TaskReport::Message(tr!("task-loop-ended"), true),
+                        Err(e) => TaskReport::Message(e.to_string(), true),
                     }
                 }
                 Err(e) => TaskReport::Message(e.to_string(), true),
@@ -233,21 +249,50 @@ impl Tasks {
         });
     }
 
+    /// Carries out an operation on a thread of its own, and reports what the world did. `done`:
+    /// the message where it was carried out.
+    fn operate<T>(
+        &self,
+        name: &'static str,
+        (shown, commands): Loop,
+        job: Arc<Job>,
+        compute: impl Fn(&Published, &Job) -> Result<Computed<T>, OperationError> + Send + 'static,
+        done: impl FnOnce(Installed<T>) -> String + Send + 'static,
+    ) {
+        self.report(name, move || {
+            let to = Target { published: &shown, commands: &commands };
+            operations::carry_out(to, &job, |now| compute(now, &job)).map(done)
+        });
+    }
+
+    /// Does something on a thread of its own, and reports how it ended.
+    fn report(
+        &self,
+        name: &'static str,
+        of: impl FnOnce() -> Result<String, OperationError> + Send + 'static,
+    ) {
+        let say = self.say.clone();
+        thread(name, move || {
+            let (text, wrong) = match of() {
+                Ok(text) => (text, false),
+                Err(OperationError::Refused(SceneError::TakenBack)) => {
+                    (tr!("task-remesh-taken-back"), false)
+                }
+                Err(e) => (e.to_string(), true),
+            };
+            if !text.is_empty() {
+                let _ = say.send(TaskReport::Message(text, wrong));
+            }
+            let _ = say.send(TaskReport::Joined);
+        });
+    }
+
     /// Adds an object of a primitive, or gives one other numbers.
     pub fn primitive(&self, primitive: Primitive, of: Option<ObjectId>, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-load", move || {
-            let built = primitive
-                .triangles()
-                .map_err(|e| e.to_string())
-                .and_then(|plain| Clay::build(&plain, &Job::default()).map_err(|e| e.to_string()));
-            let clay = match built {
-                Ok(clay) => clay,
-                Err(e) => {
-                    let _ = say.send(TaskReport::Message(e, true));
-                    return;
-                }
-            };
+        self.report("sculptd-load", move || {
+            let build = |e: &dyn std::fmt::Display| OperationError::Build(e.to_string());
+            let plain = primitive.triangles().map_err(|e| build(&e))?;
+            let clay = Clay::build(&plain, &Job::default()).map_err(|e| build(&e))?;
             let source = ObjectSource::Primitive(primitive);
             let new = NewObject::new(primitive.shape.name(), source, ObjectTransform::NONE);
             let command = Command::Scene(match of {
@@ -255,169 +300,111 @@ impl Tasks {
                 None => SceneCommand::Add(new),
             });
             let built = Payload::Clay(Box::new(clay));
-            let _ = commands.send(QueuedCommand::with_payload(command, built));
+            ask(&commands, QueuedCommand::with_payload(command, built)).map(|_| String::new())
         });
     }
 
     /// What the hands hold becomes an object where they hold it.
     pub fn held(&self, held: HeldObject, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-load", move || {
-            let clay = match Clay::build(&held.plain, &Job::default()) {
-                Ok(clay) => clay,
-                Err(e) => {
-                    let _ = say.send(TaskReport::Message(e.to_string(), true));
-                    return;
-                }
-            };
+        self.report("sculptd-load", move || {
+            let build = |e: BuildError| OperationError::Build(e.to_string());
+            let clay = Clay::build(&held.plain, &Job::default()).map_err(build)?;
             let transform = held.place.to_object();
             let new = NewObject::new("held object", ObjectSource::Mesh(held.plain), transform);
             let command = Command::Scene(SceneCommand::Add(new));
             let built = Payload::Clay(Box::new(clay));
-            let _ = commands.send(QueuedCommand::with_payload(command, built));
-            let _ = commands.send(Command::PutDown);
+            ask(&commands, QueuedCommand::with_payload(command, built))?;
+            ask(&commands, Command::PutDown).map(|_| String::new())
         });
     }
 
     /// A Boolean of the active object and another, in the place of both.
     pub fn pair(&self, pairing: Pairing, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-boolean", move || {
-            let state = shown.load_full();
-            let active = state.scene.active().map_or(pairing.with, |o| o.id);
-            let (ids, job) = ([active, pairing.with], Job::default());
-            let Pairing { operation, live, all, .. } = pairing;
-            let asked = SceneBoolean { live, all, ..SceneBoolean::new(operation) };
-            let (text, wrong) = match scene_jobs::boolean(&state, ids, asked, &job) {
-                Ok(done) => {
-                    let (command, built) = done.command();
-                    let command = Command::Scene(command);
-                    let sent = commands.send(QueuedCommand::with_payload(command, built));
-                    let operation = operation_title(pairing.operation);
-                    (tr!("task-done", operation = operation), sent.is_err())
-                }
-                Err(e) => (e.to_string(), true),
-            };
-            let _ = say.send(TaskReport::Message(text, wrong));
-            let _ = say.send(TaskReport::Joined);
-        });
+        let active = shown.load().scene.active().map_or(pairing.with, |o| o.id);
+        let ids = [active, pairing.with];
+        let Pairing { operation, live, all, .. } = pairing;
+        let asked = SceneBoolean { live, all, ..SceneBoolean::new(operation) };
+        let compute = move |now: &Published, job: &Job| {
+            let (command, built) = scene_jobs::boolean(now, ids, asked, job)?.command();
+            Ok(Computed::of_scene(command, Some(built), ()))
+        };
+        let done = move |_| tr!("task-done", operation = operation_title(operation));
+        self.operate("sculptd-boolean", (shown, commands), Arc::default(), compute, done);
     }
 
     /// A mirrored twin of an object, in a plane through the origin of the world.
-    pub fn mirror(&self, id: ObjectId, axis: usize, state: Arc<Published>, to: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-boolean", move || {
-            let (text, wrong) = match scene_jobs::mirror(&state, id, axis, &Job::default()) {
-                Ok(done) => {
-                    let (command, built) = done.command();
-                    let command = Command::Scene(command);
-                    let sent = to.send(QueuedCommand::with_payload(command, built));
-                    (tr!("task-mirrored"), sent.is_err())
-                }
-                Err(e) => (e.to_string(), true),
-            };
-            let _ = say.send(TaskReport::Message(text, wrong));
-        });
+    pub fn mirror(&self, id: ObjectId, axis: usize, to: Loop) {
+        let compute = move |now: &Published, job: &Job| {
+            let (command, built) = scene_jobs::mirror(now, id, axis, job)?.command();
+            Ok(Computed::of_scene(command, Some(built), ()))
+        };
+        self.operate("sculptd-boolean", to, Arc::default(), compute, |_| tr!("task-mirrored"));
     }
 
     /// Lays a face of one object flush on a face of another.
-    pub fn snap(&self, faces: [PickedFace; 2], state: Arc<Published>, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-boolean", move || {
-            let (text, wrong) = match snap_jobs::command(&state, faces) {
-                Ok(command) => (tr!("task-snapped"), commands.send(command).is_err()),
-                Err(e) => (e.to_string(), true),
-            };
-            let _ = say.send(TaskReport::Message(text, wrong));
-        });
+    pub fn snap(&self, [moved, target]: [PickedFace; 2], to: Loop) {
+        let compute = move |now: &Published, _: &Job| {
+            let placed = snap_jobs::face_to_face(now, moved, target, FaceAlignment::Nearest, 0.0)?;
+            Ok(Computed::of_snap(placed))
+        };
+        self.operate("sculptd-boolean", to, Arc::default(), compute, |_| tr!("task-snapped"));
     }
 
     /// Joins the held object with the object; the result takes the object's place, and undo
     /// brings the object back.
     pub fn join(&self, choice: MenuItem, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-boolean", move || {
-            let (text, wrong) =
-                match boolean_jobs::at_rest(&shown, choice, &Job::default(), &commands) {
-                    Ok(_) => (tr!("task-done", operation = hand_menu::title(choice)), false),
-                    Err(e) => (e.to_string(), true),
-                };
-            let _ = say.send(TaskReport::Message(text, wrong));
-            let _ = say.send(TaskReport::Joined);
-        });
-    }
-
-    /// Sends the commands of what changes the whole object, and says how it went.
-    fn change(
-        &self,
-        name: &'static str,
-        commands: CommandSender,
-        of: impl FnOnce() -> Result<(Vec<QueuedCommand>, String), JoinError> + Send + 'static,
-    ) {
-        let say = self.say.clone();
-        thread(name, move || {
-            let (text, wrong) = match of() {
-                Ok((all, text)) => {
-                    let sent = all.into_iter().all(|c| commands.send(c).is_ok());
-                    (if sent { text } else { JoinError::Ended.to_string() }, !sent)
-                }
-                Err(e) => (e.to_string(), true),
-            };
-            let _ = say.send(TaskReport::Message(text, wrong));
-            let _ = say.send(TaskReport::Joined);
+        self.report("sculptd-boolean", move || {
+            let to = Target { published: &shown, commands: &commands };
+            boolean_jobs::at_rest(to, choice, &Job::default())?;
+            Ok(tr!("task-done", operation = hand_menu::title(choice)))
         });
     }
 
     /// Cuts off what is seen in a part of the view.
     pub fn trim(&self, part: Part, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
-        self.change("sculptd-trim", commands, move || {
-            Ok((trim::at_rest(&shown, &part)?, tr!("task-trimmed")))
+        self.report("sculptd-trim", move || {
+            let to = Target { published: &shown, commands: &commands };
+            trim::carry_out(to, &part, &Job::default())?;
+            Ok(tr!("task-trimmed"))
         });
     }
 
     /// The object one level finer or coarser.
     pub fn level(&self, finer: bool, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
-        self.change("sculptd-level", commands, move || {
-            let (command, (at, of)) = boolean_jobs::level(&shown, finer)?;
-            Ok((vec![command], tr!("task-level", at = at + 1, all = of)))
-        });
+        let compute = move |now: &Published, job: &Job| boolean_jobs::level(now, finer, job);
+        let done = |done: Installed<(usize, usize)>| {
+            let (at, of) = done.made;
+            tr!("task-level", at = at + 1, all = of)
+        };
+        self.operate("sculptd-level", (shown, commands), Arc::default(), compute, done);
     }
 
     /// The object as one surface of even triangles.
     pub fn remesh(&self, wanted: Wanted, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
-        self.change("sculptd-remesh", commands, move || {
-            let (command, made) = remesh_job::remeshed(&shown, &wanted, &Job::default())?;
+        let compute = move |now: &Published, job: &Job| remesh_job::remeshed(now, &wanted, job);
+        let done = |done: Installed<Remeshed>| {
+            let made = done.made;
             let [before, now] = made.volume;
             let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
             let voxel = format!("{:.4}", made.voxel);
             let (count, crossings) = (made.triangles, made.crossings);
-            let text = tr!(
+            tr!(
                 "task-remeshed",
                 count = count,
                 voxel = voxel,
                 change = change,
                 crossings = crossings
-            );
-            Ok((vec![command], text))
-        });
+            )
+        };
+        self.operate("sculptd-remesh", (shown, commands), Arc::default(), compute, done);
     }
 
     /// Triangles of one size in a part of the active object; what came of it is told.
     pub fn remesh_local(&self, asked: LocalRemesh, commands: CommandSender) {
-        let say = self.say.clone();
-        thread("sculptd-remesh", move || {
-            let (answer, result) = cc::bounded(1);
+        self.report("sculptd-remesh", move || {
             let command = Command::Scene(SceneCommand::RemeshLocal(asked));
-            let queued = QueuedCommand { scene_result: Some(answer), ..command.into() };
-            let sent = commands.send(queued).is_ok();
-            let (text, wrong) = match result.recv() {
-                Ok(Ok(changed)) if sent => (tr!("task-remesh-local", count = changed.0), false),
-                Ok(Err(SceneError::TakenBack)) => (tr!("task-remesh-taken-back"), false),
-                Ok(Err(e)) => (e.to_string(), true),
-                _ => (JoinError::Ended.to_string(), true),
-            };
-            let _ = say.send(TaskReport::Message(text, wrong));
-            let _ = say.send(TaskReport::Joined);
+            let changed = ask(&commands, command)?.object().map_or(0, |changed| changed.0);
+            Ok(tr!("task-remesh-local", count = changed))
         });
     }
 
@@ -428,11 +415,9 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        self.change("sculptd-sets", commands, move || {
-            let edit = face_set_jobs::parted(&shown.load_full(), by)?;
-            let command = Command::Scene(SceneCommand::Sets(edit));
-            Ok((vec![command.into()], tr!("task-sets-made")))
-        });
+        let compute = move |now: &Published, _: &Job| face_set_jobs::parted(now, by);
+        let done = |_| tr!("task-sets-made");
+        self.operate("sculptd-sets", (shown, commands), Arc::default(), compute, done);
     }
 
     /// What is measured of the active object is masked.
@@ -442,12 +427,9 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        self.change("sculptd-mask", commands, move || {
-            let mask = mask_jobs::measured(&shown.load_full(), by, &Job::default())?;
-            let count = mask.protected();
-            let command = Command::Scene(SceneCommand::MaskMeasured(mask));
-            Ok((vec![command.into()], tr!("task-mask-measured", count = count)))
-        });
+        let compute = move |now: &Published, job: &Job| mask_jobs::measured(now, by, job);
+        let done = |done: Installed<u64>| tr!("task-mask-measured", count = done.made);
+        self.operate("sculptd-mask", (shown, commands), Arc::default(), compute, done);
     }
 
     /// A part of the active object, and how thick it is laid on, as a new object.
@@ -457,15 +439,12 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        self.change("sculptd-sets", commands, move || {
-            let (shown, name) = (shown.load_full(), tr!("sets-extract-name"));
-            let made = face_set_jobs::extract(&shown, part, thickness, &name, &Job::default())?;
-            let (new, clay) = made;
-            let (command, count) = (Command::Scene(SceneCommand::Add(new)), clay.vertex_count());
-            let payload = Payload::Clay(Box::new(clay));
-            let queued = QueuedCommand::with_payload(command, payload);
-            Ok((vec![queued], tr!("task-extracted", count = count)))
-        });
+        let name = tr!("sets-extract-name");
+        let compute = move |now: &Published, job: &Job| {
+            face_set_jobs::extract(now, part, thickness, &name, job)
+        };
+        let done = |done: Installed<usize>| tr!("task-extracted", count = done.made);
+        self.operate("sculptd-sets", (shown, commands), Arc::default(), compute, done);
     }
 
     /// The object as quads that follow its shape.
@@ -476,12 +455,14 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        self.change("sculptd-remesh", commands, move || {
-            let (command, made) = quad_job::quads(&shown, &wanted, &job)?;
+        let compute = move |now: &Published, job: &Job| quad_job::quads(now, &wanted, job);
+        let done = |done: Installed<QuadsMade>| {
+            let made = done.made;
             let (quads, others, crossing) = (made.quads, made.other_faces, made.self_intersections);
             let text = tr!("task-quads", quads = quads, triangles = others, crossings = crossing);
-            Ok((vec![command], made.warnings.into_iter().fold(text, |all, w| all + "; " + &w)))
-        });
+            made.warnings.into_iter().fold(text, |all, w| all + "; " + &w)
+        };
+        self.operate("sculptd-remesh", (shown, commands), job, compute, done);
     }
 
     /// The object with fewer triangles.
@@ -492,13 +473,14 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        self.change("sculptd-remesh", commands, move || {
-            let (command, made) = decimate_job::decimated(&shown, &wanted, &job)?;
+        let compute = move |now: &Published, job: &Job| decimate_job::decimated(now, &wanted, job);
+        let done = |done: Installed<DecimateMade>| {
+            let made = done.made;
             let (before, now, crossing) =
                 (made.triangles_before, made.triangles, made.new_crossings);
-            let text = tr!("task-decimated", before = before, now = now, crossings = crossing);
-            Ok((vec![command], text))
-        });
+            tr!("task-decimated", before = before, now = now, crossings = crossing)
+        };
+        self.operate("sculptd-remesh", (shown, commands), job, compute, done);
     }
 
     /// Writes the shadow's outline.

@@ -6,9 +6,10 @@ use std::sync::{Arc, Mutex};
 
 use crate::language::Translations;
 use arc_swap::ArcSwap;
+use crossbeam_channel as cc;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
-use sculptd_daemon::command_queue::CommandSender;
+use sculptd_daemon::command_queue::{CommandAnswer, CommandSender};
 use sculptd_daemon::pen_trail::PenTrail;
 use sculptd_daemon::tablet_controls::TabletControls;
 use sculptd_daemon::window_link::WindowLink;
@@ -19,6 +20,8 @@ use sculptd_geometry::thickness::preset::Preset;
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
     pub commands: CommandSender,
+    /// What came of the commands that nobody waits for.
+    pub answers: cc::Receiver<CommandAnswer>,
     pub published: Arc<ArcSwap<Published>>,
     /// Where the pens of tablets were, each place once.
     pub pen_trail: PenTrail,

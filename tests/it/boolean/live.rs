@@ -8,12 +8,14 @@ use std::time::Duration;
 use glam::{DVec3, Vec3};
 use sculptd_clay::brush::{GaussianBrush, MaskAction};
 use sculptd_clay::{Clay, Cut, Grafted, Reach, Workers};
-use sculptd_daemon::boolean_jobs::{JoinError, carry_out, join};
-use sculptd_daemon::command_queue::QueuedCommand;
+use sculptd_daemon::boolean_jobs::{carry_out, join};
 use sculptd_daemon::config::{Config, LoopConfig};
 use sculptd_daemon::live::Live;
+use sculptd_daemon::operations::{OperationError, Target};
+use sculptd_daemon::published::PublishedFigures;
 use sculptd_daemon::{Published, startup};
 use sculptd_devices::{Clock, queue};
+use sculptd_engine::answer::Answer;
 use sculptd_engine::command::{Carving, Command};
 use sculptd_engine::world::World;
 use sculptd_geometry::boolean::Operation;
@@ -43,17 +45,29 @@ fn sound(world: &World) -> check::MeshReport {
 
 /// The cut that a carving tool asks for.
 fn carving(world: &mut World, tool: &PolyMesh) -> Arc<Cut> {
-    let done = join(&world.snapshot(), tool, false, Operation::Difference, &Job::default())
-        .expect("a result");
-    match &done[..] {
-        [QueuedCommand { command: Command::Cut(c), .. }] => c.cut.clone(),
-        other => panic!("not local: {} commands", other.len()),
+    let shown = Published::of(world, PublishedFigures::default());
+    cut_of(&shown, tool).expect("a local result")
+}
+
+/// The cut that carving `tool` out of the active object gives; `None` where it is not local.
+fn cut_of(shown: &Published, tool: &PolyMesh) -> Option<Arc<Cut>> {
+    let job = Job::default();
+    let done = join(shown, tool.clone(), false, Operation::Difference, &job).expect("a result");
+    match done.edit.command {
+        Command::OfClay(of) => match of.command {
+            Command::Cut(carving) => Some(carving.cut),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
 fn make(world: &mut World, tick: u64, cut: &Arc<Cut>) -> Option<Grafted> {
     world.step(tick, &[], &[Command::Cut(Carving { cut: cut.clone(), put_down: false })]);
-    world.cut_results()[0]
+    match world.answers()[0] {
+        Ok(Answer::Cut(made)) => Some(made),
+        _ => None,
+    }
 }
 
 #[test]
@@ -73,14 +87,9 @@ fn a_cut_is_made_over_changes_elsewhere_and_refused_over_changes_there() {
     // A dab on the far side changes nothing for a cut here; one in the place does.
     for (centre, stands) in [(Vec3::X, true), (Vec3::Y, false)] {
         let mut mesh = Clay::build(&w.mesh().to_tri(), &Job::default()).expect("clay");
-        let snapshot = mesh.snapshot();
-        let tool = ball(0.12, DVec3::Y);
-        let cut = match &join(&snapshot, &tool, false, Operation::Difference, &Job::default())
-            .expect("a result")[..]
-        {
-            [QueuedCommand { command: Command::Cut(c), .. }] => c.cut.clone(),
-            _ => panic!("not local"),
-        };
+        let mut shown = Published::of(&mut w, PublishedFigures::default());
+        shown.mesh = mesh.snapshot();
+        let cut = cut_of(&shown, &ball(0.12, DVec3::Y)).expect("local");
         let reach = Reach::Sphere { centre, radius: 0.1 };
         mesh.dab(&reach, &GaussianBrush::new(centre, 0.1, centre, 0.01), &Workers::new(1));
         assert_eq!(mesh.graft(&cut).is_some(), stands, "{centre}");
@@ -114,14 +123,12 @@ fn what_is_protected_stays_so_the_long_way_too() {
         w.step(1, &[], &[Command::Mask(MaskAction::Fill)]);
     }
     let tool = ball(0.9, DVec3::new(0.5, 0.1, 0.05));
-    let done = join(&live.snapshot(), &tool, false, Operation::Intersection, &Job::default());
-    let done = done.expect("a result");
-    let done: Vec<Command> = done.into_iter().map(|q| q.deliver(&mut live)).collect();
-    assert!(
-        matches!(&done[..], [Command::ReplaceMasked(..)]),
-        "not with masks: {} commands",
-        done.len()
-    );
+    let shown = Published::of(&mut live, PublishedFigures::default());
+    let done = join(&shown, tool, false, Operation::Intersection, &Job::default());
+    let done = done.expect("a result").into_commands().into_iter();
+    let done: Vec<Command> = done.map(|q| q.deliver(&mut live)).collect();
+    let masked = |c: &Command| matches!(c, Command::OfClay(of) if matches!(of.command, Command::ReplaceMasked(..)));
+    assert!(done.len() == 1 && masked(&done[0]), "not with masks: {} commands", done.len());
     let bytes = postcard::to_allocvec(&done).expect("written");
     live.step(2, &[], &done);
     let read: Vec<Command> = postcard::from_bytes(&bytes).expect("read");
@@ -156,20 +163,13 @@ fn in_the_running_loop_with_pages_shared_and_an_end_when_asked() {
     let clock = Clock::monotonic();
     let live =
         Live::start(w, receiver, clock.clone(), LoopConfig::default(), 64, None).expect("runs");
-    let given = |tool: PolyMesh| move |_: &Published| Ok::<_, JoinError>(tool.clone());
+    let to = Target { published: &live.published, commands: &live.commands };
+    let given = |tool: PolyMesh| move |_: &Published| Ok::<_, OperationError>(tool.clone());
     for (n, at) in [DVec3::Z, DVec3::X, DVec3::new(0.0, 0.6, 0.8)].into_iter().enumerate() {
         let tool = ball(0.1, at);
         let start = clock.now_us();
         let job = Job::default();
-        let done = carry_out(
-            &live.published,
-            given(tool),
-            false,
-            Operation::Difference,
-            &job,
-            &live.commands,
-        )
-        .expect("joined");
+        let done = carry_out(to, given(tool), false, Operation::Difference, &job).expect("joined");
         println!("{n}: {done:?} in {:.1} ms", (clock.now_us() - start) as f64 * 1e-3);
         assert!(
             done.local && done.pages_written > 0 && done.pages_shared > 10 * done.pages_written,
@@ -191,9 +191,7 @@ fn in_the_running_loop_with_pages_shared_and_an_end_when_asked() {
     let mut large = shapes::icosphere(1.0, 100).to_poly();
     large.positions.iter_mut().for_each(|p| *p += DVec3::new(0.3, 0.2, 0.1));
     let ended =
-        carry_out(&live.published, given(large), false, Operation::Union, &job, &live.commands)
-            .err()
-            .map(|e| e.to_string());
+        carry_out(to, given(large), false, Operation::Union, &job).err().map(|e| e.to_string());
     let late = (clock.now_us() - asked.1.recv().expect("asked")) as f64 * 1e-3;
     println!("ended {late:.1} ms after it was asked to: {ended:?}");
     cancel.join().expect("ends");

@@ -1,26 +1,30 @@
 //! Levels of detail and trimming, as the control socket asks for them.
 
-use arc_swap::ArcSwap;
 use glam::{Vec2, Vec3};
 use sculptd_clay::brush::{BrushKind, BrushSettings, MaskAction, Measure};
+use sculptd_daemon::operations::{Computed, OperationError};
 use sculptd_daemon::published::{Published, PublishedFigures};
 use sculptd_daemon::{boolean_jobs, trim};
+use sculptd_engine::answer::Answer;
 use sculptd_engine::command::Command;
+use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, check, shapes};
 
 use super::{Studio, s_curve};
 
-fn shown(studio: &mut Studio) -> ArcSwap<Published> {
-    ArcSwap::from_pointee(Published::of(&mut studio.world, PublishedFigures::default()))
+fn shown(studio: &mut Studio) -> Published {
+    Published::of(&mut studio.world, PublishedFigures::default())
 }
 
 fn go(studio: &mut Studio, finer: bool) -> (usize, usize) {
-    let (command, at) = boolean_jobs::level(&shown(studio), finer).expect("there is such a level");
-    let command = command.deliver(&mut studio.world);
+    let level = boolean_jobs::level(&shown(studio), finer, &Job::default());
+    let level = level.expect("there is such a level");
+    let command = level.edit.deliver(&mut studio.world);
     studio.tell(command);
+    assert_eq!(studio.world.answers(), [Ok(Answer::Done)]);
     studio.world.verify_invariants().expect("in order");
-    at
+    level.made
 }
 
 fn volume(mesh: &TriMesh) -> f64 {
@@ -141,8 +145,12 @@ fn cut_triangles_end_the_levels() {
     let mut studio = Studio::new(&shapes::icosphere(1.0, 16), brush, 1);
     go(&mut studio, true);
     studio.stroke(&s_curve());
-    assert!(boolean_jobs::level(&shown(&mut studio), false).is_err());
+    assert!(boolean_jobs::level(&shown(&mut studio), false, &Job::default()).is_err());
     assert_eq!(go(&mut studio, true), (1, 2), "what is there is the lowest of new ones");
+}
+
+fn trimmed(now: &Published, part: &trim::Part) -> Result<Computed<usize>, OperationError> {
+    boolean_jobs::join(now, trim::tool(now, part)?, false, Operation::Difference, &Job::default())
 }
 
 #[test]
@@ -151,10 +159,11 @@ fn a_box_and_a_line_cut_off_what_is_seen_there() {
     let mut studio = Studio::new(&start, BrushSettings::default(), 1);
     let whole = volume(&start);
     let cut = |studio: &mut Studio, part: trim::Part| {
-        let done = trim::at_rest(&shown(studio), &part).expect("something is there");
-        for queued in done {
+        let done = trimmed(&shown(studio), &part).expect("something is there");
+        for queued in done.into_commands() {
             let command = queued.deliver(&mut studio.world);
             studio.tell(command);
+            assert!(studio.world.answers()[0].is_ok());
         }
         studio.world.verify_invariants().expect("in order");
         studio.world.mesh().to_tri()
@@ -173,6 +182,6 @@ fn a_box_and_a_line_cut_off_what_is_seen_there() {
     studio.tell(Command::Undo);
     studio.tell(Command::Undo);
     assert_eq!(studio.world.mesh().to_tri(), start);
-    let none = trim::at_rest(&shown(&mut studio), &trim::Part::Box([0.0, 0.0, 1.0, 1.0]));
+    let none = trimmed(&shown(&mut studio), &trim::Part::Box([0.0, 0.0, 1.0, 1.0]));
     assert!(none.is_err(), "nothing of the work would be left");
 }

@@ -29,7 +29,7 @@ fn work(s: &mut Studio) -> Vec<u64> {
     };
     let ask = |s: &mut Studio, hashes: &mut Vec<u64>, command: SceneCommand| {
         s.tick(&[], &[Command::Scene(command)]);
-        assert!(s.world.scene_results()[0].is_ok(), "{:?}", s.world.scene_results());
+        assert!(s.world.answers()[0].is_ok(), "{:?}", s.world.answers());
         hashes.push(s.world.hash());
     };
     ask(s, &mut hashes, primitive(PrimitiveShape::Ball(0.8), 0.08));
@@ -112,7 +112,7 @@ fn a_work_of_one_object_that_is_not_the_first_stands_where_it_was_when_it_is_ope
     for command in asked {
         before = s.world.hash();
         s.tick(&[], &[Command::Scene(command)]);
-        assert!(s.world.scene_results()[0].is_ok(), "{:?}", s.world.scene_results());
+        assert!(s.world.answers()[0].is_ok(), "{:?}", s.world.answers());
     }
     assert!(s.world.scene_view().is_plain(), "but for its number it is as a session begins");
     s.settle();

@@ -15,7 +15,7 @@ use sculptd_window::panels::{Tab, UiRequest};
 fn edit(world: &mut World, edit: LayerEdit) {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(SceneCommand::Layers(edit))]);
-    assert!(world.scene_results()[0].is_ok());
+    assert!(world.answers()[0].is_ok());
 }
 
 /// Two layers, the upper one active.

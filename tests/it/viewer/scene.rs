@@ -24,7 +24,7 @@ use sculptd_window::viewer::renderer::{Beside, Scene};
 fn ask(world: &mut World, command: SceneCommand) {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(command)]);
-    assert!(world.scene_results()[0].is_ok());
+    assert!(world.answers()[0].is_ok());
 }
 
 /// A ball at the origin and a box to its right, turned and small; the box is active.

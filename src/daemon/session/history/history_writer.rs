@@ -8,13 +8,14 @@ use super::stored_scene::{
     StoredClay, StoredObject, StoredScene, same_scene, unchanged, version, versions_of,
 };
 use super::tree::{Change, NOTHING, Node, Tree};
+use super::world_at_rest::WorldAtRest;
 use crate::session::VERSION;
 use crate::session::history::retention::{Freed, HighestNumbers, Pin, bound};
 use crate::session::history::thumbnail;
 use crate::session::stored_polygons::StoredPolygons;
 use sculptd_clay::{Page, Snapshot};
-use sculptd_engine::scene::{ObjectId, ObjectSettings, SceneEvent, SceneView};
-use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, SideData};
+use sculptd_engine::scene::{KnownHashes, ObjectId, ObjectSettings, SceneEvent, SceneView};
+use sculptd_engine::world::{HistoryEntry, HistoryEvent, SideData};
 
 /// Bytes of one transaction: the journal's own rows wait for no longer than that takes.
 const CHUNK: usize = 4 << 20;
@@ -35,6 +36,8 @@ pub struct HistoryWriter {
     names: BTreeMap<Name, u64>,
     topologies: BTreeSet<Name>,
     sides: Vec<(SideData, u64)>,
+    /// What is known of the pages that were hashed for the checkpoint before.
+    hashes: KnownHashes,
     next_side: u64,
     polygons: StoredPolygons,
     /// Bytes in the open transaction.
@@ -44,15 +47,6 @@ pub struct HistoryWriter {
     pub most: u64,
     /// Another person's work began: no history is kept from there on.
     pub closed: bool,
-}
-
-fn same(a: &SideData, b: &SideData) -> bool {
-    match (a, b) {
-        (SideData::HeldObject(a), SideData::HeldObject(b)) => Arc::ptr_eq(a, b),
-        (SideData::Picture(a), SideData::Picture(b)) => Arc::ptr_eq(a, b),
-        (SideData::Levels(a), SideData::Levels(b)) => Arc::ptr_eq(a, b),
-        _ => false,
-    }
 }
 
 impl HistoryWriter {
@@ -120,6 +114,7 @@ impl HistoryWriter {
             names,
             topologies,
             sides: Vec::new(),
+            hashes: KnownHashes::default(),
             next_side,
             polygons,
             open: 0,
@@ -287,7 +282,7 @@ impl HistoryWriter {
 
     /// Where a side is kept; written when it is first met.
     fn side(&mut self, side: SideData) -> Result<u64, StoreError> {
-        if let Some((_, id)) = self.sides.iter().find(|(known, _)| same(known, &side)) {
+        if let Some((_, id)) = self.sides.iter().find(|(known, _)| known.is_same(&side)) {
             return Ok(*id);
         }
         let id = self.next_side;
@@ -512,8 +507,9 @@ impl HistoryWriter {
         self.now = work.clone();
     }
 
-    /// Writes a checkpoint.
-    pub fn state(&mut self, saved: &Saved) -> Result<(), StoreError> {
+    /// Writes a checkpoint, with the hash of the live sculpture as its proof.
+    pub fn state(&mut self, world: &WorldAtRest) -> Result<(), StoreError> {
+        let saved = &world.saved;
         // After moments that were left out, this is not the work at the cursor.
         let now = (self.now.object_id(), self.now.revision());
         if self.closed || (saved.rest.object_id, saved.rest.revision) != now {
@@ -547,6 +543,7 @@ impl HistoryWriter {
             sides: ids,
             steps: saved.steps,
             layout: VERSION,
+            proof: Some(world.scene.page_hash(&world.active, &mut self.hashes)),
         })?;
         self.store.db.execute_batch("COMMIT")?;
         self.bytes += bytes as u64;

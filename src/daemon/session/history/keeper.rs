@@ -16,13 +16,14 @@ use crossbeam_channel as cc;
 use super::store::{Store, StoreError};
 use super::stored_scene::{StoredObject, StoredScene};
 use super::tree::{NOTHING, Node, Tree, TreePath};
+use super::world_at_rest::WorldAtRest;
 use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, Jump, JumpObject, OtherWork, SceneJump};
 use sculptd_engine::payload::Payload;
-use sculptd_engine::world::{HistoryEntry, HistoryEvent, Saved, World};
+use sculptd_engine::world::{HistoryEntry, HistoryEvent, World};
 use sculptd_geometry::job::Job;
 
 /// Moments that may wait for the disk, each holding the pages of its time.
@@ -45,7 +46,7 @@ pub enum Want {
 #[derive(Debug)]
 enum HistoryMessage {
     HistoryEntry { tick: u64, moment: HistoryEntry },
-    State(Box<Saved>),
+    State(Box<WorldAtRest>),
     Want(Want),
     End,
 }
@@ -62,6 +63,8 @@ pub struct Handle {
     ending: Arc<AtomicBool>,
     /// Messages that were handed over and are not yet dealt with.
     busy: Arc<AtomicUsize>,
+    /// A jump waits, or was sent and did not come back yet.
+    jumping: Arc<AtomicBool>,
 }
 
 impl Handle {
@@ -87,11 +90,11 @@ impl Handle {
     }
 
     /// Hands over the world at rest. False where it is not at rest, or the disk is behind.
-    pub fn checkpoint(&self, world: &World) -> bool {
+    pub fn checkpoint(&self, world: &mut World) -> bool {
         if self.inbox.len() >= WAITING || !world.is_at_rest() {
             return false;
         }
-        world.save().is_some_and(|saved| self.send(HistoryMessage::State(Box::new(saved))))
+        WorldAtRest::of(world).is_some_and(|at| self.send(HistoryMessage::State(Box::new(at))))
     }
 
     fn send(&self, message: HistoryMessage) -> bool {
@@ -123,6 +126,12 @@ impl Handle {
     /// Whether all that was handed over is written, and no jump is under way.
     pub fn is_idle(&self) -> bool {
         self.busy.load(Relaxed) == 0
+    }
+
+    /// Returns whether something is still to be written, or a jump is wanted that the world has not
+    /// made and that was not given up.
+    pub fn is_going(&self) -> bool {
+        !self.is_idle() || self.jumping.load(Relaxed)
     }
 
     /// What stands in the way, if anything.
@@ -162,6 +171,7 @@ impl Keeper {
             path: path.to_path_buf(),
             wants: VecDeque::new(),
             sent: None,
+            jumping: Arc::default(),
             full: false,
             clock: Clock::monotonic(),
         };
@@ -174,6 +184,7 @@ impl Keeper {
             path: Arc::new(path.to_path_buf()),
             ending: Arc::default(),
             busy: Arc::default(),
+            jumping: keeping.jumping.clone(),
         };
         let (fault, commands, ending, busy) = (
             handle.fault.clone(),
@@ -204,6 +215,7 @@ struct HistoryThread {
     wants: VecDeque<Want>,
     /// When a jump was sent that did not come back yet.
     sent: Option<u64>,
+    jumping: Arc<AtomicBool>,
     /// What is left is more than the bound, and that was said.
     full: bool,
     clock: Clock,
@@ -220,10 +232,13 @@ impl HistoryThread {
     ) {
         crate::priority::raise_priority_below();
         loop {
-            let message = match inbox.recv_timeout(RETRY) {
+            // A jump that was ignored is given up in time.
+            let patience = if self.jumping.load(Relaxed) { PATIENCE } else { RETRY };
+            let message = match inbox.recv_timeout(patience) {
                 Ok(message) => message,
                 Err(cc::RecvTimeoutError::Timeout) => {
                     self.serve(commands);
+                    self.tell_jumping();
                     continue;
                 }
                 Err(cc::RecvTimeoutError::Disconnected) => break,
@@ -262,6 +277,7 @@ impl HistoryThread {
                 }
             }
             self.serve(commands);
+            self.tell_jumping();
             busy.fetch_sub(1, Relaxed);
         }
         // Closing takes the rest of the log over, and syncs as it should.
@@ -279,7 +295,7 @@ impl HistoryThread {
                 self.show();
                 Ok(())
             }
-            HistoryMessage::State(saved) => self.ledger.state(saved),
+            HistoryMessage::State(world) => self.ledger.state(world),
             _ => Ok(()),
         }
     }
@@ -315,6 +331,10 @@ impl HistoryThread {
         if let Ok(mut shown) = self.shown.lock() {
             shown.clone_from(&self.ledger.tree);
         }
+    }
+
+    fn tell_jumping(&self) {
+        self.jumping.store(self.sent.is_some() || !self.wants.is_empty(), Relaxed);
     }
 
     /// Sends the next jump that is wanted, unless one is under way.

@@ -24,6 +24,7 @@ pub mod store;
 pub mod stored_scene;
 mod thumbnail;
 pub mod tree;
+mod world_at_rest;
 
 pub use keeper::{Handle, Keeper, Want};
 pub use store::{Store, StoreError};

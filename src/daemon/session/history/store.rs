@@ -60,6 +60,11 @@ pub const TABLES: &str = "
         data BLOB NOT NULL,
         layout INTEGER NOT NULL DEFAULT 3
     );
+    CREATE TABLE IF NOT EXISTS proof (
+        checkpoint INTEGER PRIMARY KEY,
+        crc INTEGER NOT NULL,
+        hash INTEGER NOT NULL
+    );
     CREATE TABLE IF NOT EXISTS sight (node INTEGER PRIMARY KEY, png BLOB NOT NULL);
     CREATE TABLE IF NOT EXISTS pin (
         id INTEGER PRIMARY KEY,
@@ -96,6 +101,12 @@ pub struct Checkpoint {
     /// The layout that `core` is in; stands in a column of its own.
     #[serde(skip)]
     pub layout: u32,
+    /// The hash of the live sculpture, [`SceneView::page_hash`]; stands in a table of its own.
+    /// `None` in files from before it was written.
+    ///
+    /// [`SceneView::page_hash`]: sculptd_engine::scene::SceneView::page_hash
+    #[serde(skip)]
+    pub proof: Option<u64>,
 }
 
 /// One row's checksum, bytes and layout.
@@ -173,8 +184,12 @@ impl Store {
     /// # Errors
     /// Where that cannot be read.
     pub fn has_tables(&self) -> Result<bool, StoreError> {
-        let sql = "SELECT count(*) FROM sqlite_schema WHERE name = 'node'";
-        Ok(self.db.query_row(sql, [], |r| r.get::<_, i64>(0))? > 0)
+        self.has_table("node")
+    }
+
+    fn has_table(&self, name: &str) -> Result<bool, StoreError> {
+        let sql = "SELECT count(*) FROM sqlite_schema WHERE name = ?1";
+        Ok(self.db.query_row(sql, [name], |r| r.get::<_, i64>(0))? > 0)
     }
 
     /// Every node whose parents are there too. A damaged one ends its branch.
@@ -247,7 +262,18 @@ impl Store {
         let row = self.row("checkpoint", id)?;
         let (layout, made) = (row.layout, row.decode::<Checkpoint>());
         let made = made.ok_or_else(|| StoreError::Damaged("a checkpoint".into()))?;
-        Ok(Checkpoint { layout, ..made })
+        Ok(Checkpoint { layout, proof: self.proof(id, row.crc)?, ..made })
+    }
+
+    /// Returns the proof of a checkpoint whose bytes have the checksum `crc`: one that was written
+    /// for other bytes does not count.
+    fn proof(&self, id: u64, crc: u32) -> Result<Option<u64>, StoreError> {
+        if !self.has_table("proof")? {
+            return Ok(None);
+        }
+        let sql = "SELECT hash FROM proof WHERE checkpoint = ?1 AND crc = ?2";
+        let found = self.db.query_row(sql, (id as i64, crc), |r| r.get::<_, i64>(0)).optional()?;
+        Ok(found.map(|hash| hash as u64))
     }
 
     /// The state of a checkpoint, with its sides.
@@ -327,6 +353,11 @@ impl Store {
             "INSERT INTO checkpoint (tick, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",
             row,
         )?;
+        if let Some(hash) = c.proof {
+            let row = (self.db.last_insert_rowid(), crc32fast::hash(&data), hash as i64);
+            let sql = "INSERT OR REPLACE INTO proof (checkpoint, crc, hash) VALUES (?1, ?2, ?3)";
+            self.db.execute(sql, row)?;
+        }
         Ok(data.len())
     }
 
@@ -448,8 +479,7 @@ impl Store {
         ];
         let mut sum = 0;
         for (table, column) in columns {
-            let known = "SELECT count(*) FROM sqlite_schema WHERE name = ?1";
-            if self.db.query_row(known, [table], |r| r.get::<_, i64>(0))? > 0 {
+            if self.has_table(table)? {
                 let sql = format!("SELECT coalesce(sum(length({column})), 0) FROM {table}");
                 sum += self.db.query_row(&sql, [], |r| r.get::<_, i64>(0))?;
             }

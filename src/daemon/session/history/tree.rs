@@ -37,11 +37,17 @@ pub struct Node {
 }
 
 impl Node {
-    /// Whether another clay begins here, so that `changes` names all its pages.
+    /// Returns whether another clay begins here, so that `changes` names all its pages. An edit of
+    /// layers, sets or masks names the pages that it changed, like a stroke: the pages themselves
+    /// decide, not the kind of event.
     pub fn begins_clay(&self) -> bool {
         match self.deed {
             HistoryEvent::Replace => true,
-            HistoryEvent::Scene(_) => !self.changes.is_empty(),
+            HistoryEvent::Scene(_) => {
+                self.changes.len() == self.pages as usize
+                    && !self.changes.is_empty()
+                    && self.changes.iter().all(|c| c.1 == NOTHING)
+            }
             _ => false,
         }
     }
