@@ -130,6 +130,9 @@ pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
         OpenError::Io { source, .. } => Fail::io(&args.session, &source),
         e => Fail::Input(e.to_string()),
     })?;
+    if let Some(text) = &opened.not_ended {
+        eprintln!("sculptd: {}: {text}", args.session.display());
+    }
     if let Some(loss) = &opened.loss {
         eprintln!("sculptd: warning: {}: {loss}", args.session.display());
     }

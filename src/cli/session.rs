@@ -177,6 +177,9 @@ pub fn run(command: &SessionCommand, json: bool) -> Outcome {
             let entry = catalog::look(session).map_err(|e| Fail::io(session, &e))?;
             answer(json, &entry, |out| {
                 line(out, &entry)?;
+                if let Some(text) = &entry.not_ended {
+                    writeln!(out, "{text}")?;
+                }
                 let Some(f) = &entry.facts else { return Ok(()) };
                 writeln!(out, "start           {:>12} vertices", f.start_vertices)?;
                 writeln!(out, "last tick       {:>12}   at {} Hz", f.last_tick, f.rate_hz)?;

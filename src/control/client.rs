@@ -136,7 +136,7 @@ impl Client {
                 .map_err(|e| ClientError::Malformed(e.to_string()))?;
             // An answer to an earlier request, which nobody waited for any more. A refusal without
             // an id is about the line or the connection.
-            if !response.id.is_null() && response.id != Value::from(self.sent) {
+            if !response.id.is_null() && response.id != self.sent {
                 continue;
             }
             return match (response.result, response.error) {

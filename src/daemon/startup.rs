@@ -195,6 +195,9 @@ pub fn begin_with(
             }
         }
         let opened = opened?;
+        if let Some(text) = &opened.not_ended {
+            warnings.push(format!("{}: {text}", path.display()));
+        }
         restore_polygons(&path, &mut warnings);
         let count = config.r#loop.worker_count();
         let (mut replayed, purge, node) = match session::reopen(&path, &opened, None, count, job) {
@@ -229,7 +232,8 @@ pub fn begin_with(
             reopened.push(Command::OnePerson);
         }
         world.step(tick, &[], &reopened);
-        let keeper = Keeper::start(&path, world, purge, node, config.undo.history_bytes);
+        let keeper =
+            Keeper::start(thread.path.clone(), world, purge, node, config.undo.history_bytes);
         keep(keeper, &mut writer, &mut thread, &mut warnings);
         writer.tick(tick, &[], &reopened, world);
         return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
@@ -254,7 +258,8 @@ pub fn begin_with(
         Some(path) => {
             let settings = session_settings(config);
             let (mut writer, mut thread) = session::create(path, &loaded.plain, &settings)?;
-            let keeper = Keeper::start(path, &mut world, 0, None, config.undo.history_bytes);
+            let keeper =
+                Keeper::start(thread.path.clone(), &mut world, 0, None, config.undo.history_bytes);
             keep(keeper, &mut writer, &mut thread, &mut warnings);
             Some((writer, thread))
         }

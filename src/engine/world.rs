@@ -8,6 +8,7 @@
 //!   topology, whose budget is what dabs leave. Edits of layers, of the whole mask, of face sets
 //!   and of triangles in place go through the pages in portions.
 
+mod begin;
 mod fork;
 mod hands;
 mod held;
@@ -39,7 +40,7 @@ pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext};
 use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
-use crate::command::{Beginning, Carving, Command, NewClay};
+use crate::command::{Carving, Command, NewClay};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
@@ -338,32 +339,6 @@ impl World {
         }
         self.report.missed += if redo { 1 } else { -1 };
         Ok(Answer::NothingInMemory)
-    }
-
-    fn begin_anew(&mut self, new: &Beginning) -> CommandResult {
-        self.lift_all();
-        if !new.camera.is_sane() {
-            return Err(SceneError::Value("values that are finite"));
-        }
-        let mesh = self.built(&new.clay, &[]).ok_or(SceneError::Build)?;
-        let workers = std::mem::replace(&mut self.workers, Workers::new(1));
-        let fresh = World::new(mesh, new.camera, new.brush, workers, self.options);
-        let mut old = std::mem::replace(self, fresh);
-        self.lineages = old.lineages + 1;
-        self.scene.active_mut().clay.set_object_id(self.lineages);
-        self.moments = old.moments.take();
-        self.desktop = old.desktop;
-        self.people = std::mem::take(&mut old.people);
-        self.tick = old.tick;
-        self.report = old.report;
-        std::mem::swap(&mut self.payloads, &mut old.payloads);
-        std::mem::swap(&mut self.answers, &mut old.answers);
-        self.late_answer = old.late_answer.take();
-        self.set_garbage_sink(old.garbage.clone());
-        self.set_page_supply(old.pages.clone());
-        self.garbage.discard_owned(old);
-        self.note(HistoryEvent::Begin);
-        Ok(Answer::Done)
     }
 
     /// The pens of the person whose command is applied.

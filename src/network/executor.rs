@@ -108,6 +108,14 @@ impl Executor {
         let tick = frame.tick.max(world.tick());
         let mut input = TickInput { tick, ..TickInput::default() };
         let t_us = (frame.tick as u128 * 1_000_000 / u128::from(self.rate_hz.max(1))) as u64;
+        // A world that was one person's is of several from the first of their input on. The command
+        // is part of the input, so that every session file says the same.
+        let first = frame.batches.first().map(|b| b.person);
+        let first = first.or(frame.arrivals.first().map(|a| a.person));
+        if let Some(person) = first.filter(|_| !world.has_people()) {
+            let of = OfPerson { person, command: Command::LiftAll };
+            input.commands.push(Command::OfPerson(Box::new(of)));
+        }
         // The pens of those who have gone will tell nothing any more.
         for gone in frame.arrivals.iter().filter(|a| !a.here) {
             let of = OfPerson { person: gone.person, command: Command::LiftAll };

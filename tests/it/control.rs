@@ -10,7 +10,7 @@ use crate::waiting::{PATIENCE, until};
 use arc_swap::ArcSwap;
 use sculptd_clay::Clay;
 use sculptd_control::METHODS;
-use sculptd_daemon::command_queue::{QueuedCommand, command_queue};
+use sculptd_daemon::command_queue::{CommandAnswer, QueuedCommand, command_queue};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::control::handler::call as answer;
 use sculptd_daemon::control::server::{Server, permitted};
@@ -21,6 +21,7 @@ use sculptd_daemon::published::{Published, PublishedFigures};
 use sculptd_daemon::startup;
 use sculptd_daemon::tick::Journal;
 use sculptd_devices::{Clock, queue};
+use sculptd_engine::answer::Answer;
 use sculptd_geometry::io::write_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -207,6 +208,16 @@ fn every_method_refuses_what_it_does_not_know() {
 #[test]
 fn settings_come_back_as_they_are() {
     let rig = Rig::new();
+    // In the place of the loop: every command is carried out.
+    let commands = rig.commands.clone();
+    std::thread::spawn(move || {
+        for queued in commands {
+            let done = CommandAnswer { tick: 1, result: Ok(Answer::Done) };
+            queued.answer.into_iter().for_each(|answer| {
+                let _ = answer.try_send(done);
+            });
+        }
+    });
     let shown = rig.host.published.load_full();
     assert_eq!(answer(&rig.host, "brush", json!({})).expect("settings"), json!(shown.brush));
     assert_eq!(answer(&rig.host, "camera", json!({})).expect("settings"), json!(shown.camera));
@@ -314,6 +325,41 @@ fn half_open_clients_do_not_lock_the_owner_out() {
     until("a request to stop is heard", || ask("shutdown")["result"] == stops);
     assert!(rig.host.stop.load(std::sync::atomic::Ordering::Relaxed));
     drop(server);
+}
+
+/// Clients that do nothing, and clients that flood, give their places to whoever asks something.
+#[test]
+fn idle_and_flooding_clients_give_way() {
+    let rig = Rig::new();
+    let (_server, path) = rig.serve();
+    let ask = || Client::new(&path).ask(r#"{"jsonrpc":"2.0","id":1,"method":"status"}"#);
+    let is_served = || ask().is_some_and(|answer| answer["result"].is_object());
+    let idle: Vec<Client> = (0..100).map(|_| Client::new(&path)).collect();
+    until("an idle client has given way", is_served);
+    // Now each newcomer finds one that is silent for long.
+    assert!((0..50).all(|_| is_served()), "the owner is kept out by idle clients");
+    drop(idle);
+    let stop = Arc::new(std::sync::atomic::AtomicBool::new(false));
+    let floods: Vec<_> = (0..30)
+        .map(|_| {
+            let (path, stop) = (path.clone(), stop.clone());
+            std::thread::spawn(move || {
+                let line = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"progress\"}\n".repeat(64);
+                while !stop.load(std::sync::atomic::Ordering::Relaxed) {
+                    let mut client = Client::new(&path);
+                    while client.out.write_all(line.as_bytes()).is_ok()
+                        && client.read_reply().is_some()
+                        && !stop.load(std::sync::atomic::Ordering::Relaxed)
+                    {}
+                }
+            })
+        })
+        .collect();
+    for round in 0..20 {
+        until(&format!("the owner is served in round {round}"), is_served);
+    }
+    stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    floods.into_iter().for_each(|f| f.join().expect("ends"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! a replay from the start gives.
 
 mod bound;
+mod moved;
 mod random;
 mod scene;
 
@@ -81,7 +82,7 @@ impl Studio {
         let options =
             WorldOptions { dab_budget: settings.dab_budget, undo_bytes, hands: settings.hands };
         let mut world = World::new(mesh, settings.camera, settings.brush, Workers::new(1), options);
-        let keeper = Keeper::start(&path, &mut world, 0, None, most).expect("a history");
+        let keeper = Keeper::start(path.as_path(), &mut world, 0, None, most).expect("a history");
         writer.keep(keeper.handle.clone());
         thread.history = Some(keeper);
         Studio::of(path, Begun { world, journal: Some((writer, thread)), warnings: vec![] })

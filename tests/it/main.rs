@@ -35,6 +35,8 @@ mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
 mod own_brushes;
+#[cfg(unix)]
+mod read_back;
 mod recovery;
 mod remesh_live;
 mod retopology_live;

@@ -209,8 +209,8 @@ fn session_file() {
     let mesh = sculptd_clay::Clay::build(&start, &Default::default()).expect("a ball");
     let mut world = sculptd_daemon::startup::world(mesh, &config);
     let mut thread = thread;
-    let keeper =
-        session::history::Keeper::start(&path, &mut world, 0, None, 1 << 40).expect("a history");
+    let keeper = session::history::Keeper::start(path.as_path(), &mut world, 0, None, 1 << 40)
+        .expect("a history");
     writer.keep(keeper.handle.clone());
     thread.history = Some(keeper);
     for tick in 1..200 {

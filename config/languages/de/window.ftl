@@ -1051,7 +1051,6 @@ action-lesson = Erste Lektion
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } Punkte
-task-loop-ended = die Schleife ist beendet
 task-exported = Gespeichert: { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = Gespeichert: { $path }
 task-frames = { $frames } Bilder gespeichert in { $folder }

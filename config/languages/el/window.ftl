@@ -1051,7 +1051,6 @@ action-lesson = Πρώτο μάθημα
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } κορυφές
-task-loop-ended = ο βρόχος τελείωσε
 task-exported = Αποθηκεύτηκε: { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = Αποθηκεύτηκε: { $path }
 task-frames = Αποθηκεύτηκαν { $frames } καρέ στο { $folder }

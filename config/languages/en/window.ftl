@@ -1053,7 +1053,6 @@ action-lesson = First lesson
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } vertices
-task-loop-ended = the loop has ended
 task-exported = Saved { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = Saved { $path }
 task-frames = Saved { $frames } frames to { $folder }

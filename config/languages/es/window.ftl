@@ -1051,7 +1051,6 @@ action-lesson = Primera lección
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } vértices
-task-loop-ended = el ciclo ha terminado
 task-exported = Guardado { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = Guardado { $path }
 task-frames = Guardados { $frames } cuadros en { $folder }

@@ -1051,7 +1051,6 @@ action-lesson = Première leçon
 ## Messages of background tasks
 
 task-loaded = { $name } : { $count } sommets
-task-loop-ended = la boucle est terminée
 task-exported = Enregistré { $path } : { $x } x { $y } x { $z } { $unit }
 task-saved = Enregistré { $path }
 task-frames = { $frames } images enregistrées dans { $folder }

@@ -1051,7 +1051,6 @@ action-lesson = Prima lezione
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } vertici
-task-loop-ended = il ciclo è terminato
 task-exported = Salvato { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = Salvato { $path }
 task-frames = Salvati { $frames } fotogrammi in { $folder }

@@ -1047,7 +1047,6 @@ action-lesson = 最初のレッスン
 ## Messages of background tasks
 
 task-loaded = { $name }: 頂点 { $count } 個
-task-loop-ended = ループは終了しました
 task-exported = 保存: { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = 保存: { $path }
 task-frames = { $frames } フレームを { $folder } に保存しました

@@ -1047,7 +1047,6 @@ action-lesson = 首课
 ## Messages of background tasks
 
 task-loaded = { $name }: { $count } 个顶点
-task-loop-ended = 循环已结束
 task-exported = 已保存 { $path }: { $x } x { $y } x { $z } { $unit }
 task-saved = 已保存 { $path }
 task-frames = 已将 { $frames } 帧保存到 { $folder }

@@ -470,10 +470,12 @@ fn connect(config: &LeapConfig, stop: &StopToken) -> Result<TrackerSocket, Strin
     let port = request.uri().port_u16().unwrap_or(80);
     let places = (host, port).to_socket_addrs().map_err(|e| format!("{host}:{port}: {e}"))?;
     let allowed = |a: &SocketAddr| config.allow_remote || IpAddr::is_loopback(&a.ip());
-    let place = places
-        .into_iter()
-        .find(allowed)
-        .ok_or_else(|| format!("{host} is another machine; set allow_remote to use it"))?;
+    let place = places.into_iter().find(allowed).ok_or_else(|| {
+        format!(
+            "{host} is another machine, and trackers are read from this one only. Forward \
+                 port {port} here, for example with ssh -L"
+        )
+    })?;
     let stream =
         TcpStream::connect_timeout(&place, PATIENCE).map_err(|e| format!("{place}: {e}"))?;
     let limits = WebSocketConfig::default()

@@ -253,7 +253,7 @@ fn another_machine_is_not_asked_unless_allowed_and_only_ws_is_spoken() {
     let to = |url: &str| {
         connect(&LeapConfig { url: url.into(), ..LeapConfig::default() }, &stop).unwrap_err()
     };
-    assert!(to("ws://192.0.2.1:6437/v6.json").contains("allow_remote"));
+    assert!(to("ws://192.0.2.1:6437/v6.json").contains("Forward port 6437"));
     assert!(to("wss://127.0.0.1:6437/v6.json").contains("only ws://"));
     assert!(to("::::").contains("::::"));
     assert!(to("ws:///v6.json").len() > 4);

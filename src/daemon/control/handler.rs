@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-use std::time::Duration;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -17,9 +16,8 @@ use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
-use super::{mask, measurement, people_reply, retopology, scene, snap};
+use super::{history, mask, measurement, people_reply, retopology, scene, snap};
 use crate::operations::{OperationError, Target};
-use crate::session::history::{Handle, Want, listing};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
 use crate::{Published, boolean_jobs, scene_jobs, startup, trim};
@@ -42,7 +40,6 @@ use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::{Handler, Request, RpcError, event};
 use sculptd_devices::Clock;
-use sculptd_engine::answer::Answer;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
@@ -53,9 +50,6 @@ use sculptd_geometry::repair;
 
 /// Longest picture file, bytes.
 pub const MAX_PICTURE_FILE: u64 = 256 << 20;
-
-/// For the history to fetch what an undo or a jump needs.
-const HISTORY_PATIENCE: Duration = Duration::from_secs(60);
 
 const SENT: SentReply = SentReply { sent: true };
 
@@ -127,11 +121,6 @@ fn load(path: &Path) -> Result<startup::Loaded, RpcError> {
     startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)
 }
 
-fn history(host: &Host) -> Result<&Handle, RpcError> {
-    let none = || RpcError::failed("no history is kept: the daemon runs without --session");
-    host.history.as_ref().ok_or_else(none)
-}
-
 /// Runs a Boolean that `progress` and `cancel` know of. One at a time.
 fn boolean(
     host: &Host,
@@ -151,30 +140,6 @@ fn boolean(
         tries: joined.tries as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
     })
-}
-
-/// Undoes or redoes a step; where memory holds none, the history in the session file does it.
-fn go_in_history(host: &Host, command: Command) -> Result<SentReply, RpcError> {
-    let answer = host.carry_out(command)?;
-    if let (Answer::NothingInMemory, Some(history)) = (answer, &host.history) {
-        await_history(host, history)?;
-    }
-    Ok(SENT)
-}
-
-/// Waits until the history has done what it was asked for, and the published state shows it.
-fn await_history(host: &Host, history: &Handle) -> Result<(), RpcError> {
-    let (clock, quiet) = (Clock::monotonic(), crossbeam_channel::never::<()>());
-    let give_up = clock.now_us() + HISTORY_PATIENCE.as_micros() as u64;
-    while history.is_going() {
-        if host.link().stopped() || clock.now_us() > give_up {
-            return Err(RpcError::failed("the history in the session file gave no answer"));
-        }
-        let _ = quiet.recv_timeout(Duration::from_millis(1));
-    }
-    let shown = host.published.load().tick;
-    host.effect.store(shown, Relaxed);
-    Ok(())
 }
 
 impl Handler for Host {
@@ -304,30 +269,21 @@ impl Handler for Host {
     }
 
     fn undo(&self, _: NoParams) -> Result<SentReply, RpcError> {
-        go_in_history(self, Command::Undo)
+        history::go(self, Command::Undo)?;
+        Ok(SENT)
     }
 
     fn redo(&self, _: NoParams) -> Result<SentReply, RpcError> {
-        go_in_history(self, Command::Redo)
+        history::go(self, Command::Redo)?;
+        Ok(SENT)
     }
 
     fn history(&self, _: NoParams) -> Result<edit::HistoryReply, RpcError> {
-        let tree = history(self)?.tree();
-        Ok(edit::HistoryReply { here: tree.cursor, places: convert(listing::places(&tree))? })
+        history::list(self)
     }
 
     fn jump(&self, params: edit::JumpParams) -> Result<SentReply, RpcError> {
-        let (node, history) = (params.node, history(self)?);
-        if history.tree().way(node).is_none() {
-            return Err(failed(format!("no way leads to {node}; 'history' lists the places")));
-        }
-        history.want(Want::Node(node));
-        await_history(self, history)?;
-        let here = history.tree().cursor;
-        if here != node {
-            let text = format!("the sculpture changed meanwhile: it is at {here}, not at {node}");
-            return Err(RpcError::failed(text + ". Try again"));
-        }
+        history::jump(self, params.node)?;
         Ok(SENT)
     }
 

@@ -15,12 +15,14 @@
 pub mod events;
 mod face_sets;
 pub mod handler;
+mod history;
 pub mod host;
 mod layers;
 pub mod loop_link;
 mod mask;
 mod measurement;
 mod people_reply;
+mod places;
 mod retopology;
 mod scene;
 pub mod server;

@@ -4,13 +4,14 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use serde_json::Value;
 
 use super::host::{Host, locked};
+use super::places::{ClientPlace, ClientPlaces};
 use super::{IDLE_SECONDS, MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, user_id};
 use sculptd_control::client::foreign_folder;
 use sculptd_control::method::{self, ALWAYS_ANSWERED};
@@ -95,26 +96,8 @@ impl Drop for Server {
     }
 }
 
-/// One of a number of places; given back when dropped, by a panic too.
-#[derive(Debug)]
-struct ClientPlace(Arc<AtomicUsize>);
-
-impl ClientPlace {
-    /// `None`: `most` are taken.
-    fn take(taken: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
-        let free = |n: usize| (n < most).then_some(n + 1);
-        taken.fetch_update(SeqCst, SeqCst, free).ok().map(|_| ClientPlace(taken.clone()))
-    }
-}
-
-impl Drop for ClientPlace {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, SeqCst);
-    }
-}
-
 fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &AtomicBool) {
-    let (clients, owner) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+    let (clients, owner) = (ClientPlaces::new(MAX_CLIENTS - 1), ClientPlaces::new(1));
     for stream in listener.incoming() {
         if closing.load(SeqCst) {
             return;
@@ -128,9 +111,9 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
         }
         let host = host.for_client();
         // The last place is the owner's.
-        if let Some(place) = ClientPlace::take(&clients, MAX_CLIENTS - 1) {
-            start(place, move |_place| serve(stream, &host, idle));
-        } else if let Some(place) = ClientPlace::take(&owner, 1) {
+        if let Some(place) = clients.take(stream.try_clone().ok()) {
+            start(place, move |place| serve(stream, &host, idle, &place));
+        } else if let Some(place) = owner.take(None) {
             start(place, move |place| {
                 let response = answer_owner(&stream, &host);
                 // Free before the answer is read, so that whoever asks next is not refused.
@@ -207,7 +190,7 @@ fn answer_owner(mut stream: &UnixStream, host: &Host) -> Option<Response> {
     })
 }
 
-fn serve(stream: UnixStream, host: &Host, idle: Duration) {
+fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
     if stream.set_read_timeout(Some(idle)).is_err() {
         return;
     }
@@ -229,6 +212,8 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration) {
         let whole = line.ends_with(b"\n");
         let now = clock.now_us() / 1_000_000;
         (second, asked) = if now == second { (second, asked + 1) } else { (now, 1) };
+        place.set_busy(true);
+        place.set_flooding(asked > MAX_RATE);
         let (response, subscribes) = answer(host, line.trim_ascii(), asked > MAX_RATE);
         // Taken before the client is told: nothing after its answer is missed.
         let before =
@@ -236,7 +221,9 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration) {
         if response.is_some_and(|r| !write_line(&locked(&out), &r)) {
             return;
         }
+        place.set_busy(false);
         if let Some(before) = before {
+            place.set_subscribed();
             let _ = events::start(host, before, out.clone(), gone.clone());
         }
         // What follows an oversized line cannot be told apart from it.
@@ -325,9 +312,9 @@ mod tests {
 
     #[test]
     fn a_panic_in_a_client_s_thread_gives_its_place_back() {
-        let taken = Arc::new(AtomicUsize::new(0));
-        let place = ClientPlace::take(&taken, 1).expect("free");
-        assert!(ClientPlace::take(&taken, 1).is_none());
+        let places = ClientPlaces::new(1);
+        let place = places.take(None).expect("free");
+        assert!(places.take(None).is_none());
         let (ended, wait) = crossbeam_channel::bounded::<()>(0);
         start(place, move |_place| {
             let _ended = ended;
@@ -337,7 +324,7 @@ mod tests {
         assert!(wait.recv().is_err());
         let free = (0..1000).any(|_| {
             let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(5));
-            ClientPlace::take(&taken, 1).is_some()
+            places.take(None).is_some()
         });
         assert!(free, "the place is lost");
     }

@@ -25,6 +25,8 @@ use rusqlite::Connection;
 pub const MAGIC: [u8; 16] = *b"sculptd:acknowl.";
 /// Bytes of a slot.
 pub const SLOT: usize = 40;
+/// The salts of an acknowledgement that was written when the session ended in order.
+pub const ENDED: [u32; 2] = [u32::MAX; 2];
 /// Bytes that are read at once while the blob is looked for.
 const WINDOW: usize = 256 << 10;
 
@@ -36,7 +38,8 @@ pub struct Acknowledgement {
     pub tick: u64,
     /// The chain of the row that ends with this tick, see [`super::format`].
     pub chain: u32,
-    /// The salts of the write-ahead log that the input lies in; zeros: not known.
+    /// The salts of the write-ahead log that the input lies in; zeros: not known. [`ENDED`]: all of
+    /// the input is in the file itself.
     pub salts: [u32; 2],
 }
 

@@ -26,6 +26,8 @@ pub struct SessionEntry {
     pub facts: Option<SessionFacts>,
     /// What could not be read, or why nothing could.
     pub damage: Option<String>,
+    /// What may be missing of a session that was not ended in order.
+    pub not_ended: Option<String>,
     /// Places of the history, branches among them, and the bytes of their pages.
     pub history: Option<HistoryFigures>,
 }
@@ -70,7 +72,7 @@ pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
     let log = std::fs::metadata(wal(path)).ok();
     let modified = log.as_ref().unwrap_or(&about).modified().ok();
     let since = modified.and_then(|t| t.duration_since(std::time::UNIX_EPOCH).ok());
-    let (facts, damage) = match open(path) {
+    let (facts, damage, not_ended) = match open(path) {
         Ok(o) => {
             let facts = SessionFacts {
                 start_vertices: o.start.vertices(),
@@ -82,9 +84,9 @@ pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
                 layout: o.layout,
                 replay_from: o.replay_from.map(|r| r.why),
             };
-            (Some(facts), o.loss.map(|l| l.to_string()))
+            (Some(facts), o.loss.map(|l| l.to_string()), o.not_ended)
         }
-        Err(e) => (None, Some(e.to_string())),
+        Err(e) => (None, Some(e.to_string()), None),
     };
     Ok(SessionEntry {
         path: path.into(),
@@ -92,6 +94,7 @@ pub fn look(path: &Path) -> std::io::Result<SessionEntry> {
         written_s: since.map_or(0, |d| d.as_secs()),
         facts,
         damage,
+        not_ended,
         history: listing::read(path).ok().filter(|h| !h.places.is_empty()).map(|h| {
             HistoryFigures {
                 places: h.places.len(),

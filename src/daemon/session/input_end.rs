@@ -6,7 +6,7 @@ use std::path::Path;
 use rusqlite::{Connection, OptionalExtension};
 
 use super::VERSION;
-use super::acknowledgement::acknowledge_first;
+use super::acknowledgement::{Acknowledgement, acknowledge_first};
 use super::format::{
     InputRow, META_IDENTITY, META_REPLAY_FROM, META_SETTINGS, META_START, META_SUMS, ReplayFrom,
     Settings, TABLES, TABLES_OF_COPIES, append, chain_start, v3,
@@ -28,6 +28,11 @@ pub(super) struct InputEnd {
 }
 
 impl InputEnd {
+    /// Returns the acknowledgement of all input up to here.
+    pub fn known(&self, salts: [u32; 2]) -> Acknowledgement {
+        Acknowledgement { identity: self.identity, tick: self.tick, chain: self.chain, salts }
+    }
+
     /// Puts the next row.
     pub fn put(
         &mut self,

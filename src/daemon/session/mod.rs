@@ -20,6 +20,7 @@ pub mod film;
 pub mod format;
 pub mod history;
 mod input_end;
+pub mod place;
 pub mod reader;
 mod reopen;
 pub mod replay;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, ErrorCode, OptionalExtension};
 
-use super::acknowledgement::{self, Acknowledged, Acknowledgement};
+use super::acknowledgement::{self, Acknowledged, Acknowledgement, ENDED};
 use super::carve::log_salts;
 use super::connection::{connect, in_use};
 use super::format::{
@@ -69,6 +69,9 @@ pub struct Opened {
     pub replay_from: Option<ReplayFrom>,
     /// What could not be read.
     pub loss: Option<Loss>,
+    /// What may be missing, and why that cannot be told: the session was not ended in order, and
+    /// this is not the file that its daemon wrote, or the machine was started since.
+    pub not_ended: Option<String>,
 }
 
 /// What of a session could not be read.
@@ -141,7 +144,10 @@ pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
 /// Whether no log of this session has these salts since the acknowledgement.
 pub(super) fn salts_are_foreign(known: &Acknowledgement, now: [u32; 2]) -> bool {
     let had = known.salts;
-    had != [0, 0] && had != now && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS
+    had != [0, 0]
+        && had != ENDED
+        && had != now
+        && now[0].wrapping_sub(had[0]).wrapping_sub(1) >= RESTARTS
 }
 
 /// One reading, without the history.
@@ -218,7 +224,8 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
         let kept = input.last().map_or(0, |t| t.tick);
         let loss = cause.map(|cause| Loss { kept, last: last_named(&db, "log"), cause });
         let replay_from = Some(older(&db, &name)?);
-        return Ok(Opened { path, layout, start, settings, input, replay_from, loss });
+        let not_ended = None;
+        return Ok(Opened { path, layout, start, settings, input, replay_from, loss, not_ended });
     }
     let identity = meta(META_IDENTITY)?
         .and_then(|v| v.try_into().ok())
@@ -230,8 +237,9 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
     let mut found = read_rows(&db, identity);
     // The log in memory of this very file.
     let mut newest = 0;
+    let logs = FileIdentity::of(&path, identity).map(|f| logs_of(&f)).unwrap_or_default();
+    let has_log = !logs.is_empty();
     if found.cause.is_none() {
-        let logs = FileIdentity::of(&path, identity).map(|f| logs_of(&f)).unwrap_or_default();
         for log in logs {
             let entries = read_log(&log);
             newest = newest.max(entries.last().map_or(0, |e| e.last));
@@ -248,7 +256,22 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
     let cause = found.cause.take().or(cause);
     let last = must.max(last_named(&db, "input")).max(Some(newest)).max(Some(kept));
     let loss = cause.map(|cause| Loss { kept, last, cause });
-    Ok(Opened { path, layout, start, settings, input: found.input, replay_from, loss })
+    let ended = matches!(&known, Acknowledged::Known(a) if a.salts == ENDED);
+    let not_ended = (!ended && !has_log && marks_its_end(&db) && !in_use(&path)).then(|| {
+        format!(
+            "the session was still open when this file was written: what was sculpted after tick \
+             {kept} may be missing, at most about 2 s of it"
+        )
+    });
+    let input = found.input;
+    Ok(Opened { path, layout, start, settings, input, replay_from, loss, not_ended })
+}
+
+/// Returns whether the file was written by a program that marks the end of a session: those that
+/// did not have no proofs of checkpoints either.
+fn marks_its_end(db: &Connection) -> bool {
+    let sql = "SELECT count(*) FROM sqlite_schema WHERE name = 'proof'";
+    db.query_row(sql, [], |r| r.get::<_, i64>(0)).is_ok_and(|n| n > 0)
 }
 
 /// Whether every triangle is of vertices that are there.

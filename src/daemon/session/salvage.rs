@@ -484,6 +484,7 @@ fn serves(store: &Store, readable: &Readable, id: u64) -> Result<bool, StoreErro
         input: Vec::new(),
         replay_from: Some(ReplayFrom { tick: 0, why: String::new() }),
         loss: None,
+        not_ended: None,
     };
     let tree = store.tree()?;
     let parts = (store, &tree, &base);

@@ -12,17 +12,19 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use crossbeam_channel as cc;
-use rusqlite::Connection;
+use rusqlite::{Connection, OpenFlags};
 
-use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage, ENDED};
 use super::connection::companion;
+use super::place::SessionPath;
+use sculptd_devices::Clock;
 
-/// A log of this many bytes is taken over into the database.
-const LOG_BYTES: u64 = 4 << 20;
-/// Syncs between two times: the file of a log keeps its length when it is begun again.
-const SYNCS: u32 = 200;
+/// The database takes over the log so long after its first change, microseconds: a copy of the
+/// database alone, as backup programs make it, lacks at most about this much.
+const AGE_US: u64 = 1_500_000;
 
 /// The thread, for the one who commits.
 #[derive(Debug)]
@@ -39,47 +41,75 @@ impl Syncer {
     /// `written` gets the last tick that is on the disk, `taken_over` the last one that the main
     /// file has. `page`: where it is acknowledged.
     pub(super) fn start(
-        database: &Path,
+        database: SessionPath,
         written: Arc<AtomicU64>,
         taken_over: Arc<AtomicU64>,
         mut page: AcknowledgementPage,
         first: Acknowledgement,
     ) -> std::io::Result<Self> {
-        let path = companion(database, "-wal");
         let (wake, calls) = cc::bounded::<()>(1);
         let committed = Arc::new(Mutex::new((first.tick, first.chain)));
         let trouble = Arc::new(Mutex::new(None));
-        let (last, said, database) = (committed.clone(), trouble.clone(), database.to_path_buf());
+        let (last, said, clock) = (committed.clone(), trouble.clone(), Clock::monotonic());
         let thread = std::thread::Builder::new().name("sculptd-sync".into()).spawn(move || {
             let mut log: Option<File> = None;
             let mut own: Option<Connection> = None;
-            let mut since = SYNCS;
-            for () in calls {
+            // When the database is to take over the log next; none: it has all of it.
+            let mut due_us: Option<u64> = None;
+            loop {
+                let now = clock.now_us();
+                let call = match due_us {
+                    None => calls.recv().map_err(|_| cc::RecvTimeoutError::Disconnected),
+                    Some(due) => calls.recv_timeout(Duration::from_micros(due.saturating_sub(now))),
+                };
+                let mut result = Ok(());
+                let mut on_disk = false;
                 // Taken before the sync: what is committed meanwhile belongs to the next one.
                 let (tick, chain) = last.lock().map(|l| *l).unwrap_or_default();
-                since += 1;
-                let mut result = sync(&mut log, &path);
-                if let Ok(synced) = &result {
-                    let now = Acknowledgement { tick, chain, salts: synced.salts, ..first };
-                    result = page.write(&now).map(|()| *synced);
-                }
-                if since > SYNCS && result.as_ref().is_ok_and(|s| s.bytes > LOG_BYTES) {
-                    since = 0;
-                    match take_over(&mut own, &database) {
-                        Ok(true) => drop(taken_over.fetch_max(tick, Relaxed)),
-                        Ok(false) => {}
-                        Err(e) => result = Err(std::io::Error::other(e)),
+                match call {
+                    Err(cc::RecvTimeoutError::Disconnected) => break,
+                    Err(cc::RecvTimeoutError::Timeout) => {}
+                    Ok(()) => {
+                        due_us = due_us.or(Some(clock.now_us() + AGE_US));
+                        let path = companion(&database.get(), "-wal");
+                        result = sync(&mut log, &path).and_then(|salts| {
+                            page.write(&Acknowledgement { tick, chain, salts, ..first })
+                        });
+                        on_disk = result.is_ok();
                     }
                 }
-                if result.is_ok() {
+                if result.is_ok() && due_us.is_some_and(|due| clock.now_us() >= due) {
+                    match take_over(&mut own, &database.get()) {
+                        // The history may still write what belongs to the newest input.
+                        Ok(true) if matches!(call, Err(cc::RecvTimeoutError::Timeout)) => {
+                            on_disk = true;
+                            taken_over.fetch_max(tick, Relaxed);
+                            due_us = None;
+                        }
+                        Ok(whole) => {
+                            if whole {
+                                taken_over.fetch_max(tick, Relaxed);
+                            }
+                            due_us = Some(clock.now_us() + AGE_US);
+                        }
+                        Err(e) => {
+                            due_us = Some(clock.now_us() + AGE_US);
+                            result = Err(std::io::Error::other(e));
+                        }
+                    }
+                }
+                if on_disk {
                     written.fetch_max(tick, Relaxed);
                 }
                 if let Ok(mut said) = said.lock() {
+                    let path = database.get();
                     *said = result.err().map(|e| format!("{}: {e}", path.display()));
                 }
             }
-            // The power may go once the session is closed.
-            if let Err(e) = page.sync()
+            // Everything is in the file once the session is closed. The power may go then.
+            let (tick, chain) = last.lock().map(|l| *l).unwrap_or_default();
+            let ended = Acknowledgement { tick, chain, salts: ENDED, ..first };
+            if let Err(e) = page.write(&ended).and_then(|()| page.sync())
                 && let Ok(mut said) = said.lock()
             {
                 said.get_or_insert(e.to_string());
@@ -109,36 +139,29 @@ impl Syncer {
     }
 }
 
-/// A write-ahead log that was brought to the disk.
-#[derive(Debug, Clone, Copy)]
-struct SyncedLog {
-    bytes: u64,
-    salts: [u32; 2],
-}
-
-/// Brings the log to the disk. The file is opened once: SQLite keeps the same one as long as it is
-/// connected.
-fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<SyncedLog> {
+/// Brings the log to the disk, and returns its salts. The file is opened once: SQLite keeps the
+/// same one as long as it is connected.
+fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<[u32; 2]> {
     if log.is_none() {
         *log = Some(OpenOptions::new().read(true).write(true).open(path)?);
     }
-    let Some(log) = log else { return Ok(SyncedLog { bytes: 0, salts: [0, 0] }) };
+    let Some(log) = log else { return Ok([0, 0]) };
     log.sync_data()?;
     let mut head = [0; 24];
     log.seek(SeekFrom::Start(0))?;
-    let salts = match log.read_exact(&mut head) {
+    Ok(match log.read_exact(&mut head) {
         Ok(()) => [16, 20]
             .map(|at| u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]])),
         Err(_) => [0, 0],
-    };
-    Ok(SyncedLog { bytes: log.metadata()?.len(), salts })
+    })
 }
 
 /// Takes what it can of the log into the database, and holds up nobody who writes. Whether that was
 /// all of it.
 fn take_over(own: &mut Option<Connection>, database: &Path) -> rusqlite::Result<bool> {
     if own.is_none() {
-        let db = Connection::open(database)?;
+        // Where the file is gone, none is made.
+        let db = Connection::open_with_flags(database, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         db.pragma_update(None, "synchronous", "full")?;
         *own = Some(db);
     }

@@ -15,11 +15,12 @@ use crossbeam_channel as cc;
 use rusqlite::Connection;
 
 use super::GROUP_MS;
-use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage, ENDED};
 use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
 use super::history::{Handle, keeper::Keeper};
 use super::input_end::{InputEnd, begin_log, upgrade};
+use super::place::{SessionPath, SessionPlace, Standing};
 use super::shared_memory_log::LogName;
 use super::start::SessionStart;
 use super::syncer::Syncer;
@@ -40,6 +41,8 @@ const BUFFER_BYTES: usize = 4096;
 const KEPT_BYTES: usize = 64 << 20;
 /// Longest time between two signs of life of the writing thread.
 const IDLE: Duration = Duration::from_millis(1000);
+/// How often it is looked where the file is.
+const LOOK: Duration = Duration::from_millis(1000);
 /// How often a disk that was full is tried again.
 const RETRY: Duration = Duration::from_millis(1000);
 
@@ -78,6 +81,10 @@ pub struct WriterThread {
     pub health: Health,
     /// The history, if it is kept.
     pub history: Option<Keeper>,
+    /// Where the file is.
+    pub path: SessionPath,
+    /// For what is left once all handles are closed.
+    place: Arc<Mutex<SessionPlace>>,
 }
 
 impl WriterThread {
@@ -86,6 +93,9 @@ impl WriterThread {
     pub fn finish(self) -> Option<String> {
         let history = self.history.and_then(Keeper::finish);
         let _ = self.thread.join();
+        if let Ok(place) = self.place.lock() {
+            place.tidy();
+        }
         self.health
             .trouble()
             .or_else(|| history.map(|why| format!("the history is not whole: {why}")))
@@ -201,11 +211,12 @@ fn start_thread(
     let Some((mut page, _)) = found else {
         return Err(io(std::io::Error::other("the acknowledgement cannot be read")));
     };
-    let first =
-        Acknowledgement { identity: end.identity, tick: end.tick, chain: end.chain, salts: [0, 0] };
+    let first = end.known([0, 0]);
     page.write(&first).map_err(io)?;
+    let session_path = SessionPath::from(path);
     let syncer =
-        Syncer::start(path, health.written.clone(), taken_over, page, first).map_err(io)?;
+        Syncer::start(session_path.clone(), health.written.clone(), taken_over, page, first)
+            .map_err(io)?;
     // From here on the syncer does it, and no commit waits for a disk.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     db.pragma_update(None, "synchronous", "off").map_err(store)?;
@@ -215,8 +226,12 @@ fn start_thread(
         .name("sculptd-tail".into())
         .spawn(move || copy_on(tail, &inbox, &onward))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
+    let place = Arc::new(Mutex::new(SessionPlace::new(session_path.clone(), lock.clone())));
     let mut writing = JournalThread {
         db,
+        place: place.clone(),
+        misplaced: None,
+        looked_us: 0,
         tail: tail_name,
         committed,
         end,
@@ -242,7 +257,7 @@ fn start_thread(
         history: None,
         owed: false,
     };
-    Ok((writer, WriterThread { thread, health, history: None }))
+    Ok((writer, WriterThread { thread, health, history: None, path: session_path, place }))
 }
 
 impl Journal for SessionWriter {
@@ -334,6 +349,10 @@ fn copy_on(
 
 struct JournalThread {
     db: Connection,
+    place: Arc<Mutex<SessionPlace>>,
+    /// What is said of a file that no name leads to any more.
+    misplaced: Option<String>,
+    looked_us: u64,
     /// The shared-memory log's name, to remove it once the file has everything.
     tail: Option<LogName>,
     /// The last tick in the file: the tail may let go of what came before.
@@ -369,6 +388,7 @@ impl JournalThread {
             };
             let message = inbox.recv_timeout(patience);
             self.health.turns.fetch_add(1, Relaxed);
+            self.watch_place();
             let ended = matches!(message, Err(cc::RecvTimeoutError::Disconnected));
             if let Ok(InputMessage::Ticks(first, last, bytes)) = message {
                 if self.closed {
@@ -396,21 +416,95 @@ impl JournalThread {
         }
     }
 
+    /// Looks once a second whether the file is where it was, follows it where it was moved, and
+    /// writes the session anew where it is gone.
+    fn watch_place(&mut self) {
+        let now = self.clock.now_us();
+        if now < self.looked_us + LOOK.as_micros() as u64 || self.misplaced.is_some() {
+            return;
+        }
+        self.looked_us = now;
+        let Ok(mut place) = self.place.lock() else { return };
+        match place.look() {
+            Standing::Here => {}
+            Standing::Moved(to) => match place.follow(to.clone()) {
+                Ok(()) => tracing::warn!("journal: the session was moved to {}", to.display()),
+                Err(e) => {
+                    self.misplaced = Some(format!(
+                        "the session was moved to {}, and its log could not follow ({e}): keep \
+                         the file beside its log until the session ends",
+                        to.display()
+                    ));
+                }
+            },
+            Standing::Gone => {
+                let (path, tick) = (place.path.get(), self.end.tick);
+                let path = path.display();
+                self.misplaced = Some(match place.rescue(&self.db, self.end.known([0, 0])) {
+                    Ok(to) => format!(
+                        "{path} was deleted or replaced: what was sculpted up to tick {tick} is \
+                         in {}, and the rest is written there when the session ends",
+                        to.display()
+                    ),
+                    Err(e) => format!(
+                        "{path} was deleted or replaced, and the session cannot be written \
+                         elsewhere ({e}): nothing that is sculpted is kept. Export it"
+                    ),
+                });
+            }
+        }
+        drop(place);
+        if let Some(text) = &self.misplaced {
+            tracing::error!("journal: {text}");
+            if let Ok(mut fault) = self.health.fault.lock() {
+                *fault = Some(text.clone());
+            }
+        }
+    }
+
+    /// Writes the session to where it was rescued once more, with all that came since.
+    fn rescue_again(&mut self) {
+        let Ok(mut place) = self.place.lock() else { return };
+        if place.look() != Standing::Gone {
+            return;
+        }
+        let path = place.path.get();
+        let text = match place.rescue(&self.db, self.end.known(ENDED)) {
+            Ok(to) => format!(
+                "{} was deleted or replaced: all of the session is in {}",
+                path.display(),
+                to.display()
+            ),
+            Err(e) => format!(
+                "{} was deleted or replaced, and the session could not be written elsewhere: {e}",
+                path.display()
+            ),
+        };
+        if let Ok(mut fault) = self.health.fault.lock() {
+            *fault = Some(text);
+        }
+    }
+
     /// The last group is synced too before the thread is gone.
     fn end(&mut self) {
         // Closing takes the rest of the log over, and syncs as it should.
         let _ = self.db.pragma_update(None, "synchronous", "full");
         let why = self.syncer.take().and_then(Syncer::finish);
-        if let Some(name) = &self.tail
-            && self.groups.is_empty()
-            && !self.closed
-        {
+        let all_written = self.groups.is_empty() && !self.closed;
+        if let (Some(name), true) = (&self.tail, all_written) {
             shared_memory_log::remove(name);
         }
-        let Some(why) = why else { return };
         if let Ok(mut fault) = self.health.fault.lock() {
-            fault.get_or_insert(format!("the session file was not synced: {why}"));
+            match why {
+                Some(why) => {
+                    fault.get_or_insert(format!("the session file was not synced: {why}"));
+                }
+                // What stood in the way of a sync is over: the last one held.
+                None if all_written => *fault = None,
+                None => {}
+            }
         }
+        self.rescue_again();
     }
 
     fn flush(&mut self) {
@@ -448,6 +542,7 @@ impl JournalThread {
                 )
             })
         });
+        let text = text.or_else(|| self.misplaced.clone());
         let Ok(mut fault) = self.health.fault.lock() else { return };
         // Once when it begins and once when it is over, however often it is tried between.
         match (fault.is_some(), &text) {

@@ -107,10 +107,11 @@ impl People {
 
 impl World {
     /// Whom the world is shown to: [`World::camera`], [`World::brush`] and the pens are that
-    /// person's. What is stepped does not depend on it.
+    /// person's. What is stepped does not depend on it: a world is of several people from the first
+    /// [`Command::OfPerson`] on, so that a replay of its input divides the steps among them too.
     pub fn show_to(&mut self, person: u8) {
         self.people.shown = person;
-        if person != 0 || !self.people.is_nobody() {
+        if !self.people.is_nobody() {
             self.act_as(person);
         }
     }

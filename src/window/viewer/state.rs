@@ -43,7 +43,7 @@ use sculptd_engine::scene::{ObjectId, ObjectTransform};
 
 /// A screen reader's request, sent from its own thread.
 #[cfg(feature = "accessibility")]
-pub(super) type AccessibilityEvent = egui_winit::accesskit_winit::Event;
+pub(super) use egui_winit::accesskit_winit::Event as AccessibilityEvent;
 /// No screen reader is connected in a build without the feature `accessibility`.
 #[cfg(not(feature = "accessibility"))]
 pub(super) type AccessibilityEvent = ();

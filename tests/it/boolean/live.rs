@@ -127,8 +127,8 @@ fn what_is_protected_stays_so_the_long_way_too() {
     let done = join(&shown, tool, false, Operation::Intersection, &Job::default());
     let done = done.expect("a result").into_commands().into_iter();
     let done: Vec<Command> = done.map(|q| q.deliver(&mut live)).collect();
-    let masked = |c: &Command| matches!(c, Command::OfClay(of) if matches!(of.command, Command::ReplaceMasked(..)));
-    assert!(done.len() == 1 && masked(&done[0]), "not with masks: {} commands", done.len());
+    let [Command::OfClay(of)] = &done[..] else { panic!("{} commands", done.len()) };
+    assert!(matches!(of.command, Command::ReplaceMasked(..)), "not with masks");
     let bytes = postcard::to_allocvec(&done).expect("written");
     live.step(2, &[], &done);
     let read: Vec<Command> = postcard::from_bytes(&bytes).expect("read");

@@ -198,6 +198,7 @@ fn copied(path: &Path, to: &Path) -> std::path::PathBuf {
 
 /// Returns how many of three openings a checkpoint served.
 fn sequence(seed: u64, steps: u64) -> usize {
+    println!("seed {seed}");
     let mut quickly = 0;
     let mut r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let dir = tempfile::tempdir().expect("a folder");

@@ -16,7 +16,8 @@ const TICKS: u64 = 480;
 /// A session with its history, half of it taken over into the main file.
 fn session_with_history(dir: &Path) -> Script {
     let mut script = Script::begin(dir);
-    let keeper = Keeper::start(&script.path, &mut script.world, 0, None, 1 << 40).expect("kept");
+    let keeper =
+        Keeper::start(script.path.as_path(), &mut script.world, 0, None, 1 << 40).expect("kept");
     script.writer.iter_mut().for_each(|w| w.keep(keeper.handle.clone()));
     let history = keeper.handle.clone();
     if let Some(thread) = &mut script.thread {

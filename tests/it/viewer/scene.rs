@@ -12,7 +12,8 @@ use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
-    NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape, SceneCommand,
+    FaceAlignment, NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape,
+    SceneCommand,
 };
 use sculptd_engine::world::World;
 use sculptd_window::look::Look;
@@ -160,11 +161,9 @@ fn two_picked_faces_are_laid_on_each_other() {
     let mut picks = SnapPicks::default();
     assert_eq!(picks.pick(left.0, left.1), None);
     let both = picks.pick(right.0, right.1).expect("two objects");
-    let faces = both.map(|(id, at)| PickedFace { id, at });
-    let Command::Scene(command) = snap_jobs::command(&state, faces).expect("faces") else {
-        panic!("a command to the scene");
-    };
-    ask(&mut world, command);
+    let [moved, target] = both.map(|(id, at)| PickedFace { id, at });
+    let placed = snap_jobs::face_to_face(&state, moved, target, FaceAlignment::Nearest, 0.0);
+    ask(&mut world, SceneCommand::Snap(Box::new(placed.expect("faces").placing)));
     let object = world.scene().object(left.0).expect("there");
     let (lo, hi) = object.settings.transform.bounds(object.clay.bounds());
     assert!((lo.z - 1.0).abs() < 1e-5 && (hi.z - 3.0).abs() < 1e-5, "{lo} {hi}");

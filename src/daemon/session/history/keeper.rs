@@ -5,7 +5,7 @@
 //! out and the next one that is kept stands for all of them.
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, OnceLock};
 use std::thread::JoinHandle;
@@ -19,6 +19,7 @@ use super::tree::{NOTHING, Node, Tree, TreePath};
 use super::world_at_rest::WorldAtRest;
 use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
+use crate::session::place::SessionPath;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
 use sculptd_devices::Clock;
 use sculptd_engine::command::{Command, Jump, JumpObject, OtherWork, SceneJump};
@@ -58,7 +59,7 @@ pub struct Handle {
     commands: Arc<OnceLock<CommandSender>>,
     tree: Arc<Mutex<Tree>>,
     fault: Arc<Mutex<Option<String>>>,
-    path: Arc<PathBuf>,
+    path: SessionPath,
     /// Raised when nobody waits for a disk that takes nothing.
     ending: Arc<AtomicBool>,
     /// Messages that were handed over and are not yet dealt with.
@@ -120,7 +121,7 @@ impl Handle {
 
     /// The picture of a node, PNG.
     pub fn thumbnail(&self, node: u64) -> Option<Vec<u8>> {
-        Store::read(&self.path).ok()?.thumbnail(node).ok()?
+        Store::read(&self.path.get()).ok()?.thumbnail(node).ok()?
     }
 
     /// Whether all that was handed over is written, and no jump is under way.
@@ -155,20 +156,22 @@ impl Keeper {
     /// # Errors
     /// Where the file cannot be written.
     pub fn start(
-        path: &Path,
+        path: impl Into<SessionPath>,
         world: &mut World,
         purge: u64,
         at: Option<u64>,
         most: u64,
     ) -> Result<Keeper, StoreError> {
+        let path = path.into();
         world.keep_moments();
         let first = world.moment(HistoryEvent::Step);
-        let mut ledger = HistoryWriter::open(Store::write(path)?, purge, first.work.clone(), most)?;
+        let mut ledger =
+            HistoryWriter::open(Store::write(&path.get())?, purge, first.work.clone(), most)?;
         ledger.begin(world.tick(), &first, at)?;
         let keeping = HistoryThread {
             shown: Arc::new(Mutex::new(ledger.tree.clone())),
             ledger,
-            path: path.to_path_buf(),
+            path: path.clone(),
             wants: VecDeque::new(),
             sent: None,
             jumping: Arc::default(),
@@ -181,7 +184,7 @@ impl Keeper {
             commands: Arc::default(),
             tree: keeping.shown.clone(),
             fault: Arc::default(),
-            path: Arc::new(path.to_path_buf()),
+            path,
             ending: Arc::default(),
             busy: Arc::default(),
             jumping: keeping.jumping.clone(),
@@ -210,7 +213,7 @@ impl Keeper {
 
 struct HistoryThread {
     ledger: HistoryWriter,
-    path: PathBuf,
+    path: SessionPath,
     shown: Arc<Mutex<Tree>>,
     wants: VecDeque<Want>,
     /// When a jump was sent that did not come back yet.
@@ -390,7 +393,7 @@ impl HistoryThread {
                 Ok(Some(queued(jump, Payload::Pages(got))))
             }
             TreePath::Other => {
-                let base = base(&self.path)?;
+                let base = base(&self.path.get())?;
                 let (rest, names) = describe(&self.ledger, node, base.page_count())?;
                 let mesh = assemble(&self.ledger.store, &base, &rest, &names, node.levels)?;
                 let other = OtherWork {
@@ -413,7 +416,7 @@ impl HistoryThread {
         let from = (self.ledger.now.object_id(), self.ledger.now.revision());
         let scene = self.ledger.tree.scene_at(to).cloned();
         let scene = scene.unwrap_or_else(|| Arc::new(StoredScene::plain()));
-        let base = base(&self.path)?;
+        let base = base(&self.path.get())?;
         let (mut objects, mut clays) = (Vec::new(), Vec::new());
         for object in &scene.objects {
             let (clay, pages) = described(&self.ledger, &node, object, base.page_count())?;

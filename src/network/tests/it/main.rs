@@ -9,4 +9,5 @@ mod fleet;
 mod fleet_simulated;
 mod keys;
 mod people;
+mod replay;
 mod simulated;
