@@ -227,7 +227,8 @@ mod tests {
     use crate::scene_jobs::{CombineError, SceneBoolean, boolean};
     use glam::DQuat;
     use sculptd_engine::answer::Answer;
-    use sculptd_engine::scene::{NewObject, ObjectSource};
+    use sculptd_engine::command::Command;
+    use sculptd_engine::scene::{NewObject, ObjectSource, SceneCommand};
     use sculptd_engine::world::World;
     use sculptd_geometry::boolean::Operation;
     use sculptd_geometry::job::Job;
