@@ -14,12 +14,14 @@
 //! ## Five laws
 //! 1. **Two things change the world: a `Sample` (what a device said) and a `Command` (what was
 //!    asked).** A panel's click, a control-socket call, a finished Boolean, an undo: each is a
-//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise whole: a large
-//!    payload is named by an id and lies in the [`sculptd_engine::payload::PayloadStore`] beside
-//!    the world; no channel, lock or thread handle is part of one.
+//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise whole; no
+//!    channel, lock or thread handle is part of one. What takes long to build from a command (its
+//!    clay) lies ready in the [`sculptd_engine::payload::PayloadStore`] beside the world; without
+//!    it the world builds it again.
 //!    [`sculptd_engine::world::World::step`] is the only writer. It has no clock, no IO, no threads
 //!    of its own making, and never fails. So live running, replay, crash recovery, golden tests,
-//!    fuzzing and bug reports are one mechanism.
+//!    fuzzing and bug reports are one mechanism. Each command has one answer, at its place in
+//!    [`sculptd_engine::world::World::answers`]: nobody says "done" before it.
 //! 2. **Cost follows what moved, never what exists.** A dab costs what its vertices cost, on a mesh
 //!    of a thousand vertices or of ten million. No tick touches the whole mesh: not for normals,
 //!    not for the BVH, not for the spatial query, not to publish a snapshot, not for undo. A local
@@ -83,8 +85,8 @@
 //!   by several daemons, and a fleet of installations. Both protocols are state machines without
 //!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
 //!   set).
-//! * `sculptd-window` (`src/window`) knows all but the command line: panels (egui) and viewer
-//!   (wgpu): they see snapshots and send commands.
+//! * `sculptd-window` (`src/window`) knows the daemon and what is below it: panels (egui) and
+//!   viewer (wgpu): they see snapshots and send commands.
 //! * `sculptd-mesh-commands` (`src/mesh_commands`) knows geometry, and the clock of the devices:
 //!   the subcommands over mesh files. They stand apart so that an edit of the clay does not compile
 //!   them.
@@ -108,7 +110,7 @@
 //!   Waits for: the tick thread.
 //! * `sculptd-pages`, made by `daemon::page_thread`: makes pages for dynamic topology ahead of
 //!   need. Waits for: the tick thread.
-//! * one a tablet, one a serial port, one a tracker, made by `devices::lifeline`, for the adaptors:
+//! * one a tablet, one a serial port, one a tracker, made by `devices::device_thread`, for the adaptors:
 //!   reads, parses, sends samples. Waits for: its device.
 //! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the
 //!   hands, sent back as commands. Waits for: a choice in the hands' menu.
@@ -187,8 +189,7 @@
 //!
 //! ## Determinism
 //! The same binary, the same start mesh, the same samples and commands give the same bits, with any
-//! number of workers. Across machines compare facts (volume, bounds, counts) within a tolerance:
-//! `sin` and `powf` come from the platform.
+//! number of workers, with and without AVX2: sines, powers and turns come from `libm`.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod cli;

@@ -9,7 +9,11 @@
 
 Every method of the protocol is a method of the client: ``daemon.call("camera", {"yaw": 0.5})`` and
 ``daemon.camera(yaw=0.5)`` are the same. ``take-up`` and other names with a hyphen are written with
-an underscore. The schema is ``src/control/schema.json``; ``daemon.methods()`` lists the methods.
+an underscore, and names with a dot as they are: ``daemon.scene.list()``. The schema is
+``src/control/schema.json``; ``daemon.methods()`` lists the methods.
+
+A reply comes after its effect. Each reply is matched with its request by its id: after a time-out
+or a Ctrl-C the next call gets its own answer. Threads may share a client; they take turns.
 It is pure Python over a Unix socket and needs nothing of the native module.
 """
 
@@ -17,6 +21,7 @@ import json
 import os
 import socket
 import tempfile
+import threading
 import time
 from collections import deque
 
@@ -66,22 +71,44 @@ def default_path():
     return os.path.join(tempfile.gettempdir(), f"sculptd-{os.getuid()}", "sculptd.sock")
 
 
+class _Method:
+    """A method of the protocol, and the methods whose names begin with its name and a dot."""
+
+    def __init__(self, client, name):
+        self._client = client
+        self._name = name
+
+    def __call__(self, **params):
+        return self._client.call(self._name, params)
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return _Method(self._client, f"{self._name}.{name.replace('_', '-')}")
+
+
 class Client:
-    """A connection to a running daemon; one request at a time.
+    """A connection to a running daemon; one request at a time, by any thread.
 
     ``path``: the socket, `default_path` unless told. ``patience``: seconds that an answer may take.
     Raises `DaemonAbsent` where nothing listens.
     """
 
-    def __init__(self, path=None, patience=30.0):
+    def __init__(self, path=None, patience=120.0):
         self.path = os.fspath(path) if path is not None else default_path()
         self.patience = patience
+        self._turn = threading.RLock()
         self._sent = 0
         self._events = deque(maxlen=KEPT_EVENTS)
+        self._connect()
+
+    def _connect(self):
         self._read = b""
+        #: A request may have been sent in part: the connection is good for nothing more.
+        self._torn = False
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            self._socket.settimeout(patience)
+            self._socket.settimeout(self.patience)
             self._socket.connect(self.path)
         except OSError as e:
             self._socket.close()
@@ -107,30 +134,40 @@ class Client:
         Raises `DaemonRefused` with the daemon's code and message, `DaemonSilent` where no answer
         comes within ``patience``.
         """
-        self._sent += 1
-        request = {"jsonrpc": "2.0", "id": self._sent, "method": method, "params": params or {}}
-        try:
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
-        except OSError as e:
-            raise DaemonSilent(f"{self.path}: {e}") from e
-        until = time.monotonic() + self.patience
-        while True:
-            answer = self._line(until)
-            if answer is None:
-                raise DaemonSilent(f"{self.path}: no answer to {method} in {self.patience} s")
-            if answer.get("method") == "event":
-                self._events.append(answer["params"])
-                continue
-            error = answer.get("error")
-            if error is not None:
-                raise DaemonRefused(method, error["code"], error["message"])
-            return answer.get("result")
+        with self._turn:
+            if self._torn:
+                self._socket.close()
+                self._connect()
+            self._sent += 1
+            own = self._sent
+            request = {"jsonrpc": "2.0", "id": own, "method": method, "params": params or {}}
+            self._torn = True
+            try:
+                self._socket.sendall(json.dumps(request).encode() + b"\n")
+            except OSError as e:
+                raise DaemonSilent(f"{self.path}: {e}") from e
+            self._torn = False
+            until = time.monotonic() + self.patience
+            while True:
+                answer = self._line(until)
+                if answer is None:
+                    raise DaemonSilent(f"{self.path}: no answer to {method} in {self.patience} s")
+                if answer.get("method") == "event":
+                    self._events.append(answer["params"])
+                    continue
+                # An answer to an earlier request, which nobody waits for any more. A refusal
+                # without an id is about the connection.
+                if answer.get("id") not in (own, None):
+                    continue
+                error = answer.get("error")
+                if error is not None:
+                    raise DaemonRefused(method, error["code"], error["message"])
+                return answer.get("result")
 
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
-        method = name.replace("_", "-")
-        return lambda **params: self.call(method, params)
+        return _Method(self, name.replace("_", "-"))
 
     def stroke(self, points, space="view", **brush):
         """A stroke of a virtual pen, recorded like one of a tablet.
@@ -155,15 +192,16 @@ class Client:
 
     def next_event(self, patience=None):
         """The next event after `subscribe`, a dict; None where none comes within ``patience``."""
-        if self._events:
-            return self._events.popleft()
-        until = time.monotonic() + (self.patience if patience is None else patience)
-        while True:
-            line = self._line(until)
-            if line is None:
-                return None
-            if line.get("method") == "event":
-                return line["params"]
+        with self._turn:
+            if self._events:
+                return self._events.popleft()
+            until = time.monotonic() + (self.patience if patience is None else patience)
+            while True:
+                line = self._line(until)
+                if line is None:
+                    return None
+                if line.get("method") == "event":
+                    return line["params"]
 
     def _line(self, until):
         """One message; None where it does not come in time."""
