@@ -110,8 +110,8 @@
 //!   Waits for: the tick thread.
 //! * `sculptd-pages`, made by `daemon::page_thread`: makes pages for dynamic topology ahead of
 //!   need. Waits for: the tick thread.
-//! * one a tablet, one a serial port, one a tracker, made by `devices::device_thread`, for the adaptors:
-//!   reads, parses, sends samples. Waits for: its device.
+//! * one a tablet, one a serial port, one a tracker, made by `devices::device_thread`, for the
+//!   adaptors: reads, parses, sends samples. Waits for: its device.
 //! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the
 //!   hands, sent back as commands. Waits for: a choice in the hands' menu.
 //! * `sculptd-follow`, made by `daemon::live_booleans`: computes results that follow their operands

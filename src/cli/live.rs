@@ -122,6 +122,16 @@ pub fn run(
     };
     let seen = window.and_then(|show| guarded(show, survivor));
     let Some(closing) = take(&closing) else { return Ok(()) };
+    if let Err(why) = &seen
+        && closing.run.kiosk.is_some()
+    {
+        // An installation without its screen serves nobody: whoever watches over it starts it
+        // again, and finds the port free.
+        closing.run.window_lost();
+        closing.run.stop.store(true, Relaxed);
+        let why = format!("the installation ends, for it has no screen: {why}");
+        return closing.close().and(Err(Fail::Check(why)));
+    }
     if let Err(why) = seen {
         eprintln!("sculptd: going on without a window: {why}");
         match link.standing() {

@@ -174,7 +174,7 @@ pub struct RemeshParams {
 }
 
 /// Reply of `remesh`. Lengths and volumes are in the mesh's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RemeshReply {
     /// Edge of a voxel.
@@ -199,6 +199,9 @@ pub struct RemeshReply {
     /// they were carried over.
     #[serde(default)]
     pub sets_dropped: u64,
+    /// What of the old surface the new one does not hold, in words.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }
 
 /// Parameters of `jump`.

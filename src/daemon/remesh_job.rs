@@ -15,7 +15,7 @@ use sculptd_geometry::TriMesh;
 use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::measures;
-use sculptd_geometry::remesh::{Remade, RemeshSettings, remesh};
+use sculptd_geometry::remesh::{LostParts, Remade, RemeshSettings, remesh};
 
 /// Voxels along the longest side of the object, least and greatest.
 pub const SIDE: (usize, usize) = (8, 1024);
@@ -40,6 +40,8 @@ pub struct Remeshed {
     pub volume: [f64; 2],
     /// Pairs of triangles that cross each other.
     pub crossings: usize,
+    /// What of the old surface is further than a voxel from the new one.
+    pub lost: Option<LostParts>,
 }
 
 /// The mean edge of the triangles; 0 without any.
@@ -74,7 +76,7 @@ pub fn remeshed(
     }
     let solid = DistanceSolid::build(&old, job)?;
     let settings = RemeshSettings { side: side as usize, sharp: wanted.sharp };
-    let Remade { mesh: new, crossings } = remesh(&old, &solid, settings, job)?;
+    let Remade { mesh: new, crossings, lost } = remesh(&old, &solid, settings, job)?;
     let masks = now.mesh.masks();
     let places = |_: &Vec<f32>| carry_over::places(&old, &solid, &new.positions, job);
     let at = masks.as_ref().map(places).transpose()?;
@@ -85,6 +87,7 @@ pub fn remeshed(
         triangles: new.triangles.len(),
         volume: [measures(&old).volume, measures(&new).volume],
         crossings,
+        lost,
     };
     let queued = in_place(Arc::new(new), masks, None, job)?;
     Ok(Computed::of_clay(now, queued, found))

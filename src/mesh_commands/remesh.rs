@@ -101,6 +101,14 @@ pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
     if made.crossings > 0 {
         warnings.push(format!("the new mesh crosses itself {} times", made.crossings));
     }
+    if let Some(lost) = made.lost {
+        let [x, y, z] = (lost.place.as_dvec3() + part.centre).to_array();
+        warnings.push(format!(
+            "{:.1} mm2 of the surface are lost, for instance at ({x:.3}, {y:.3}, {z:.3}): parts \
+             there are thinner than the samples are apart. Use more of them, with --side",
+            lost.area
+        ));
+    }
     warn(&args.mesh, &warnings);
     finish(&args.out, &made.mesh, part.centre, seconds, warnings, json)
 }

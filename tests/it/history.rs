@@ -102,7 +102,10 @@ impl Studio {
     fn reopened(path: &Path) -> Studio {
         let begun =
             startup::begin(None, Some(path), &Config::default(), &Job::default()).expect("opens");
-        assert_eq!(begun.warnings, Vec::<String>::new());
+        // A file that was cut off or copied says that its session was still open.
+        let mut said = begun.warnings.clone();
+        said.retain(|text| !text.contains("the session was still open"));
+        assert_eq!(said, Vec::<String>::new());
         Studio::of(path.into(), begun)
     }
 

@@ -1063,6 +1063,7 @@ task-level = Stufe { $at } von { $all }
 task-remesh-local = Geänderte Kanten: { $count }
 task-remesh-taken-back = Das neue Netz wurde zurückgenommen, bevor es fertig war.
 task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $change } %; Durchdringungen: { $crossings }
+task-remesh-lost = Teile, die dünner als ein Voxel sind, gingen verloren, zum Beispiel bei { $x }, { $y }, { $z }: rückgängig machen und einen kleineren Voxel wählen
 task-quads = { $quads } Vierecke und { $triangles } Dreiecke; Durchdringungen: { $crossings }
 task-decimated = Aus { $before } Dreiecken wurden { $now }; neue Durchdringungen: { $crossings }
 task-layers-baked = In die neue Fläche eingerechnete Ebenen: { $count }

@@ -1063,6 +1063,7 @@ task-level = Επίπεδο { $at } από { $all }
 task-remesh-local = Ακμές που άλλαξαν: { $count }
 task-remesh-taken-back = Το νέο πλέγμα αναιρέθηκε πριν ολοκληρωθεί.
 task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος { $change } %· τομές: { $crossings }
+task-remesh-lost = Χάθηκαν μέρη λεπτότερα από ένα voxel, για παράδειγμα στο { $x }, { $y }, { $z }: αναιρέστε και χρησιμοποιήστε μικρότερο voxel
 task-quads = { $quads } τετράπλευρα και { $triangles } τρίγωνα· τομές: { $crossings }
 task-decimated = { $before } τρίγωνα έγιναν { $now }· νέες τομές: { $crossings }
 task-layers-baked = Στρώσεις που ενσωματώθηκαν στη νέα επιφάνεια: { $count }

@@ -1065,6 +1065,7 @@ task-level = Level { $at } of { $all }
 task-remesh-local = Edges changed: { $count }
 task-remesh-taken-back = The remesh was taken back before it was done.
 task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $change } %; crossings: { $crossings }
+task-remesh-lost = Parts thinner than a voxel are lost, for instance at { $x }, { $y }, { $z }: undo, and use a smaller voxel
 task-quads = { $quads } quads and { $triangles } triangles; crossings: { $crossings }
 task-decimated = { $before } triangles became { $now }; new crossings: { $crossings }
 task-layers-baked = Layers baked into the new surface: { $count }

@@ -1063,6 +1063,7 @@ task-level = Nivel { $at } de { $all }
 task-remesh-local = Aristas cambiadas: { $count }
 task-remesh-taken-back = La nueva malla se deshizo antes de terminar.
 task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volumen { $change } %; intersecciones: { $crossings }
+task-remesh-lost = Se perdieron partes más finas que un vóxel, por ejemplo en { $x }, { $y }, { $z }: deshaz y usa un vóxel más pequeño
 task-quads = { $quads } cuadriláteros y { $triangles } triángulos; intersecciones: { $crossings }
 task-decimated = { $before } triángulos pasaron a { $now }; nuevas intersecciones: { $crossings }
 task-layers-baked = Capas consolidadas en la nueva superficie: { $count }

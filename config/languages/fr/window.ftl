@@ -1063,6 +1063,7 @@ task-level = Niveau { $at } sur { $all }
 task-remesh-local = Arêtes changées : { $count }
 task-remesh-taken-back = Le remaillage a été annulé avant d’être terminé.
 task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume { $change } %; intersections : { $crossings }
+task-remesh-lost = Des parties plus fines qu’un voxel sont perdues, par exemple en { $x }, { $y }, { $z } : annulez et prenez un voxel plus petit
 task-quads = { $quads } quadrilatères et { $triangles } triangles ; intersections : { $crossings }
 task-decimated = { $before } triangles sont devenus { $now } ; nouvelles intersections : { $crossings }
 task-layers-baked = Calques fusionnés dans la nouvelle surface : { $count }

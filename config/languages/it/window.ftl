@@ -1063,6 +1063,7 @@ task-level = Livello { $at } di { $all }
 task-remesh-local = Spigoli cambiati: { $count }
 task-remesh-taken-back = Il rifacimento della maglia è stato annullato prima della fine.
 task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $change } %; intersezioni: { $crossings }
+task-remesh-lost = Parti più sottili di un voxel sono andate perse, per esempio in { $x }, { $y }, { $z }: annulla e usa un voxel più piccolo
 task-quads = { $quads } quadrilateri e { $triangles } triangoli; intersezioni: { $crossings }
 task-decimated = { $before } triangoli sono diventati { $now }; nuove intersezioni: { $crossings }
 task-layers-baked = Livelli consolidati nella nuova superficie: { $count }

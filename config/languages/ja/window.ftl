@@ -1059,6 +1059,7 @@ task-level = レベル { $at } / { $all }
 task-remesh-local = 変更された辺: { $count }
 task-remesh-taken-back = リメッシュは完了する前に元に戻されました。
 task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxel }、体積 { $change } %、交差: { $crossings }
+task-remesh-lost = ボクセルより薄い部分が失われました（例: { $x }, { $y }, { $z }）。元に戻して、より小さいボクセルを使ってください
 task-quads = 四角形 { $quads } 枚、三角形 { $triangles } 枚、交差: { $crossings }
 task-decimated = 三角形 { $before } 枚が { $now } 枚に、新しい交差: { $crossings }
 task-layers-baked = 新しい面に統合したレイヤー: { $count }

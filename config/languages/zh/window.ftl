@@ -1059,6 +1059,7 @@ task-level = 级别 { $at } / { $all }
 task-remesh-local = 已更改的边：{ $count }
 task-remesh-taken-back = 重新网格化在完成前已被撤销。
 task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体积 { $change } %; 相交: { $crossings }
+task-remesh-lost = 比体素更薄的部分已丢失，例如在 { $x }, { $y }, { $z }：请撤销并使用更小的体素
 task-quads = 四边形 { $quads }, 三角面 { $triangles }; 相交: { $crossings }
 task-decimated = 三角面由 { $before } 减为 { $now }; 新相交: { $crossings }
 task-layers-baked = 烘焙到新表面的图层: { $count }

@@ -15,6 +15,7 @@ use sculptd_control::retopology as asked;
 use sculptd_devices::Clock;
 use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
 use sculptd_engine::scene::SceneCommand;
+use sculptd_geometry::remesh::LostParts;
 
 pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, RpcError> {
     let place = host.begin_boolean()?;
@@ -33,7 +34,17 @@ pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, R
         volume: made.volume[1],
         self_intersections: made.crossings as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
+        warnings: made.lost.iter().map(lost_parts).collect(),
     })
+}
+
+/// Says what a remesh did not hold.
+fn lost_parts(lost: &LostParts) -> String {
+    let ([x, y, z], area) = (lost.place.to_array(), lost.area);
+    format!(
+        "{area:.3} square units of the surface are lost, for instance at ({x}, {y}, {z}): parts \
+         there are thinner than a voxel. Use a smaller one"
+    )
 }
 
 /// Hands it to the loop and waits for what came of it.

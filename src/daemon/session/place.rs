@@ -145,15 +145,23 @@ impl SessionPlace {
     /// After the last handle of the file is closed: nothing is needed beside it.
     pub fn tidy(&self) {
         let path = self.path.get();
-        if !self.moved || self.look() != Standing::Here {
-            return;
-        }
-        // Takes over what is left of the log, and removes it.
-        let taken = Connection::open(&path).and_then(|db| {
-            db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |r| r.get::<_, i64>(0))
-        });
-        if let Err(e) = taken {
-            tracing::warn!("{}: its log stays beside it: {e}", path.display());
+        match self.look() {
+            Standing::Here if self.moved => {
+                // Takes over what is left of the log, and removes it.
+                let taken = Connection::open(&path).and_then(|db| {
+                    db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |r| r.get::<_, i64>(0))
+                });
+                if let Err(e) = taken {
+                    tracing::warn!("{}: its log stays beside it: {e}", path.display());
+                }
+            }
+            // All of it was rescued, and another file must never be read with this log.
+            Standing::Gone if self.rescued.is_some() => {
+                for ending in ["-wal", "-shm"] {
+                    let _ = std::fs::remove_file(companion(&path, ending));
+                }
+            }
+            _ => {}
         }
     }
 }
@@ -168,13 +176,12 @@ fn acknowledge(path: &Path, known: Acknowledgement) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the path itself where nothing has its name, else one like it.
+/// Returns a name like that of the session that nothing has yet. Not its own: the log of the file
+/// that is gone may still lie beside that.
 fn free_name(folder: &Path, path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or("session".into(), |s| s.to_string_lossy().into_owned());
-    let numbered = (1..).map(|n| folder.join(format!("{stem}-kept-{n}.sculpt")));
-    let own = path.file_name().map(|name| folder.join(name));
-    own.into_iter()
-        .chain(numbered)
+    let mut numbered = (1..).map(|n| folder.join(format!("{stem}-kept-{n}.sculpt")));
+    numbered
         .find(|p| !p.exists() && !companion(p, "-wal").exists())
         .unwrap_or_else(|| folder.join("kept.sculpt"))
 }

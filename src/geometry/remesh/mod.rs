@@ -5,6 +5,7 @@
 //! cells.
 
 pub mod dual;
+mod lost;
 mod untangle;
 
 use glam::{DMat3, DVec3, Vec3};
@@ -15,6 +16,8 @@ use super::grid::{DistanceGrid, MAX_SAMPLES};
 use crate::TriMesh;
 use crate::bvh::REACH;
 use crate::job::{Cancelled, Job};
+pub use lost::LostParts;
+use lost::lost_parts;
 use untangle::{CalmPlaces, untangle};
 
 /// How fine the new mesh is, and whether edges stay sharp.
@@ -40,7 +43,10 @@ pub enum RemeshError {
     #[error("{0}")]
     Cancelled(#[from] Cancelled),
     /// The mesh encloses nothing that the samples can see.
-    #[error("expected a surface around some volume, found none")]
+    #[error(
+        "the mesh encloses no volume that the samples see: it is thinner than they are apart, or \
+         open. Use more samples a side"
+    )]
     Empty,
     /// The resolution is out of range, or the grid would have more than [`MAX_SAMPLES`] samples.
     #[error("expected 8 to 1024 samples a side, found {0}")]
@@ -88,6 +94,8 @@ pub struct Remade {
     pub mesh: TriMesh,
     /// Pairs of its triangles that cross each other.
     pub crossings: usize,
+    /// What of the old surface is further than a voxel from the new one; `None`: nothing.
+    pub lost: Option<LostParts>,
 }
 
 /// Voxel remeshing: one closed 2-manifold around everything that is inside `mesh`, its vertices on
@@ -117,8 +125,9 @@ pub fn remesh(
     };
     let crossings = untangle(&mut positions, &triangles, calm, job)?;
     let colours = colours(mesh, solid, &positions, job)?;
+    let lost = lost_parts(mesh, solid, &positions, h);
     job.progress(1.0);
-    Ok(Remade { mesh: TriMesh { positions, triangles, colours }, crossings })
+    Ok(Remade { mesh: TriMesh { positions, triangles, colours }, crossings, lost })
 }
 
 fn middle(points: &[DVec3]) -> DVec3 {

@@ -388,13 +388,21 @@ impl Tasks {
             let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
             let voxel = format!("{:.4}", made.voxel);
             let (count, crossings) = (made.triangles, made.crossings);
-            tr!(
+            let text = tr!(
                 "task-remeshed",
                 count = count,
                 voxel = voxel,
                 change = change,
                 crossings = crossings
-            )
+            );
+            match made.lost {
+                Some(lost) => {
+                    let [x, y, z] = lost.place.to_array().map(|n| format!("{n:.3}"));
+                    let lost = tr!("task-remesh-lost", x = x, y = y, z = z);
+                    text + "\n" + &lost
+                }
+                None => text,
+            }
         };
         self.operate("sculptd-remesh", (shown, commands), Arc::default(), compute, done);
     }

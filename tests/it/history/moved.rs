@@ -43,11 +43,10 @@ fn carry_out(act: Act, strokes_between: u32) -> (PathBuf, Option<String>, u64, t
     }
     let (path, other) = (s.path.clone(), dir.path().join("other"));
     std::fs::create_dir(&other).expect("made");
-    let mut expected = match act {
+    let expected = match act {
         Act::Rename => dir.path().join("renamed.sculpt"),
         Act::MoveToAnotherFolder | Act::MoveWithItsLog => other.join("s.sculpt"),
-        Act::Delete => path.clone(),
-        Act::Replace => dir.path().join("s-kept-1.sculpt"),
+        Act::Delete | Act::Replace => dir.path().join("s-kept-1.sculpt"),
     };
     match act {
         Act::Rename | Act::MoveToAnotherFolder => {
@@ -84,9 +83,6 @@ fn carry_out(act: Act, strokes_between: u32) -> (PathBuf, Option<String>, u64, t
     s.settle();
     s.writer = None;
     let trouble = s.thread.take().and_then(|t| t.finish());
-    if act == Act::Delete {
-        expected = path;
-    }
     (expected, trouble, live, dir)
 }
 
