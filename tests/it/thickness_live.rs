@@ -16,7 +16,7 @@ fn after_a_stroke_the_map_equals_a_new_one() {
     let job = Job::default();
     for rays in [1, 9] {
         let mut mesh = Clay::build(&shell(10.0, 8.5, rings), &job).expect("a good mesh");
-        let mut map = LiveMap::new(&mesh.snapshot(), rays, &job).expect("not cancelled");
+        let mut map = LiveMap::new(&mesh.snapshot(), &job).expect("not cancelled");
         assert_eq!(map.work(Vec3::ZERO, usize::MAX, &job), Ok(0));
         let workers = Workers::new(1);
         let clock = Clock::monotonic();
@@ -47,7 +47,7 @@ fn after_a_stroke_the_map_equals_a_new_one() {
         let farthest_done = (0..all).filter(|&v| was[v] && !is[v]).map(far).fold(0.0, f32::max);
         assert!(farthest_done <= nearest_left, "{farthest_done} {nearest_left}");
         assert!(stale > 0 && stale < all / 3, "{stale} of {all}");
-        let mut anew = LiveMap::new(&newer, rays, &job).expect("not cancelled");
+        let mut anew = LiveMap::new(&newer, &job).expect("not cancelled");
         assert_eq!(anew.work(Vec3::ZERO, usize::MAX, &job), Ok(0));
         let bits = |m: &LiveMap| m.values().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert!(bits(&map) == bits(&anew), "the map differs from one made anew");
@@ -60,6 +60,6 @@ fn another_topology_asks_for_a_new_map() {
     let job = Job::default();
     let mut a = Clay::build(&shell(10.0, 8.5, 12), &job).expect("a good mesh");
     let mut b = Clay::build(&shell(10.0, 8.5, 14), &job).expect("a good mesh");
-    let mut map = LiveMap::new(&a.snapshot(), 1, &job).expect("not cancelled");
+    let mut map = LiveMap::new(&a.snapshot(), &job).expect("not cancelled");
     assert_eq!(map.advance(&b.snapshot()), Err(Rebuild));
 }

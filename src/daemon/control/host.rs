@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use arc_swap::ArcSwap;
 
 use super::loop_link::LoopLink;
+use super::measurement::KeptThickness;
 use super::stroke::VirtualPen;
 use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
@@ -13,7 +14,6 @@ use crate::session::Health;
 use crate::session::history::Handle;
 use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
-use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::RpcError;
 use sculptd_geometry::job::Job;
 
@@ -25,7 +25,7 @@ pub struct Host {
     /// What each brush begins with.
     pub presets: Presets,
     /// The wall thickness of the object, as last asked for.
-    pub thickness: Arc<Mutex<Option<LiveMap>>>,
+    pub thickness: Arc<Mutex<Option<KeptThickness>>>,
     /// The Boolean under way.
     pub joining: Arc<Mutex<Option<Arc<Job>>>>,
     /// How the session file stands; `None`: the run is not recorded.

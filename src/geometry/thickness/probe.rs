@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::cone::{Cone, frame};
+use super::cone::{Cone, frame_along};
 use super::ray::{Caster, ConeScratch, Correction, Site};
 use super::surface::{DROPPED, WeldedSurface};
 use super::{MeasuredSide, ThicknessError, ThicknessMethod, ThicknessSettings};
@@ -52,7 +52,7 @@ pub struct Probe {
 /// let found = probe::probe(&slab, &ThicknessSettings::default(), place, &Job::default());
 /// let found = found.expect("not cancelled").expect("a surface");
 /// assert_eq!((found.position, found.normal), ([20.0, 24.0, 3.0], [0.0, 0.0, 1.0]));
-/// assert!((found.thickness.expect("a wall") - 3.0).abs() < 1e-4 && found.rays.len() == 25);
+/// assert!((found.thickness.expect("a wall") - 3.0).abs() < 1e-4 && found.rays.len() == 1);
 /// ```
 pub fn probe(
     mesh: &TriMesh,
@@ -87,7 +87,8 @@ pub fn probe(
         return Ok(None);
     }
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
-    let cone = Cone::new(settings.rays, settings.opening.to_radians(), settings.weights);
+    let rays = settings.rays_at_a_place();
+    let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
     let caster = Caster {
         tree: &tree,
         face_normals: &surface.face_normals,
@@ -95,18 +96,20 @@ pub fn probe(
         sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
         cone: &cone,
         outliers: settings.outliers,
-        correction: if settings.rays == 1 { Correction::None } else { settings.correction },
+        correction: if rays == 1 { Correction::None } else { settings.correction },
     };
     let away = normal.normalize() * caster.sign;
-    let site = Site { point: nearest.point.as_vec3(), away, own: &own, clear: f32::INFINITY };
+    let along = surface.along(corners[0] as usize);
+    let point = nearest.point.as_vec3();
+    let site = Site { point, away, along, own: &own, clear: f32::INFINITY };
     let by_rays = match settings.method {
-        ThicknessMethod::Ray => {
+        ThicknessMethod::Ray | ThicknessMethod::Cone => {
             caster.measure(&site, &mut ConeScratch::default()).map(|(f, _)| (f.value, f.error))
         }
         ThicknessMethod::Sphere => None,
     };
-    let found = by_rays.or_else(|| caster.ball(&site).map(|b| (b.diameter, 0.0)));
-    let (x, y) = frame(away);
+    let found = by_rays.or_else(|| caster.wall_ball(&site).map(|b| (b.diameter, 0.0)));
+    let (x, y) = frame_along(away, along);
     let ray = |d: &Vec3| {
         let direction = x * d.x + y * d.y - away * d.z;
         let length = caster.hit(&site, direction).map(|h| h.t);

@@ -18,7 +18,7 @@
 
 use glam::Vec3;
 
-use super::cone::{Cone, Folded, Outliers, fold, frame};
+use super::cone::{Cone, Folded, Outliers, fold, frame_along};
 use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
 /// What a ray's length is corrected by.
@@ -40,6 +40,8 @@ pub struct Site<'a> {
     pub point: Vec3,
     /// Away from what is measured, of unit length.
     pub away: Vec3,
+    /// A direction along the surface, which the cone's directions follow; zero: none is known.
+    pub along: Vec3,
     /// Triangles that the point lies on, rising.
     pub own: &'a [u32],
     /// How far its own triangles are left out of account by balls, mesh units; infinity: all the
@@ -121,7 +123,7 @@ impl Caster<'_> {
         scratch.clear();
         let longest = self.longest(site);
         let mut turned = false;
-        let (x, y) = frame(site.away);
+        let (x, y) = frame_along(site.away, site.along);
         let mut first = None::<Vec3>;
         // Turned about the axis so that +z of the cone runs into the wall.
         rays.clear();
@@ -134,9 +136,10 @@ impl Caster<'_> {
         self.tree.closest_hits(stack, rays, |_, t| self.faces(site, t), hits);
         for (i, (&Ray { dir, .. }, &hit)) in rays.iter().zip(&*hits).enumerate() {
             if i == 0 {
-                if self.correction == Correction::Chord {
-                    first = hit.map(|h| self.wall(&h));
-                }
+                first = hit.map(|h| match self.correction {
+                    Correction::Chord => self.wall(&h),
+                    _ => self.face_normals[h.triangle as usize] * -self.sign,
+                });
                 turned = hit.is_some_and(|h| {
                     -self.sign * self.face_normals[h.triangle as usize].dot(site.away) < TURNED
                 });
@@ -146,6 +149,10 @@ impl Caster<'_> {
             match self.correction {
                 Correction::None => scratch.push((hit.t, weight)),
                 Correction::Angle => {
+                    let b = self.face_normals[hit.triangle as usize] * -self.sign;
+                    if i > 0 && b.dot(first.unwrap_or(site.away)) < SAME_WALL {
+                        continue;
+                    }
                     let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
                     scratch.push((hit.t * cos, weight));
                 }

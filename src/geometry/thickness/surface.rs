@@ -127,6 +127,14 @@ impl WeldedSurface {
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
     }
 
+    /// A direction of the surface at welded vertex `v`, which turns with the part: that of an edge.
+    pub fn along(&self, v: usize) -> Vec3 {
+        let Some(&t) = self.around(v).first() else { return Vec3::ZERO };
+        let corners = self.triangles[t as usize];
+        let k = corners.iter().position(|&c| c as usize == v).unwrap_or(0);
+        self.positions[corners[(k + 1) % 3] as usize] - self.positions[v]
+    }
+
     /// Fills `starts` and `around` from the triangles.
     fn triangles_that_meet(&mut self) {
         let n = self.positions.len();

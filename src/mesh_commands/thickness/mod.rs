@@ -60,20 +60,21 @@ pub struct ThicknessArgs {
 /// How thickness is defined and measured.
 #[derive(Debug, Clone, clap::Args)]
 pub struct How {
-    /// Rays at each vertex, 1 to 1000.
-    #[arg(long, value_name = "N", default_value_t = 25)]
-    pub rays: usize,
-    /// `ray`: along the normal, or a cone around it; `sphere`: the largest ball inside the wall.
-    #[arg(long, value_enum, default_value = "ray")]
-    pub method: MethodArg,
+    /// Rays of a cone, 1 to 1000 [default: 25]. More than one means `--method cone`.
+    #[arg(long, value_name = "N")]
+    pub rays: Option<usize>,
+    /// The definition of thickness [default: ray].
+    #[arg(long, value_enum)]
+    pub method: Option<MethodArg>,
     /// The cone's full angle, degrees, 0 to 120.
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
     pub opening: f32,
-    /// What each ray's length is corrected by: nothing, the hit face's angle, or the chord's (no
-    /// bias on bent walls).
+    /// What the length of each ray of a cone is corrected by: nothing, the hit face's angle, or the
+    /// chord's (no bias on bent walls).
     #[arg(long, value_enum, default_value = "chord")]
     pub correction: CorrectionArg,
-    /// keep, range:0.1 to range:0.9, sigma-mean, sigma-median
+    /// Rays of a cone that do not count: keep, within:0.1-0.9 (of the range of the values),
+    /// range:0.1 to range:0.9, sigma-mean, sigma-median
     #[arg(long, value_name = "RULE", default_value = "sigma-median", value_parser = outliers)]
     pub outliers: Outliers,
     /// What a ray counts in the mean.
@@ -128,7 +129,17 @@ macro_rules! choice {
         }
     };
 }
-choice!(MethodArg -> ThicknessMethod { Ray, Sphere });
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MethodArg {
+    /// Length of one ray along the normal. The least wall is proven.
+    Ray,
+    /// Mean of a cone of rays (shape diameter function): smooths what is narrower than the cone.
+    Cone,
+    /// Diameter of the largest ball between the place and the side opposite.
+    Sphere,
+}
+
 choice!(CorrectionArg -> Correction { None, Angle, Chord });
 choice!(WeightsArg -> Weights { Plain, InverseAngle });
 choice!(SideArg -> MeasuredSide { Wall, Gap });
@@ -183,10 +194,18 @@ fn outliers(text: &str) -> Result<Outliers, String> {
 
 impl How {
     pub fn settings(&self) -> ThicknessSettings {
+        let many = self.rays.is_some_and(|r| r > 1);
+        let method = match self.method {
+            Some(MethodArg::Sphere) => ThicknessMethod::Sphere,
+            Some(MethodArg::Cone) => ThicknessMethod::Cone,
+            // Older scripts ask for a cone by its number of rays.
+            _ if many => ThicknessMethod::Cone,
+            _ => ThicknessMethod::Ray,
+        };
         ThicknessSettings {
-            method: self.method.into(),
+            method,
             side: self.side.into(),
-            rays: self.rays,
+            rays: self.rays.unwrap_or(ThicknessSettings::default().rays),
             opening: self.opening,
             correction: self.correction.into(),
             outliers: self.outliers,
@@ -422,26 +441,27 @@ fn write_report(out: &Path, path: &Path, part: &CentredMesh, checked: &CheckedPa
 }
 
 fn judge(a: &ThicknessAnswer) -> Outcome {
-    if a.verdict != Verdict::Fail {
+    if !matches!(a.verdict, Verdict::Fail | Verdict::Undecided) {
         return Ok(());
     }
-    let number = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4} mm"));
     let mut why = Vec::new();
-    if let (Some(limit), Some(min)) = (a.limits.fail_below, a.summary.min)
-        && min < limit
-    {
-        why.push(format!(
-            "the thinnest wall is {}, below the limit of {limit} mm",
-            number(a.summary.min)
-        ));
+    if a.limits.fail_below.is_some() {
+        let place = a.least.filter(|l| a.limits.fail_below.is_some_and(|m| l.upper < f64::from(m)));
+        match (place, a.verdict, a.limits.fail_below, a.summary.min) {
+            (_, Verdict::Undecided, ..) => why.push(a.statement.clone()),
+            (Some(_), _, Some(limit), _) => {
+                why.push(format!("{}, below the limit of {limit} mm", a.statement));
+            }
+            (None, _, Some(limit), Some(min)) if a.least.is_none() && min < limit => {
+                why.push(format!("the part measures {min:.4} mm, below the limit of {limit} mm"));
+            }
+            _ => {}
+        }
     }
     if let (Some(limit), Some(max)) = (a.limits.fail_above, a.summary.max)
         && max > limit
     {
-        why.push(format!(
-            "the thickest wall is {}, above the limit of {limit} mm",
-            number(a.summary.max)
-        ));
+        why.push(format!("the thickest wall is {max:.4} mm, above the limit of {limit} mm"));
     }
     Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
 }
@@ -462,18 +482,18 @@ fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
         n(s.mean),
         n(s.max)
     )?;
-    writeln!(
-        w,
-        "  valid      {:.2} %   error bound {:.2e} mm (95 % of the vertices)",
-        s.valid * 100.0,
-        s.error_bound
-    )?;
+    writeln!(w, "  method     {}", method_name(a))?;
+    writeln!(w, "  least      {}", a.statement)?;
+    if let Some(usual) = s.most_frequent {
+        writeln!(w, "  usual      {usual:.4} mm (the class with the largest area)")?;
+    }
+    writeln!(w, "  valid      {:.2} %   error bound {:.2e} mm", s.valid * 100.0, s.error_bound)?;
     for (name, beyond) in [("below", a.below), ("above", a.above)] {
         if let Some(b) = beyond {
             writeln!(
                 w,
-                "  {name:9}  {:.3} % of the area is {name} {} mm",
-                b.area_percent, b.limit
+                "  {name:9}  {:.3} +- {:.3} % of the area is {name} {} mm",
+                b.area_percent, b.error_percent, b.limit
             )?;
         }
     }
@@ -494,6 +514,15 @@ fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
     writeln!(w, "  {:.3} s, {:.2} million rays a second", a.seconds, a.rays_per_second * 1e-6)
 }
 
+/// The definition in words.
+fn method_name(a: &ThicknessAnswer) -> String {
+    match a.method {
+        ThicknessMethod::Ray => "ray along the normal".into(),
+        ThicknessMethod::Cone => format!("cone of {} rays", a.rays),
+        ThicknessMethod::Sphere => "sphere".into(),
+    }
+}
+
 /// As people read it.
 pub fn verdict(v: Verdict) -> &'static str {
     match v {
@@ -501,6 +530,7 @@ pub fn verdict(v: Verdict) -> &'static str {
         Verdict::Pass => "pass",
         Verdict::Warn => "warn",
         Verdict::Fail => "fail",
+        Verdict::Undecided => "undecided",
     }
 }
 
