@@ -199,6 +199,7 @@ impl LiveMap {
             cone: &self.axis,
             outliers: Outliers::Keep,
             correction: Correction::None,
+            acute: None,
         };
         let found: Vec<(f32, (Vec3, Vec3))> = now
             .par_chunks(256)

@@ -18,6 +18,7 @@ use glam::Vec3;
 
 use super::least::OPPOSED;
 use super::ray::{Caster, Site};
+use super::sharp_edges::AcuteEdges;
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
@@ -59,7 +60,15 @@ impl Caster<'_> {
 
     fn held_ball(&self, site: &Site<'_>, opposed: bool) -> Option<InscribedBall> {
         let mut touch = None;
-        let mut r = match self.hit(site, -site.away) {
+        let first = self.hit(site, -site.away);
+        let first = first.filter(|hit| {
+            let n = self.face_normals[hit.triangle as usize];
+            let turned = n.dot(site.away) * self.sign > -(OPPOSED as f32);
+            let place = site.point.as_dvec3();
+            let edge = |acute: &AcuteEdges| acute.own(place, f64::from(hit.t));
+            !(opposed && turned && self.acute.is_some_and(edge))
+        });
+        let mut r = match first {
             Some(hit) => {
                 touch = Some(site.point - site.away * hit.t);
                 hit.t * 0.5

@@ -18,18 +18,17 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::prism::{Patch, Prism};
-use super::sharp_edges::{AcuteEdges, distance_squared};
+use super::sharp_edges::{AcuteEdges, GRAZING, REACH, distance_squared};
 use super::surface::WeldedSurface;
 use crate::bvh::{Bvh8, Ray};
 use crate::job::{Cancelled, Job};
 
 /// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
 pub(super) const OPPOSED: f64 = 0.766_044_443;
-/// An acute edge within this many times the value makes it the edge's. Sides that meet at 40
-/// degrees need 1.2.
-const REACH: f64 = 1.5;
 /// Rounding of a coordinate moves the distance of two facets by at most this many of it.
 const ROUNDINGS: f64 = 4.0;
+/// Slope beyond which sides are a wall beside the prism and not below it.
+const STEEPEST: f64 = 50.0;
 /// Parts into which a patch is cut to decide what of it belongs to an edge.
 const PARTS: usize = 256;
 /// Facets in a task; what one task finds bounds the later facets of the same task.
@@ -46,7 +45,7 @@ pub(super) struct Solid<'a> {
     pub sign: f64,
     /// How far a coordinate may be off, in the mesh's unit.
     pub grain: f64,
-    pub edges: AcuteEdges,
+    pub edges: &'a AcuteEdges,
     /// Sides turned by more than 40 degrees from parallel do not count.
     pub opposed_only: bool,
 }
@@ -139,6 +138,8 @@ struct Search {
     found: Option<FoundWall>,
     /// The least depth of places of which it was not decided whether they are an edge's.
     open: f64,
+    /// The least depth that rounding may have hidden at the sides of a prism.
+    low: f64,
 }
 
 impl Solid<'_> {
@@ -181,7 +182,8 @@ impl Solid<'_> {
                 .par_chunks(CHUNK)
                 .map(|chunk| {
                     job.check()?;
-                    let mut search = Search { best, found: None, open: f64::INFINITY };
+                    let mut search =
+                        Search { best, found: None, open: f64::INFINITY, low: f64::INFINITY };
                     chunk.iter().for_each(|&t| self.facet(t, &mut search));
                     done.fetch_add(chunk.len(), Relaxed);
                     Ok(search)
@@ -189,6 +191,7 @@ impl Solid<'_> {
                 .collect::<Result<_, Cancelled>>()?;
             for s in found {
                 all.open = all.open.min(s.open);
+                all.low = all.low.min(s.low);
                 let better = |f: &FoundWall| all.found.is_none_or(|a| f.depth < a.depth);
                 if let Some(f) = s.found.filter(better) {
                     (all.found, all.best) = (Some(f), f.depth);
@@ -199,7 +202,7 @@ impl Solid<'_> {
         }
         let error = ROUNDINGS * self.grain;
         Ok(all.found.map(|f| LeastWall {
-            lower: (f.depth - error - self.step()).min(all.open - error).max(0.0),
+            lower: (f.depth - self.step()).min(all.open).min(all.low).max(error) - error,
             upper: f.depth + error,
             value: f.depth,
             certified: true,
@@ -233,13 +236,13 @@ impl Solid<'_> {
             .collect::<Result<_, Cancelled>>()?;
         let found = found.into_iter().flatten().min_by(|a, b| a.depth.total_cmp(&b.depth));
         let best = found.map_or(f64::INFINITY, |f| f.depth);
-        Ok(Search { best, found, open: f64::INFINITY })
+        Ok(Search { best, found, open: f64::INFINITY, low: f64::INFINITY })
     }
 
     /// The first facet that faces `t` under `foot`, a point of `t`, and its depth.
     fn first_hit(&self, prism: &Prism, t: u32, foot: DVec3) -> Option<(u32, f64)> {
         let ray = Ray::new(foot.as_vec3(), prism.into.as_vec3());
-        let faces = |u: u32| u != t && self.facing(prism, u) > 0.0;
+        let faces = |u: u32| u != t && self.facing(prism, u) > GRAZING;
         self.tree.closest_hit(ray, faces).map(|h| (h.triangle, f64::from(h.t)))
     }
 
@@ -248,7 +251,7 @@ impl Solid<'_> {
         let Some(prism) = self.prism(t, 2.0 * self.grain) else { return };
         let (tolerance, least) = (self.step(), ROUNDINGS * self.grain);
         let depth = search.best - tolerance;
-        let from = if self.opposed_only { OPPOSED } else { 0.0 };
+        let from = if self.opposed_only { OPPOSED } else { GRAZING };
         prism.each_below(self.tree, depth, |u, corners| {
             let facing = self.facing(&prism, u);
             if u != t && facing > from {
@@ -295,6 +298,9 @@ impl Solid<'_> {
                 parts.extend(part.halves().0);
                 continue;
             }
+            // The sides of prisms were moved inwards, and narrow patches left out.
+            let slope = (1.0 / (facing * facing) - 1.0).max(0.0).sqrt().min(STEEPEST);
+            search.low = search.low.min(low.z - ROUNDINGS * self.grain * slope);
             search.best = low.z;
             search.found = Some(FoundWall {
                 depth: low.z,
@@ -365,7 +371,8 @@ impl Solid<'_> {
 
     fn thin_facet(&self, t: u32, limit: f64, all: f64) -> Option<ThinFacet> {
         let below = limit + self.step();
-        let mut search = Search { best: below, found: None, open: f64::INFINITY };
+        let mut search =
+            Search { best: below, found: None, open: f64::INFINITY, low: f64::INFINITY };
         self.facet(t, &mut search);
         let least = search.found?;
         let prism = self.prism(t, 0.0)?;
@@ -398,11 +405,11 @@ impl Solid<'_> {
             if patch.narrow(2.0 * self.grain) {
                 continue;
             }
-            if facing > 0.0 {
+            if facing > GRAZING {
                 let (own, doubt) = self.area_of_walls(prism, facing, patch);
                 area += own;
                 error += doubt;
-            } else {
+            } else if facing < -GRAZING {
                 // Where a ray enters matter again, it may leave it again and be counted twice.
                 again += patch.area();
             }

@@ -135,16 +135,19 @@ pub fn measure_prepared(
     }
     let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
+    let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
+    let acute = AcuteEdges::new(whole, f64::from(sign));
     let caster = Caster {
         tree,
         face_normals: &whole.face_normals,
         corner_normals: &corner_normals,
-        sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
+        sign,
         cone: &cone,
         outliers: settings.outliers,
         // A single ray is the axis: exact along it whatever the correction, and needs no smooth
         // normals.
         correction: if rays == 1 { Correction::None } else { settings.correction },
+        acute: Some(&acute),
     };
     let own = OwnWalls::new(&surface, walls.map(|w| w.1));
     let faces = own.in_order(tree);
@@ -163,7 +166,7 @@ pub fn measure_prepared(
         }
         let along = surface.along(v);
         let site = Site { point: surface.positions[v], away: n * caster.sign, along, own, clear };
-        one(&caster, &site, settings, surface.sharp[v], scratch)
+        one(&caster, &site, settings, whole, surface.sharp[v], scratch)
     };
     let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
     edges::apply(&caster, &surface, &own, settings, &mut welded);
@@ -180,7 +183,7 @@ pub fn measure_prepared(
             own: &own,
             clear: f32::INFINITY,
         };
-        one(&caster, &site, settings, false, scratch)
+        one(&caster, &site, settings, whole, false, scratch)
     };
     if settings.at == MeasuredPlaces::VerticesAndFaces {
         let faces = scattered(&faces, surface.triangles.len(), job, (0.8, 0.98), at_face)?;
@@ -192,7 +195,7 @@ pub fn measure_prepared(
         surface: whole,
         sign: f64::from(caster.sign),
         grain: query.grain + single(tree),
-        edges: AcuteEdges::new(whole, f64::from(caster.sign)),
+        edges: &acute,
         opposed_only: settings.method == ThicknessMethod::Sphere,
     };
     let order = facets_in_order(whole, tree);
@@ -258,7 +261,7 @@ fn sampled(
         };
         let found = match settings.method {
             ThicknessMethod::Sphere => caster.wall_ball(&site).map(|b| (b.diameter, false)),
-            _ => caster.measure(&site, scratch).map(|(f, turned)| (f.value, turned)),
+            _ => caster.measure(&site, scratch).map(|c| (c.folded.value, c.turned)),
         };
         let (value, turned) = found.unwrap_or((f32::NAN, false));
         (AreaSample { value, ..*sample }, turned)
@@ -367,6 +370,7 @@ fn one(
     caster: &Caster<'_>,
     site: &Site<'_>,
     settings: &ThicknessSettings,
+    whole: &WeldedSurface,
     sharp: bool,
     scratch: &mut ConeScratch,
 ) -> SiteValue {
@@ -375,8 +379,9 @@ fn one(
         ThicknessMethod::Ray | ThicknessMethod::Cone => caster.measure(site, scratch),
         ThicknessMethod::Sphere => None,
     };
-    if let Some((f, turned)) = by_rays {
-        return SiteValue { value: f.value, error: f.error, reason, turned };
+    if let Some(c) = by_rays {
+        let error = c.folded.error + c.wall.map_or(0.0, |t| whole.sagitta(t));
+        return SiteValue { value: c.folded.value, error, reason, turned: c.turned };
     }
     // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
     let ball = caster.wall_ball(site).or_else(|| caster.ball(site));

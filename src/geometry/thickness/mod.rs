@@ -17,8 +17,11 @@ pub mod check;
 pub mod colour;
 pub mod cone;
 mod edges;
+#[cfg(test)]
+mod known_walls;
 pub mod least;
 mod measuring;
+pub mod overlap;
 pub mod preset;
 mod prism;
 pub mod probe;
@@ -26,7 +29,7 @@ pub mod ray;
 pub mod refine;
 pub mod report;
 pub mod samples;
-mod sharp_edges;
+pub mod sharp_edges;
 pub mod summary;
 pub mod surface;
 mod walls;
@@ -205,7 +208,8 @@ pub struct Thickness {
     pub values: Vec<f32>,
     /// Why each value is what it is, one a vertex of the mesh.
     pub reasons: Vec<Reason>,
-    /// One a vertex: the standard error of a cone's mean; 0 for a single ray and for the sphere.
+    /// One a vertex: how far the value may be off besides rounding and the vertex's normal: the
+    /// opposite facet's distance from the curved surface, and of a cone its mean's from its axis.
     pub errors: Vec<f32>,
     /// One a triangle, with [`MeasuredPlaces::VerticesAndFaces`].
     pub face_values: Vec<f32>,

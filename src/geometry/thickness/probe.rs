@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::cone::{Cone, frame_along};
 use super::ray::{Caster, ConeScratch, Correction, Site};
+use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
 use super::{MeasuredSide, ThicknessError, ThicknessMethod, ThicknessSettings};
 use crate::TriMesh;
@@ -89,14 +90,17 @@ pub fn probe(
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
     let rays = settings.rays_at_a_place();
     let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
+    let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
+    let acute = AcuteEdges::new(&surface, f64::from(sign));
     let caster = Caster {
         tree: &tree,
         face_normals: &surface.face_normals,
         corner_normals: &surface.corner_normals(crease),
-        sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
+        sign,
         cone: &cone,
         outliers: settings.outliers,
         correction: if rays == 1 { Correction::None } else { settings.correction },
+        acute: Some(&acute),
     };
     let away = normal.normalize() * caster.sign;
     let along = surface.along(corners[0] as usize);
@@ -104,7 +108,8 @@ pub fn probe(
     let site = Site { point, away, along, own: &own, clear: f32::INFINITY };
     let by_rays = match settings.method {
         ThicknessMethod::Ray | ThicknessMethod::Cone => {
-            caster.measure(&site, &mut ConeScratch::default()).map(|(f, _)| (f.value, f.error))
+            let found = caster.measure(&site, &mut ConeScratch::default());
+            found.map(|c| (c.folded.value, c.folded.error))
         }
         ThicknessMethod::Sphere => None,
     };

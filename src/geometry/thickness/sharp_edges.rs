@@ -5,12 +5,18 @@ use glam::DVec3;
 
 use super::surface::{DROPPED, WeldedSurface};
 
+/// An acute edge within this many times a value to a turned side makes the value the edge's. Sides
+/// that meet at 40 degrees need 1.2.
+pub(super) const REACH: f64 = 1.5;
+/// Cosine below which rounding may have turned a right angle: 89.99 degrees. A side that is turned
+/// so far is beside a ray and not ahead.
+pub(super) const GRAZING: f64 = 2e-4;
 /// Segments in a leaf of the tree.
 const LEAF: usize = 4;
 
 /// The acute edges and tips of a surface, in a tree of boxes.
 #[derive(Debug, Default)]
-pub(super) struct AcuteEdges {
+pub struct AcuteEdges {
     /// Both ends; a tip has the same place twice.
     segments: Vec<[DVec3; 2]>,
     /// Depth first: box, first segment and count, or where the second child is.
@@ -94,12 +100,18 @@ impl AcuteEdges {
         self.build(from + half, to);
     }
 
+    /// Whether a value to a turned side, measured at `place`, is an edge's.
+    pub fn own(&self, place: DVec3, value: f64) -> bool {
+        self.nearest(place, REACH * value * (1.0 + 1e-6)).is_some()
+    }
+
+    /// There is none.
     pub fn is_empty(&self) -> bool {
         self.segments.is_empty()
     }
 
     /// The nearest one to `p` within `reach`, and its distance.
-    pub fn nearest(&self, p: DVec3, reach: f64) -> Option<([DVec3; 2], f64)> {
+    pub(super) fn nearest(&self, p: DVec3, reach: f64) -> Option<([DVec3; 2], f64)> {
         let (mut best, mut found) = (reach * reach, None);
         if self.nodes.is_empty() {
             return None;
@@ -136,7 +148,7 @@ pub(super) fn distance_squared(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 /// Two triangles at an edge between which there is less than 90 degrees of what is measured.
 fn meets_acutely(surface: &WeldedSurface, s: u32, t: u32, sign: f64) -> bool {
     let [m, n] = [s, t].map(|t| surface.face_normals[t as usize].as_dvec3());
-    m.dot(n) < 0.0 && convex(surface, s, t, sign)
+    m.dot(n) < -GRAZING && convex(surface, s, t, sign)
 }
 
 /// Seen from the first triangle's plane, the second lies on the measured side.

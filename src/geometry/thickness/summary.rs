@@ -285,7 +285,7 @@ mod tests {
     use glam::DVec3;
 
     use super::super::refine::refine;
-    use super::super::{EdgePolicy, ThicknessSettings, measure};
+    use super::super::{EdgePolicy, ThicknessMethod, ThicknessSettings, measure};
     use crate::job::Job;
     use crate::shapes::{cone, cuboid};
 
@@ -310,6 +310,7 @@ mod tests {
     fn no_wall_is_thicker_than_the_part() {
         let mesh = cone(30.0, 50.0, 48).triangulate().0;
         let settings = ThicknessSettings {
+            method: ThicknessMethod::Cone,
             rays: 100,
             opening: 120.0,
             edges: EdgePolicy::Raw,

@@ -127,6 +127,18 @@ impl WeldedSurface {
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
     }
 
+    /// How far triangle `t` may lie from the curved surface that it stands for: by how its normal
+    /// differs from those at its corners that are not sharp.
+    pub fn sagitta(&self, t: u32) -> f32 {
+        let Some([a, b, c]) = self.corners(t as usize) else { return 0.0 };
+        let own = self.face_normals[t as usize];
+        let smooth = self.triangles[t as usize].into_iter().filter(|&v| !self.sharp[v as usize]);
+        let turn = |v: u32| own.dot(self.normals[v as usize]).clamp(-1.0, 1.0).acos();
+        let most = smooth.map(turn).fold(0.0, f32::max).min(1.2);
+        let long = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        long * (most * 0.5).tan()
+    }
+
     /// A direction of the surface at welded vertex `v`, which turns with the part: that of an edge.
     pub fn along(&self, v: usize) -> Vec3 {
         let Some(&t) = self.around(v).first() else { return Vec3::ZERO };

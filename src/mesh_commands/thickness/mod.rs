@@ -17,6 +17,7 @@ use sculptd_geometry::thickness::check::{
     CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
 };
 use sculptd_geometry::thickness::colour::colour;
+use sculptd_geometry::thickness::overlap;
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
@@ -278,9 +279,22 @@ pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fa
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    let mut mesh = CentredMesh::new(&loaded.mesh, how.unit.scale());
+    let mut warnings = loaded.warnings;
+    let united = overlap::united(&loaded.mesh, job).map_err(|e| {
+        Fail::Input(format!(
+            "{}: the shells overlap, and their union failed ({e}). Unite them with \
+             `sculptd boolean union` and measure the result.",
+            path.display()
+        ))
+    })?;
+    if united.is_some() {
+        warnings.push("the shells overlap: measured on their union".into());
+    }
+    let solid = united.as_ref().unwrap_or(&loaded.mesh);
+    let mut mesh = CentredMesh::new(solid, how.unit.scale());
+    mesh.counts = CentredMesh::new(&loaded.mesh, how.unit.scale()).counts;
     let walls = add_places(&mut mesh.mesh, how.spacing, how.crease);
-    Ok((Part { mesh, walls }, loaded.warnings))
+    Ok((Part { mesh, walls }, warnings))
 }
 
 /// Three numbers with commas between.
