@@ -6,7 +6,7 @@ use sculptd_control::edit::{ThicknessDefinition, ThicknessParams, ThicknessReply
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
-use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings};
+use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings, overlap};
 
 /// The last answer, and what it was the answer to.
 #[derive(Debug)]
@@ -38,7 +38,9 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
     let settings = ThicknessSettings { method, rays, ..ThicknessSettings::default() };
     let limits =
         ThicknessLimits { fail_below: params.limit.filter(|l| *l > 0.0), ..Default::default() };
-    let mut part = CentredMesh::new(&mesh.to_tri().to_poly(), scale);
+    let whole = mesh.to_tri().to_poly();
+    let united = overlap::united(&whole, &Job::default()).map_err(failed)?;
+    let mut part = CentredMesh::new(united.as_ref().unwrap_or(&whole), scale);
     let vertices = part.mesh.positions.len() as u64;
     let walls = add_places(&mut part.mesh, None, settings.crease);
     let found = check("", &part, walls.as_ref(), &settings, limits, &Job::default(), || 0.0);

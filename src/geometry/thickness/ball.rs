@@ -28,6 +28,8 @@ const SAME_SIDE: f32 = 0.94;
 /// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
 /// a wall.
 const CORNER: f32 = -0.766;
+/// cos 60 degrees: a side turned by more than this is beside the wall.
+const FLANK: f32 = 0.5;
 /// cos 20 degrees: a touch farther from the normal, seen from the site, is beside the wall.
 const BESIDE: f32 = 0.939_692_6;
 /// The ball has settled when no point is deeper inside it than this share of its radius.
@@ -63,10 +65,11 @@ impl Caster<'_> {
         let first = self.hit(site, -site.away);
         let first = first.filter(|hit| {
             let n = self.face_normals[hit.triangle as usize];
-            let turned = n.dot(site.away) * self.sign > -(OPPOSED as f32);
+            let facing = -n.dot(site.away) * self.sign;
+            let turned = facing < OPPOSED as f32;
             let place = site.point.as_dvec3();
             let edge = |acute: &AcuteEdges| acute.own(place, f64::from(hit.t));
-            !(opposed && turned && self.acute.is_some_and(edge))
+            !(opposed && turned && (facing < FLANK || self.acute.is_some_and(edge)))
         });
         let mut r = match first {
             Some(hit) => {

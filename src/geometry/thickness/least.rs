@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::prism::{Patch, Prism};
-use super::sharp_edges::{AcuteEdges, GRAZING, REACH, distance_squared};
+use super::sharp_edges::{AcuteEdges, REACH, distance_squared, grazing};
 use super::surface::WeldedSurface;
 use crate::bvh::{Bvh8, Ray};
 use crate::job::{Cancelled, Job};
@@ -46,6 +46,8 @@ pub(super) struct Solid<'a> {
     /// How far a coordinate may be off, in the mesh's unit.
     pub grain: f64,
     pub edges: &'a AcuteEdges,
+    /// See [`WeldedSurface::tilts`].
+    pub tilts: &'a [f32],
     /// Sides turned by more than 40 degrees from parallel do not count.
     pub opposed_only: bool,
 }
@@ -242,7 +244,7 @@ impl Solid<'_> {
     /// The first facet that faces `t` under `foot`, a point of `t`, and its depth.
     fn first_hit(&self, prism: &Prism, t: u32, foot: DVec3) -> Option<(u32, f64)> {
         let ray = Ray::new(foot.as_vec3(), prism.into.as_vec3());
-        let faces = |u: u32| u != t && self.facing(prism, u) > GRAZING;
+        let faces = |u: u32| u != t && self.facing(prism, u) > grazing(self.tilts, t, u);
         self.tree.closest_hit(ray, faces).map(|h| (h.triangle, f64::from(h.t)))
     }
 
@@ -251,10 +253,10 @@ impl Solid<'_> {
         let Some(prism) = self.prism(t, 2.0 * self.grain) else { return };
         let (tolerance, least) = (self.step(), ROUNDINGS * self.grain);
         let depth = search.best - tolerance;
-        let from = if self.opposed_only { OPPOSED } else { GRAZING };
+        let from = if self.opposed_only { OPPOSED } else { 0.0 };
         prism.each_below(self.tree, depth, |u, corners| {
             let facing = self.facing(&prism, u);
-            if u != t && facing > from {
+            if u != t && facing > grazing(self.tilts, t, u).max(from) {
                 let patch = prism.clip(corners.map(Vec3::as_dvec3), least);
                 let low = patch.lowest().map_or(f64::INFINITY, |c| c.z);
                 if low < search.best - tolerance && !patch.narrow(2.0 * self.grain) {
@@ -405,11 +407,12 @@ impl Solid<'_> {
             if patch.narrow(2.0 * self.grain) {
                 continue;
             }
-            if facing > GRAZING {
+            let side = grazing(self.tilts, t, u);
+            if facing > side {
                 let (own, doubt) = self.area_of_walls(prism, facing, patch);
                 area += own;
                 error += doubt;
-            } else if facing < -GRAZING {
+            } else if facing < -side {
                 // Where a ray enters matter again, it may leave it again and be counted twice.
                 again += patch.area();
             }

@@ -87,7 +87,7 @@ pub fn measure_at_places(
 }
 
 /// Half of the last place of the largest coordinate in single precision.
-fn single(tree: &Bvh8) -> f64 {
+pub(super) fn single(tree: &Bvh8) -> f64 {
     let (lo, hi) = tree.bounds();
     if tree.is_empty() {
         0.0
@@ -136,7 +136,9 @@ pub fn measure_prepared(
     let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
     let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
-    let acute = AcuteEdges::new(whole, f64::from(sign));
+    let grain = query.grain + single(tree);
+    let tilts = whole.tilts(grain);
+    let acute = AcuteEdges::new(whole, &tilts, f64::from(sign));
     let caster = Caster {
         tree,
         face_normals: &whole.face_normals,
@@ -194,8 +196,9 @@ pub fn measure_prepared(
         tree,
         surface: whole,
         sign: f64::from(caster.sign),
-        grain: query.grain + single(tree),
+        grain,
         edges: &acute,
+        tilts: &tilts,
         opposed_only: settings.method == ThicknessMethod::Sphere,
     };
     let order = facets_in_order(whole, tree);

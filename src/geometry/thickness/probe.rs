@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::cone::{Cone, frame_along};
+use super::measuring::single;
 use super::ray::{Caster, ConeScratch, Correction, Site};
 use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
@@ -30,6 +31,8 @@ pub struct Probe {
     pub normal: [f32; 3],
     /// Index into the mesh's triangles.
     pub triangle: u32,
+    /// The triangle that the ray along the normal meets.
+    pub opposite: Option<u32>,
     /// In the mesh's unit; `None` where no wall is ahead.
     pub thickness: Option<f32>,
     /// Standard error of the cone's mean; 0 of one ray and of the sphere.
@@ -91,7 +94,8 @@ pub fn probe(
     let rays = settings.rays_at_a_place();
     let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
     let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
-    let acute = AcuteEdges::new(&surface, f64::from(sign));
+    let tilts = surface.tilts(single(&tree));
+    let acute = AcuteEdges::new(&surface, &tilts, f64::from(sign));
     let caster = Caster {
         tree: &tree,
         face_normals: &surface.face_normals,
@@ -124,6 +128,7 @@ pub fn probe(
         position: site.point.to_array(),
         normal: away.to_array(),
         triangle: nearest.triangle,
+        opposite: caster.hit(&site, -away).map(|h| h.triangle),
         thickness: found.map(|f| f.0),
         error: found.map_or(0.0, |f| f.1),
         rays: cone.dirs.iter().map(ray).collect(),

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::surface::{DROPPED, WeldedSurface};
+use super::surface::WeldedSurface;
 
 /// An acute edge within this many times a value to a turned side makes the value the edge's. Sides
 /// that meet at 40 degrees need 1.2.
@@ -33,8 +33,9 @@ struct Node {
 }
 
 impl AcuteEdges {
-    /// Those of `surface`, seen from the measured side; `sign` is 1 where normals point out of it.
-    pub fn new(surface: &WeldedSurface, sign: f64) -> AcuteEdges {
+    /// Those of `surface`, seen from the measured side; `sign` is 1 where normals point out of it,
+    /// `tilts` are [`WeldedSurface::tilts`].
+    pub fn new(surface: &WeldedSurface, tilts: &[f32], sign: f64) -> AcuteEdges {
         let mut segments = Vec::new();
         let mut fan: Vec<(u32, u32)> = Vec::new();
         for v in 0..surface.positions.len() {
@@ -56,7 +57,7 @@ impl AcuteEdges {
             for two in fan.chunk_by(|a, b| a.0 == b.0) {
                 let other = surface.positions[two[0].0 as usize].as_dvec3();
                 let acute = two.iter().enumerate().any(|(i, a)| {
-                    two[i + 1..].iter().any(|b| meets_acutely(surface, a.1, b.1, sign))
+                    two[i + 1..].iter().any(|b| meets_acutely(surface, tilts, a.1, b.1, sign))
                 });
                 if acute {
                     edges += 1;
@@ -66,7 +67,7 @@ impl AcuteEdges {
                 }
             }
             // A tip of which no edge is acute: a cone's.
-            if edges == 0 && is_tip(surface, around, sign, v) {
+            if edges == 0 && is_tip(surface, tilts, around, sign) {
                 segments.push([own, own]);
             }
         }
@@ -145,10 +146,16 @@ pub(super) fn distance_squared(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     (p - a - way * along).length_squared()
 }
 
+/// The cosine of the angle between two facets, one of them turned round, that rounding may make of
+/// a right angle.
+pub(super) fn grazing(tilts: &[f32], s: u32, t: u32) -> f64 {
+    GRAZING + f64::from(tilts[s as usize]) + f64::from(tilts[t as usize])
+}
+
 /// Two triangles at an edge between which there is less than 90 degrees of what is measured.
-fn meets_acutely(surface: &WeldedSurface, s: u32, t: u32, sign: f64) -> bool {
+fn meets_acutely(surface: &WeldedSurface, tilts: &[f32], s: u32, t: u32, sign: f64) -> bool {
     let [m, n] = [s, t].map(|t| surface.face_normals[t as usize].as_dvec3());
-    m.dot(n) < -GRAZING && convex(surface, s, t, sign)
+    m.dot(n) < -grazing(tilts, s, t) && convex(surface, s, t, sign)
 }
 
 /// Seen from the first triangle's plane, the second lies on the measured side.
@@ -164,13 +171,12 @@ fn convex(surface: &WeldedSurface, s: u32, t: u32, sign: f64) -> bool {
 }
 
 /// Sides that face each other meet at a vertex.
-fn is_tip(surface: &WeldedSurface, around: &[u32], sign: f64, v: usize) -> bool {
+fn is_tip(surface: &WeldedSurface, tilts: &[f32], around: &[u32], sign: f64) -> bool {
     /// Faces of a fan that are compared with each other.
     const MOST: usize = 64;
     let step = around.len().div_ceil(MOST);
     let some: Vec<u32> = around.iter().step_by(step).copied().collect();
-    debug_assert!(surface.triangles[some[0] as usize] != [DROPPED; 3], "{v}");
     some.iter()
         .enumerate()
-        .any(|(i, &s)| some[i + 1..].iter().any(|&t| meets_acutely(surface, s, t, sign)))
+        .any(|(i, &s)| some[i + 1..].iter().any(|&t| meets_acutely(surface, tilts, s, t, sign)))
 }

@@ -164,7 +164,7 @@ impl Thickness {
         AreaStatistics { mean: Some(mean), median: Some(share(0.5)), most: Some(share(0.99)) }
     }
 
-    /// A bound that every value of a vertex keeps that does not lie on a sharp edge, against the
+    /// A bound that every value keeps that does not lie on a sharp edge, against the
     /// curved surface that the triangles stand for. Four parts are added: single precision; the
     /// normal, uncertain by half of how the faces at the vertex spread, which lengthens a ray by
     /// 1/cos of it; the facets' distance from the curved surface; and for a cone how far its mean
@@ -195,15 +195,18 @@ impl Thickness {
             let tilt = (least.clamp(-1.0, 1.0).acos() * 0.5).min(1.2);
             let mut bound = 4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + self.errors[i];
             if self.settings.method == ThicknessMethod::Sphere {
-                // Touches up to 20 degrees beside the normal, and a normal that is off by `tilt`.
-                bound += value * 0.37 * tilt;
+                // Touches up to 20 degrees beside the normal, and a facet's normal that is off by
+                // twice `tilt`.
+                bound += value * 0.37 * 2.0 * tilt;
             }
             if biased {
                 bound += value * (1.0 - 1.0 / long);
             }
             most = most.max(bound);
         }
-        most
+        // Places between the vertices lie on facets, which stand off the curved surface.
+        let off = (0..s.triangles.len() as u32).map(|t| s.sagitta(t)).fold(0.0, f32::max);
+        most + off
     }
 
     /// Welded vertex values, for walks over the surface.

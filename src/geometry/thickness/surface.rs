@@ -127,6 +127,17 @@ impl WeldedSurface {
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
     }
 
+    /// How far rounding may turn each triangle, radians; `grain`: how far a coordinate may be off.
+    pub fn tilts(&self, grain: f64) -> Vec<f32> {
+        let one = |t: usize| {
+            let Some([a, b, c]) = self.corners(t) else { return 1.0 };
+            let long = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            let twice = (b - a).cross(c - a).length();
+            (4.0 * grain as f32 * long / twice).min(1.0)
+        };
+        (0..self.triangles.len()).map(one).collect()
+    }
+
     /// How far triangle `t` may lie from the curved surface that it stands for: by how its normal
     /// differs from those at its corners that are not sharp.
     pub fn sagitta(&self, t: u32) -> f32 {

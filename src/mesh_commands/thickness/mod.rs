@@ -43,7 +43,8 @@ pub struct ThicknessArgs {
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
     #[arg(long, value_name = "FILE")]
     pub ply: Option<PathBuf>,
-    /// Write a picture of the coloured part.
+    /// Write a picture of the coloured part; with `--at`, of the rays, the face that is measured
+    /// from (blue) and the one that is met (orange).
     #[arg(long, value_name = "FILE")]
     pub png: Option<PathBuf>,
     /// Write the report: one HTML page that needs nothing else.
@@ -316,6 +317,10 @@ struct AtAnswer {
     normal: [f32; 3],
     thickness: Option<f32>,
     error: f32,
+    /// The face that is measured from, and the one that the ray along the normal meets; indices of
+    /// the file's triangles.
+    triangle: u32,
+    opposite: Option<u32>,
     rays: Vec<ProbedRay>,
 }
 
@@ -332,10 +337,10 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
         let png = png.map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
-    let Probe { position, normal, thickness, error, rays, .. } = found;
+    let Probe { position, normal, triangle, opposite, thickness, error, rays } = found;
     let position = part.to_file(position.into()).to_array();
     let file = path.display().to_string();
-    let out = AtAnswer { file, position, normal, thickness, error, rays };
+    let out = AtAnswer { file, position, normal, thickness, error, triangle, opposite, rays };
     answer(json, &out, |w| {
         let [x, y, z] = out.position;
         let value = out.thickness.map_or("none".into(), |v| format!("{v:.4} mm"));
@@ -356,6 +361,15 @@ fn drawn(mesh: &TriMesh, found: &Probe) -> Picture {
     let (side, _) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
     let camera = Camera::from_side(mesh, side + normal * 0.4, 4.0 / 3.0);
     let mut picture = draw(mesh, None, &camera, 1200, 900);
+    // The outlines of the face that is measured from, and of the one that is met.
+    let faces = [(Some(found.triangle), [20, 90, 200]), (found.opposite, [230, 120, 0])];
+    for (face, colour) in faces {
+        let Some(face) = face else { continue };
+        let corners = mesh.corners(face as usize).map(|p| picture.place(&camera, p));
+        for k in 0..3 {
+            picture.line(corners[k], corners[(k + 1) % 3], colour);
+        }
+    }
     let from = picture.place(&camera, place);
     for ray in &found.rays {
         let Some(length) = ray.length else { continue };

@@ -11,7 +11,7 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
-    ThicknessSettings, WallQuery,
+    ThicknessSettings, WallQuery, overlap,
 };
 
 use crate::array::shared;
@@ -229,7 +229,10 @@ fn thickness_of(
         ..ThicknessSettings::default()
     };
     let poly = mesh.get().poly.clone();
-    let (part, measured, summary) = watched(py, &progress, |job| {
+    let found = watched(py, &progress, |job| {
+        if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
+            return Ok(None);
+        }
         let part = CentredMesh::new(&poly, 1.0);
         let query = WallQuery { grain: part.grain, ..WallQuery::default() };
         let measured = thickness::measure_at_places(&part.mesh, None, &settings, query, job)?;
@@ -237,9 +240,14 @@ fn thickness_of(
         let moved = |p: [f32; 3]| part.to_file(p.into()).as_vec3().to_array();
         summary.thinnest = summary.thinnest.map(moved);
         summary.thickest = summary.thickest.map(moved);
-        Ok((part, measured, summary))
+        Ok(Some((part, measured, summary)))
     })?
     .map_err(|e| errors::thickness(&e))?;
+    let Some((part, measured, summary)) = found else {
+        return Err(PyValueError::new_err(
+            "the shells of the mesh overlap: unite them first and measure the result",
+        ));
+    };
     let reasons = Arc::new(measured.reasons.iter().map(|&r| r as u8).collect());
     Ok(Thickness { measured: Arc::new(measured), part: Arc::new(part), summary, reasons })
 }
