@@ -144,10 +144,19 @@ impl WeldedSurface {
         let Some([a, b, c]) = self.corners(t as usize) else { return 0.0 };
         let own = self.face_normals[t as usize];
         let smooth = self.triangles[t as usize].into_iter().filter(|&v| !self.sharp[v as usize]);
-        let turn = |v: u32| own.dot(self.normals[v as usize]).clamp(-1.0, 1.0).acos();
-        let most = smooth.map(turn).fold(0.0, f32::max).min(1.2);
-        let long = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        long * (most * 0.5).tan()
+        let one = |v: u32| {
+            let n = self.normals[v as usize];
+            let cos = own.dot(n).clamp(0.3, 1.0);
+            let across = n - own * cos;
+            // The sine of the angle, and the width of the triangle in the direction it bends in.
+            let sin = across.length();
+            if !(sin > 1e-6) {
+                return 0.0;
+            }
+            let [a, b, c] = [a, b, c].map(|p| p.dot(across) / sin);
+            0.5 * (a.max(b).max(c) - a.min(b).min(c)) * sin / cos
+        };
+        smooth.map(one).fold(0.0, f32::max)
     }
 
     /// A direction of the surface at welded vertex `v`, which turns with the part: that of an edge.

@@ -1,6 +1,7 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
 mod batch;
+mod ply;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,7 @@ use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
-    Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, Thickness, ThicknessMethod,
+    Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, ThicknessMethod,
     ThicknessSettings, Walls, Weights,
 };
 use sculptd_geometry::{CentredMesh, TriMesh};
@@ -40,7 +41,8 @@ pub struct ThicknessArgs {
     /// of the whole part's; in the file's coordinates, millimetres. `--png` draws both.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
-    /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
+    /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex, and a
+    /// `thickness` of each face, measured at its middle.
     #[arg(long, value_name = "FILE")]
     pub ply: Option<PathBuf>,
     /// Write a picture of the coloured part; with `--at`, of the rays, the face that is measured
@@ -293,7 +295,9 @@ pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fa
     }
     let solid = united.as_ref().unwrap_or(&loaded.mesh);
     let mut mesh = CentredMesh::new(solid, how.unit.scale());
-    mesh.counts = CentredMesh::new(&loaded.mesh, how.unit.scale()).counts;
+    if united.is_some() {
+        mesh.counts = CentredMesh::new(&loaded.mesh, how.unit.scale()).counts;
+    }
     let walls = add_places(&mut mesh.mesh, how.spacing, how.crease);
     Ok((Part { mesh, walls }, warnings))
 }
@@ -406,7 +410,7 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
         eprintln!("sculptd: warning: {}: {w}", path.display());
     }
     if let Some(out) = &args.ply {
-        write_beside(out, |w| write_ply(w, &part, &checked.thickness))
+        write_beside(out, |w| ply::write(w, &part, &checked.thickness))
             .map_err(|e| Fail::io(out, &e))?;
     }
     if let Some(out) = &args.png {
@@ -443,16 +447,13 @@ fn one(
     let (Part { mesh: part, walls }, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
-    let mut checked = check(
-        &path.display().to_string(),
-        &part,
-        walls.as_ref(),
-        &args.how.settings(),
-        limits,
-        job,
-        seconds,
-    )
-    .map_err(|e| Fail::Usage(e.to_string()))?;
+    let mut settings = args.how.settings();
+    if args.ply.is_some() {
+        settings.at = MeasuredPlaces::VerticesAndFaces;
+    }
+    let mut checked =
+        check(&path.display().to_string(), &part, walls.as_ref(), &settings, limits, job, seconds)
+            .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
     Ok((part, checked))
 }
@@ -560,35 +561,4 @@ pub fn verdict(v: Verdict) -> &'static str {
         Verdict::Fail => "fail",
         Verdict::Undecided => "undecided",
     }
-}
-
-/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
-/// reason.
-fn write_ply(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::Result<()> {
-    let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
-    write!(
-        w,
-        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 \
-            measured, 1 edge, 2 nothing \
-         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double \
-         y\nproperty double z\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float \
-         thickness\nproperty uchar reason\n\
-         element face {m}\nproperty list uchar int vertex_indices\nend_header\n"
-    )?;
-    let colours = t.colours(t.scale());
-    let mut rows = Vec::with_capacity(n * 32 + m * 13);
-    for v in 0..n {
-        for x in (part.mesh.positions[v].as_dvec3() + part.centre).to_array() {
-            rows.extend(x.to_le_bytes());
-        }
-        rows.extend(colours[v]);
-        rows.extend(t.values[v].to_le_bytes());
-        rows.push(t.reasons[v] as u8);
-    }
-    for c in &part.mesh.triangles {
-        rows.push(3);
-        c.iter().for_each(|v| rows.extend(v.to_le_bytes()));
-    }
-    w.write_all(&rows)
 }
