@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use arc_swap::ArcSwap;
 
 use super::loop_link::LoopLink;
-use super::measurement::KeptThickness;
 use super::stroke::VirtualPen;
 use crate::Published;
 use crate::command_queue::{CommandSender, QueuedCommand};
@@ -15,7 +14,17 @@ use crate::session::history::Handle;
 use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
 use sculptd_control::RpcError;
+use sculptd_control::edit::{ThicknessParams, ThicknessReply};
 use sculptd_geometry::job::Job;
+
+/// The last answer about wall thickness, and what it was the answer to.
+#[derive(Debug)]
+pub struct KeptThickness {
+    pub(super) params: ThicknessParams,
+    /// Of the object's transform.
+    pub(super) scale: f64,
+    pub(super) reply: ThicknessReply,
+}
 
 /// What a request may touch. Cloning it gives another handle to the same.
 #[derive(Debug, Clone)]

@@ -1,20 +1,12 @@
 //! The wall thickness of the object, as a client asks for it again and again.
 
-use super::host::{Host, failed, locked};
+use super::host::{Host, KeptThickness, failed, locked};
 use sculptd_control::RpcError;
 use sculptd_control::edit::{ThicknessDefinition, ThicknessParams, ThicknessReply};
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
 use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings, overlap};
-
-/// The last answer, and what it was the answer to.
-#[derive(Debug)]
-pub struct KeptThickness {
-    params: ThicknessParams,
-    scale: f64,
-    reply: ThicknessReply,
-}
 
 /// Measures the newest mesh as `sculptd thickness` does. The same question about the same mesh is
 /// answered from memory.

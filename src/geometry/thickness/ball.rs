@@ -10,9 +10,10 @@
 //! The ball of a *wall* ([`Caster::wall_ball`], the definition *sphere*) is held by the opposite
 //! side alone: facets turned by less than 40 degrees from parallel, touched within 20 degrees of
 //! the normal. What stands beside the ball, as the sides of a plate do along its edges, does not
-//! hold it, so the value does not go to zero there. The inscribed ball ([`Caster::ball`]) is held by
-//! everything. Left out: the site's own triangles, and triangles that turn from the site's normal by less
-//! than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests on it.
+//! hold it, so the value does not go to zero there. The inscribed ball ([`Caster::ball`]) is held
+//! by everything. Left out: the site's own triangles, and triangles that turn from the site's
+//! normal by less than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests
+//! on it.
 
 use glam::Vec3;
 

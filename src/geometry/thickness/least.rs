@@ -2,7 +2,7 @@
 //!
 //! Definition (*ray*): at a point of a facet, the length of the ray opposite the facet's normal to
 //! the first facet that faces it. The least wall is the least of these over all points of all
-//! facets. [`Prism`] gives it exactly for a pair of facets, and a walk over the tree finds the
+//! facets. [`FacetShaft`] gives it exactly for a pair of facets, and a walk over the tree finds the
 //! pairs; what is deeper than the least wall found so far is not looked at. So the result depends
 //! neither on where samples lie, nor on the triangles that a flat facet is cut into.
 //!
@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::prism::{Patch, Prism};
+use super::shaft::{FacetShaft, Patch};
 use super::sharp_edges::{AcuteEdges, REACH, distance_squared, grazing};
 use super::surface::WeldedSurface;
 use crate::bvh::{Bvh8, Ray};
@@ -27,7 +27,7 @@ use crate::job::{Cancelled, Job};
 pub(super) const OPPOSED: f64 = 0.766_044_443;
 /// Rounding of a coordinate moves the distance of two facets by at most this many of it.
 const ROUNDINGS: f64 = 4.0;
-/// Slope beyond which sides are a wall beside the prism and not below it.
+/// Slope beyond which sides are a wall beside the shaft and not below it.
 const STEEPEST: f64 = 50.0;
 /// Parts into which a patch is cut to decide what of it belongs to an edge.
 const PARTS: usize = 256;
@@ -140,7 +140,7 @@ struct Search {
     found: Option<FoundWall>,
     /// The least depth of places of which it was not decided whether they are an edge's.
     open: f64,
-    /// The least depth that rounding may have hidden at the sides of a prism.
+    /// The least depth that rounding may have hidden at the sides of a shaft.
     low: f64,
 }
 
@@ -155,7 +155,7 @@ impl Solid<'_> {
         0.5 * self.grain
     }
 
-    fn prism(&self, t: u32, erode: f64) -> Option<Prism> {
+    fn shaft(&self, t: u32, erode: f64) -> Option<FacetShaft> {
         let corners = self.surface.corners(t as usize)?.map(Vec3::as_dvec3);
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize_or_zero() * self.sign;
@@ -163,12 +163,12 @@ impl Solid<'_> {
             return None;
         }
         // The direction of a narrower one is not known.
-        Prism::new(corners, -normal, erode).filter(|p| p.height > 8.0 * self.grain)
+        FacetShaft::new(corners, -normal, erode).filter(|p| p.height > 8.0 * self.grain)
     }
 
-    /// The cosine of the angle between facet `t`, turned round, and the prism's facet.
-    fn facing(&self, prism: &Prism, t: u32) -> f64 {
-        self.surface.face_normals[t as usize].as_dvec3().dot(prism.into) * self.sign
+    /// The cosine of the angle between facet `t`, turned round, and the shaft's facet.
+    fn facing(&self, shaft: &FacetShaft, t: u32) -> f64 {
+        self.surface.face_normals[t as usize].as_dvec3().dot(shaft.into) * self.sign
     }
 
     /// The least wall over all facets, or nothing where no place has a wall. `order` are the
@@ -225,12 +225,12 @@ impl Solid<'_> {
             .map(|chunk| {
                 job.check()?;
                 let walls = chunk.iter().filter_map(|&t| {
-                    let prism = self.prism(t, 0.0)?;
+                    let shaft = self.shaft(t, 0.0)?;
                     let corners = self.surface.corners(t as usize)?.map(Vec3::as_dvec3);
                     let foot = corners.iter().sum::<DVec3>() / 3.0;
-                    let (u, depth) = self.first_hit(&prism, t, foot)?;
-                    let wall = depth > ROUNDINGS * self.grain && self.facing(&prism, u) >= OPPOSED;
-                    let (hit, away) = (foot + prism.into * depth, -prism.into);
+                    let (u, depth) = self.first_hit(&shaft, t, foot)?;
+                    let wall = depth > ROUNDINGS * self.grain && self.facing(&shaft, u) >= OPPOSED;
+                    let (hit, away) = (foot + shaft.into * depth, -shaft.into);
                     wall.then_some(FoundWall { depth, foot, hit, away })
                 });
                 Ok(walls.min_by(|a, b| a.depth.total_cmp(&b.depth)))
@@ -242,25 +242,25 @@ impl Solid<'_> {
     }
 
     /// The first facet that faces `t` under `foot`, a point of `t`, and its depth.
-    fn first_hit(&self, prism: &Prism, t: u32, foot: DVec3) -> Option<(u32, f64)> {
-        let ray = Ray::new(foot.as_vec3(), prism.into.as_vec3());
-        let faces = |u: u32| u != t && self.facing(prism, u) > grazing(self.tilts, t, u);
+    fn first_hit(&self, shaft: &FacetShaft, t: u32, foot: DVec3) -> Option<(u32, f64)> {
+        let ray = Ray::new(foot.as_vec3(), shaft.into.as_vec3());
+        let faces = |u: u32| u != t && self.facing(shaft, u) > grazing(self.tilts, t, u);
         self.tree.closest_hit(ray, faces).map(|h| (h.triangle, f64::from(h.t)))
     }
 
     /// Looks under facet `t`.
     fn facet(&self, t: u32, search: &mut Search) {
-        let Some(prism) = self.prism(t, 2.0 * self.grain) else { return };
+        let Some(shaft) = self.shaft(t, 2.0 * self.grain) else { return };
         let (tolerance, least) = (self.step(), ROUNDINGS * self.grain);
         let depth = search.best - tolerance;
         let from = if self.opposed_only { OPPOSED } else { 0.0 };
-        prism.each_below(self.tree, depth, |u, corners| {
-            let facing = self.facing(&prism, u);
+        shaft.each_below(self.tree, depth, |u, corners| {
+            let facing = self.facing(&shaft, u);
             if u != t && facing > grazing(self.tilts, t, u).max(from) {
-                let patch = prism.clip(corners.map(Vec3::as_dvec3), least);
+                let patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
                 let low = patch.lowest().map_or(f64::INFINITY, |c| c.z);
                 if low < search.best - tolerance && !patch.narrow(2.0 * self.grain) {
-                    self.settle(&prism, t, facing, patch, search);
+                    self.settle(&shaft, t, facing, patch, search);
                 }
             }
             search.best - tolerance
@@ -269,7 +269,7 @@ impl Solid<'_> {
 
     /// Finds the least wall of a patch that is below what is known. Cuts it until the lowest place
     /// of a part is a wall, or the part is an edge's or hidden behind one.
-    fn settle(&self, prism: &Prism, t: u32, facing: f64, patch: Patch, search: &mut Search) {
+    fn settle(&self, shaft: &FacetShaft, t: u32, facing: f64, patch: Patch, search: &mut Search) {
         let tolerance = self.step();
         let turned = facing < OPPOSED;
         let mut parts = vec![patch];
@@ -287,7 +287,7 @@ impl Solid<'_> {
                 continue;
             }
             if turned {
-                match self.belongs_to_edge(prism, &part, low) {
+                match self.belongs_to_edge(shaft, &part, low) {
                     Some(true) => continue,
                     Some(false) => {}
                     None => {
@@ -296,37 +296,37 @@ impl Solid<'_> {
                     }
                 }
             }
-            if self.hidden_by_edge(prism, t, &part, low) {
+            if self.hidden_by_edge(shaft, t, &part, low) {
                 parts.extend(part.halves().0);
                 continue;
             }
-            // The sides of prisms were moved inwards, and narrow patches left out.
+            // The sides of shafts were moved inwards, and narrow patches left out.
             let slope = (1.0 / (facing * facing) - 1.0).max(0.0).sqrt().min(STEEPEST);
             search.low = search.low.min(low.z - ROUNDINGS * self.grain * slope);
             search.best = low.z;
             search.found = Some(FoundWall {
                 depth: low.z,
-                foot: prism.foot(low),
-                hit: prism.place(low),
-                away: -prism.into,
+                foot: shaft.foot(low),
+                hit: shaft.place(low),
+                away: -shaft.into,
             });
         }
     }
 
     /// Whether a part of a turned patch is an edge's: all of it, or its lowest place not; `None`
     /// where that differs within it.
-    fn belongs_to_edge(&self, prism: &Prism, part: &Patch, low: DVec3) -> Option<bool> {
-        let own = self.edges.nearest(prism.foot(low), REACH * low.z + 4.0 * self.grain);
+    fn belongs_to_edge(&self, shaft: &FacetShaft, part: &Patch, low: DVec3) -> Option<bool> {
+        let own = self.edges.nearest(shaft.foot(low), REACH * low.z + 4.0 * self.grain);
         if own.is_none() {
             return Some(false);
         }
-        let middle = prism.foot(part.middle());
-        let size = part.corners().iter().map(|c| prism.foot(*c).distance(middle));
+        let middle = shaft.foot(part.middle());
+        let size = part.corners().iter().map(|c| shaft.foot(*c).distance(middle));
         let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
         let (segment, _) = self.edges.nearest(middle, reach)?;
         // The distance from a segment is convex and the depth linear: corners decide.
         let near = |c: &DVec3| {
-            let d = distance_squared(prism.foot(*c), segment).sqrt();
+            let d = distance_squared(shaft.foot(*c), segment).sqrt();
             d <= REACH * c.z + 8.0 * self.grain
         };
         part.corners().iter().all(near).then_some(true)
@@ -334,14 +334,14 @@ impl Solid<'_> {
 
     /// The first thing under the lowest place of a part is an edge's: what comes behind does not
     /// count.
-    fn hidden_by_edge(&self, prism: &Prism, t: u32, part: &Patch, low: DVec3) -> bool {
+    fn hidden_by_edge(&self, shaft: &FacetShaft, t: u32, part: &Patch, low: DVec3) -> bool {
         if self.edges.is_empty() {
             return false;
         }
         let inside = low.lerp(part.middle(), 1e-3);
-        let Some((u, depth)) = self.first_hit(prism, t, prism.foot(inside)) else { return false };
+        let Some((u, depth)) = self.first_hit(shaft, t, shaft.foot(inside)) else { return false };
         let nearer = depth < inside.z - 16.0 * self.grain;
-        nearer && self.facing(prism, u) < OPPOSED && self.edge_at(prism, inside, depth)
+        nearer && self.facing(shaft, u) < OPPOSED && self.edge_at(shaft, inside, depth)
     }
 
     /// Whether a value to a turned side is an edge's, measured at `place`.
@@ -351,13 +351,13 @@ impl Solid<'_> {
     }
 
     /// Whether a value of `depth`, to a turned side, is an edge's at this place.
-    fn edge_at(&self, prism: &Prism, place: DVec3, depth: f64) -> bool {
-        self.edges.nearest(prism.foot(place), REACH * depth + 8.0 * self.grain).is_some()
+    fn edge_at(&self, shaft: &FacetShaft, place: DVec3, depth: f64) -> bool {
+        self.edges.nearest(shaft.foot(place), REACH * depth + 8.0 * self.grain).is_some()
     }
 
     /// The facets with walls below `limit`, rising.
     pub fn thin(&self, order: &[u32], limit: f64, job: &Job) -> Result<Vec<ThinFacet>, Cancelled> {
-        let area = |&t: &u32| self.prism(t, 0.0).map_or(0.0, |p| p.area);
+        let area = |&t: &u32| self.shaft(t, 0.0).map_or(0.0, |p| p.area);
         let all: f64 = order.iter().map(area).sum();
         let found: Vec<Vec<ThinFacet>> = order
             .par_chunks(CHUNK)
@@ -377,21 +377,21 @@ impl Solid<'_> {
             Search { best: below, found: None, open: f64::INFINITY, low: f64::INFINITY };
         self.facet(t, &mut search);
         let least = search.found?;
-        let prism = self.prism(t, 0.0)?;
-        let (area, error) = self.area_below(&prism, t, limit, all);
+        let shaft = self.shaft(t, 0.0)?;
+        let (area, error) = self.area_below(&shaft, t, limit, all);
         let corners = self.surface.triangles[t as usize];
         let (normal, position) = (least.away, least.foot);
         let least = least.depth;
         Some(ThinFacet { triangle: t, least, position, normal, corners, area, error })
     }
 
-    /// The area of the prism's triangle with walls below `limit`, and its error.
-    fn area_below(&self, prism: &Prism, t: u32, limit: f64, all: f64) -> (f64, f64) {
+    /// The area of the shaft's triangle with walls below `limit`, and its error.
+    fn area_below(&self, shaft: &FacetShaft, t: u32, limit: f64, all: f64) -> (f64, f64) {
         /// The share of the whole surface that is not cut any more.
         const SMALL: f64 = 1e-5;
         let least = ROUNDINGS * self.grain;
         let mut met: Vec<(u32, [Vec3; 3])> = Vec::new();
-        prism.each_below(self.tree, limit, |u, corners| {
+        shaft.each_below(self.tree, limit, |u, corners| {
             if u != t {
                 met.push((u, corners));
             }
@@ -401,15 +401,15 @@ impl Solid<'_> {
         met.dedup_by_key(|m| m.0);
         let (mut area, mut error, mut again) = (0.0, 0.0, 0.0);
         for (u, corners) in met {
-            let facing = self.facing(prism, u);
-            let mut patch = prism.clip(corners.map(Vec3::as_dvec3), least);
+            let facing = self.facing(shaft, u);
+            let mut patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
             patch.cut(|c| limit - c.z);
             if patch.narrow(2.0 * self.grain) {
                 continue;
             }
             let side = grazing(self.tilts, t, u);
             if facing > side {
-                let (own, doubt) = self.area_of_walls(prism, facing, patch);
+                let (own, doubt) = self.area_of_walls(shaft, facing, patch);
                 area += own;
                 error += doubt;
             } else if facing < -side {
@@ -418,35 +418,37 @@ impl Solid<'_> {
             }
         }
         if again <= 0.0 || area <= 0.0 {
-            return (area.min(prism.area), error);
+            return (area.min(shaft.area), error);
         }
-        if prism.area <= SMALL * all {
-            return self.area_by_rays(prism, t, limit);
+        if shaft.area <= SMALL * all {
+            return self.area_by_rays(shaft, t, limit);
         }
-        prism.four().iter().fold((0.0, 0.0), |(area, error), &corners| {
-            let Some(part) = Prism::new(corners, prism.into, 0.0) else { return (area, error) };
+        shaft.four().iter().fold((0.0, 0.0), |(area, error), &corners| {
+            let Some(part) = FacetShaft::new(corners, shaft.into, 0.0) else {
+                return (area, error);
+            };
             let (own, doubt) = self.area_below(&part, t, limit, all);
             (area + own, error + doubt)
         })
     }
 
     /// The same by four rays, for a small triangle.
-    fn area_by_rays(&self, prism: &Prism, t: u32, limit: f64) -> (f64, f64) {
-        let parts = prism.four();
+    fn area_by_rays(&self, shaft: &FacetShaft, t: u32, limit: f64) -> (f64, f64) {
+        let parts = shaft.four();
         let hits = parts.iter().filter(|c| {
             let foot = c.iter().sum::<DVec3>() / 3.0;
-            self.first_hit(prism, t, foot).is_some_and(|(u, depth)| {
-                let turned = self.facing(prism, u) < OPPOSED;
+            self.first_hit(shaft, t, foot).is_some_and(|(u, depth)| {
+                let turned = self.facing(shaft, u) < OPPOSED;
                 let reach = REACH * depth + 8.0 * self.grain;
                 depth < limit && !(turned && self.edges.nearest(foot, reach).is_some())
             })
         });
         let share = hits.count() as f64 / 4.0;
-        (prism.area * share, if share > 0.0 && share < 1.0 { prism.area * 0.25 } else { 0.0 })
+        (shaft.area * share, if share > 0.0 && share < 1.0 { shaft.area * 0.25 } else { 0.0 })
     }
 
     /// The area of a patch without what is an edge's, and its error.
-    fn area_of_walls(&self, prism: &Prism, facing: f64, patch: Patch) -> (f64, f64) {
+    fn area_of_walls(&self, shaft: &FacetShaft, facing: f64, patch: Patch) -> (f64, f64) {
         if facing >= OPPOSED || self.edges.is_empty() {
             return (patch.area(), 0.0);
         }
@@ -455,20 +457,20 @@ impl Solid<'_> {
         let mut parts = vec![patch];
         while let Some(part) = parts.pop() {
             let middle = part.middle();
-            let foot = prism.foot(middle);
-            let size = part.corners().iter().map(|c| prism.foot(*c).distance(foot));
+            let foot = shaft.foot(middle);
+            let size = part.corners().iter().map(|c| shaft.foot(*c).distance(foot));
             let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
             let Some((segment, _)) = self.edges.nearest(foot, reach) else {
                 area += part.area();
                 continue;
             };
-            let far = |c: &DVec3| distance_squared(prism.foot(*c), segment).sqrt() - REACH * c.z;
+            let far = |c: &DVec3| distance_squared(shaft.foot(*c), segment).sqrt() - REACH * c.z;
             if part.corners().iter().all(|c| far(c) <= 8.0 * self.grain) {
                 continue;
             }
             if part.area() <= small {
                 let own = part.area();
-                area += if self.edge_at(prism, middle, middle.z) { 0.0 } else { own };
+                area += if self.edge_at(shaft, middle, middle.z) { 0.0 } else { own };
                 error += own * 0.5;
                 continue;
             }

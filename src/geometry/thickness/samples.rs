@@ -1,9 +1,9 @@
 //! Places spread evenly over the area, for statistics that do not depend on how a part is meshed.
 //!
 //! Every place stands for the same area: the surface's triangles lie end to end on a line as long
-//! as the area, and a place is taken at equal steps along it (systematic sampling). Where it lies in
-//! its triangle follows a sequence of low discrepancy (Roberts, "The unreasonable effectiveness of
-//! quasirandom sequences", 2018).
+//! as the area, and a place is taken at equal steps along it (systematic sampling). Where it lies
+//! in its triangle follows a sequence of low discrepancy (Roberts, "The unreasonable effectiveness
+//! of quasirandom sequences", 2018).
 
 use glam::Vec3;
 

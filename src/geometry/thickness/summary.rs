@@ -20,7 +20,7 @@ pub struct ThicknessSummary {
     pub mean: Option<f32>,
     /// Half of the area is thinner.
     pub median: Option<f32>,
-    /// The middle of the class of the histogram with the largest area: the usual wall.
+    /// The mean of the class of the histogram with the largest area: the usual wall.
     pub most_frequent: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
@@ -122,13 +122,9 @@ impl Thickness {
         let top = max.map(|max| most.map_or(max, |most| (most * 1.05).min(max)));
         let mut histogram = vec![0.0f64; CLASSES];
         for s in &self.samples {
-            let share = s.value / top.filter(|&m| m > 0.0).unwrap_or(1.0);
-            let class = if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 };
-            histogram[class] += self.sample_area;
+            histogram[class_of(s.value, top)] += self.sample_area;
         }
-        let classes = histogram[1..].iter().enumerate();
-        let fullest = classes.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(&a.0)));
-        let most_frequent = top.zip(fullest).map(|(top, (i, _))| top * (i as f32 + 0.5) / 100.0);
+        let most_frequent = top.and_then(|top| self.usual(top, &histogram));
         // Where every place belongs to an edge, the map's least value still tells of the size.
         let least = match self.least {
             Some(l) => Some((l.value as f32, l.place().as_vec3())),
@@ -149,6 +145,15 @@ impl Thickness {
             edge_vertices,
             error_bound: self.error_bound(),
         }
+    }
+
+    /// The mean of the class of the histogram with the largest area.
+    fn usual(&self, top: f32, histogram: &[f64]) -> Option<f32> {
+        let classes = histogram.iter().enumerate().skip(1);
+        let (fullest, _) = classes.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(&a.0)))?;
+        let own = self.samples.iter().filter(|s| class_of(s.value, Some(top)) == fullest);
+        let (sum, n) = own.fold((0.0, 0.0), |(s, n), v| (s + f64::from(v.value), n + 1.0));
+        (n > 0.0).then_some((sum / n) as f32)
     }
 
     fn by_area(&self) -> AreaStatistics {
@@ -281,6 +286,12 @@ impl Thickness {
 
 pub(super) fn triangle_area([a, b, c]: [Vec3; 3]) -> f64 {
     (b - a).as_dvec3().cross((c - a).as_dvec3()).length() * 0.5
+}
+
+/// The class of the histogram that a value belongs to.
+fn class_of(value: f32, top: Option<f32>) -> usize {
+    let share = value / top.filter(|&m| m > 0.0).unwrap_or(1.0);
+    if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 }
 }
 
 #[cfg(test)]

@@ -69,7 +69,7 @@ pub struct How {
     pub rays: Option<usize>,
     /// The definition of thickness [default: ray].
     #[arg(long, value_enum)]
-    pub method: Option<MethodArg>,
+    pub method: Option<DefinitionArg>,
     /// The cone's full angle, degrees, 0 to 120.
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
     pub opening: f32,
@@ -135,7 +135,7 @@ macro_rules! choice {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum MethodArg {
+pub enum DefinitionArg {
     /// Length of one ray along the normal. The least wall is proven.
     Ray,
     /// Mean of a cone of rays (shape diameter function): smooths what is narrower than the cone.
@@ -200,8 +200,8 @@ impl How {
     pub fn settings(&self) -> ThicknessSettings {
         let many = self.rays.is_some_and(|r| r > 1);
         let method = match self.method {
-            Some(MethodArg::Sphere) => ThicknessMethod::Sphere,
-            Some(MethodArg::Cone) => ThicknessMethod::Cone,
+            Some(DefinitionArg::Sphere) => ThicknessMethod::Sphere,
+            Some(DefinitionArg::Cone) => ThicknessMethod::Cone,
             // Older scripts ask for a cone by its number of rays.
             _ if many => ThicknessMethod::Cone,
             _ => ThicknessMethod::Ray,

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use glam::DVec3;
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
@@ -164,11 +164,8 @@ impl Thickness {
         if settings.method != ThicknessMethod::Ray {
             return Ok(self.measured.clone());
         }
-        let query = WallQuery {
-            limit: Some(f64::from(limit)),
-            thinnest: false,
-            grain: self.part.grain,
-        };
+        let query =
+            WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
         let part = self.part.clone();
         py.detach(|| {
             thickness::measure_at_places(&part.mesh, None, &settings, query, &Job::default())
@@ -182,9 +179,9 @@ impl Thickness {
 ///
 /// `method`: 'ray' (one ray along the normal; the least wall is proven), 'cone' (the mean of `rays`
 /// rays within `opening` degrees, corrected by the chord) or 'sphere' (the largest ball between the
-/// place and the side opposite). `faces=True` measures the middle of each triangle, too. `side`: 'wall', or 'gap' for
-/// the clearance in front of the surface. `edges`: what a vertex on a sharp edge says:
-/// 'extrapolate', 'raw', 'sphere' or 'neutral'.
+/// place and the side opposite). `faces=True` measures the middle of each triangle, too. `side`:
+/// 'wall', or 'gap' for the clearance in front of the surface. `edges`: what a vertex on a sharp
+/// edge says: 'extrapolate', 'raw', 'sphere' or 'neutral'.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, method="ray", rays=25, opening=60.0, side="wall",
                     edges="extrapolate", faces=false, progress=None))]

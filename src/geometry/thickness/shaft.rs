@@ -1,8 +1,9 @@
-//! The prism under a facet: everything that rays along the facet's normal can meet.
+//! The shaft under a facet: everything that rays along the facet's normal can meet (Haines and
+//! Wallace, "Shaft culling for efficient ray-traced radiosity", 1991).
 //!
 //! A ray along the normal of a flat facet meets a flat facet at a depth that is linear in where it
 //! starts. So the least depth over a facet is at a corner of the part of the other facet that lies
-//! in the prism, and the part is found by clipping (Sutherland and Hodgman 1974). No sampling is
+//! in the shaft, and the part is found by clipping (Sutherland and Hodgman 1974). No sampling is
 //! involved.
 
 use glam::{DVec2, DVec3, Vec3};
@@ -13,7 +14,7 @@ use crate::simd::wide::{self, Wide, WideWork};
 /// Corners that a triangle can have after five cuts, and four more for halving.
 const CORNERS: usize = 16;
 
-/// A convex polygon over a facet: each corner is (x, y, depth) in the prism's frame.
+/// A convex polygon over a facet: each corner is (x, y, depth) in the shaft's frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch {
     corners: [DVec3; CORNERS],
@@ -102,9 +103,9 @@ impl Patch {
     }
 }
 
-/// The prism under one triangle of a facet.
+/// The shaft under one triangle of a facet.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Prism {
+pub(super) struct FacetShaft {
     origin: DVec3,
     x: DVec3,
     y: DVec3,
@@ -112,17 +113,17 @@ pub(super) struct Prism {
     pub into: DVec3,
     /// The corners in the plane, counter-clockwise.
     flat: [DVec2; 3],
-    /// Of each side the normal into the prism and where it begins.
+    /// Of each side the normal into the shaft and where it begins.
     sides: [(DVec2, f64); 3],
     /// The least height of the triangle.
     pub height: f64,
     pub area: f64,
 }
 
-impl Prism {
+impl FacetShaft {
     /// Under the triangle `corners`; `into` is the direction to measure in. The sides are moved
     /// inwards by `erode`. `None` where the triangle is narrower than four times that.
-    pub fn new([a, b, c]: [DVec3; 3], into: DVec3, erode: f64) -> Option<Prism> {
+    pub fn new([a, b, c]: [DVec3; 3], into: DVec3, erode: f64) -> Option<FacetShaft> {
         let x = (b - a).normalize_or_zero();
         let y = into.cross(x);
         let flat = [a, b, c].map(|p| DVec2::new((p - a).dot(x), (p - a).dot(y)));
@@ -136,7 +137,7 @@ impl Prism {
             (inward, inward.dot(flat[k]) + erode)
         });
         let height = twice.abs() / longest;
-        (height > 4.0 * erode && height.is_finite()).then_some(Prism {
+        (height > 4.0 * erode && height.is_finite()).then_some(FacetShaft {
             origin: a,
             x,
             y,
@@ -148,17 +149,17 @@ impl Prism {
         })
     }
 
-    /// A place of the prism's frame in space.
+    /// A place of the shaft's frame in space.
     pub fn place(&self, p: DVec3) -> DVec3 {
         self.origin + self.x * p.x + self.y * p.y + self.into * p.z
     }
 
-    /// The foot of a place of the prism's frame on the facet.
+    /// The foot of a place of the shaft's frame on the facet.
     pub fn foot(&self, p: DVec3) -> DVec3 {
         self.origin + self.x * p.x + self.y * p.y
     }
 
-    /// The part of a triangle in the prism, from depth `least` on.
+    /// The part of a triangle in the shaft, from depth `least` on.
     pub fn clip(&self, corners: [DVec3; 3], least: f64) -> Patch {
         let mut patch = Patch::new(corners.map(|p| {
             let p = p - self.origin;
@@ -178,10 +179,10 @@ impl Prism {
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     }
 
-    /// Calls `visit` with each triangle of the tree that may reach into the prism above `depth`,
+    /// Calls `visit` with each triangle of the tree that may reach into the shaft above `depth`,
     /// and its corners; it returns the depth from then on. A triangle may come more than once.
     pub fn each_below(&self, tree: &Bvh8, depth: f64, visit: impl FnMut(u32, [Vec3; 3]) -> f64) {
-        let walk = PrismWalk { tree, prism: self, depth, visit };
+        let walk = ShaftWalk { tree, shaft: self, depth, visit };
         wide::dispatch(tree.scalar(), walk);
     }
 }
@@ -205,19 +206,19 @@ impl HalfSpace {
     }
 }
 
-struct PrismWalk<'a, V> {
+struct ShaftWalk<'a, V> {
     tree: &'a Bvh8,
-    prism: &'a Prism,
+    shaft: &'a FacetShaft,
     depth: f64,
     visit: V,
 }
 
-impl<V: FnMut(u32, [Vec3; 3]) -> f64> WideWork for PrismWalk<'_, V> {
+impl<V: FnMut(u32, [Vec3; 3]) -> f64> WideWork for ShaftWalk<'_, V> {
     type Output = ();
 
     #[inline(always)]
     fn run<W: Wide>(mut self, _: W) {
-        let (tree, p) = (self.tree, self.prism);
+        let (tree, p) = (self.tree, self.shaft);
         if tree.nodes().is_empty() {
             return;
         }
@@ -233,7 +234,7 @@ impl<V: FnMut(u32, [Vec3; 3]) -> f64> WideWork for PrismWalk<'_, V> {
         let bottom = |depth: f64| HalfSpace::new(-p.into, -(under + depth.min(4.0 * reach)), slack);
         let [s0, s1, s2] = p.sides.map(side);
         let mut planes = [bottom(self.depth), top, s0, s1, s2];
-        // The box around the prism rejects what passes all planes beside a corner.
+        // The box around the shaft rejects what passes all planes beside a corner.
         let around = |depth: f64| {
             let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
             for f in p.flat {
