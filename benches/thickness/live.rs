@@ -84,7 +84,7 @@ fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<
     let (right, rights) = cc::unbounded();
     let stop = Arc::new(AtomicBool::new(false));
     let thread = if beside {
-        let mut map = LiveMap::new(&mesh.snapshot(), 1, &job).ok()?;
+        let mut map = LiveMap::new(&mesh.snapshot(), &job).ok()?;
         map.work(Vec3::ZERO, usize::MAX, &job).ok()?;
         let (stop, drain) = (stop.clone(), newest.clone());
         Some(std::thread::spawn(move || follow(map, &drain, &right, &stop)))

@@ -127,8 +127,8 @@ fn main() {
     if args.get(2).is_none() {
         for (rays, method) in [
             (1, ThicknessMethod::Ray),
-            (10, ThicknessMethod::Ray),
-            (100, ThicknessMethod::Ray),
+            (10, ThicknessMethod::Cone),
+            (100, ThicknessMethod::Cone),
             (1, ThicknessMethod::Sphere),
         ] {
             let settings =

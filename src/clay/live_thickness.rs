@@ -1,8 +1,8 @@
-//! Thickness of clay that is being sculpted: after each change only what could have changed is
-//! measured again.
+//! Thickness of clay that is being sculpted, by the definition *ray*: after each change only what
+//! could have changed is measured again.
 //!
-//! The bound: a vertex's value depends on nothing outside the box around the vertex and its rays'
-//! hits. Its own normal comes from triangles that touch it; a triangle that is hit, passed through
+//! The bound: a vertex's value depends on nothing outside the box around the vertex and its ray's
+//! hit. Its own normal comes from triangles that touch it; a triangle that is hit, passed through
 //! or newly in the way meets that box, before the change or after it. So the vertices whose box
 //! meets a box of changed triangles, as they were or as they are, are measured again, and no others
 //! can differ: the map equals a full recomputation bit for bit once nothing is stale. A ray that
@@ -17,11 +17,9 @@ use crate::{Ranks, Snapshot};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::{Bvh8, Parents};
 use sculptd_geometry::job::{Cancelled, Job};
-use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights, fold, frame};
+use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights};
 use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
 
-/// Full angle of the cone, degrees.
-const OPENING: f32 = 60.0;
 /// Boxes grow by this share of the largest coordinate, more than a hit's rounding.
 const MARGIN: f32 = 1e-5;
 
@@ -38,7 +36,7 @@ pub struct LiveMap {
     around: Vec<u32>,
     face_normals: Vec<Vec3>,
     normals: Vec<Vec3>,
-    cone: Cone,
+    axis: Cone,
     values: Vec<f32>,
     /// Around each vertex and its hits.
     reach: Vec<(Vec3, Vec3)>,
@@ -52,9 +50,8 @@ pub struct LiveMap {
 pub struct Rebuild;
 
 impl LiveMap {
-    /// Prepares the map of a snapshot; every vertex is stale. `rays` from 1 to 1000, corrected by
-    /// the hit angle.
-    pub fn new(snapshot: &Snapshot, rays: usize, job: &Job) -> Result<LiveMap, Cancelled> {
+    /// Prepares the map of a snapshot; every vertex is stale.
+    pub fn new(snapshot: &Snapshot, job: &Job) -> Result<LiveMap, Cancelled> {
         let mesh = snapshot.to_tri();
         let tree = Bvh8::build(&mesh, job)?;
         let (n, triangles) = (mesh.positions.len(), mesh.triangles.len());
@@ -82,7 +79,7 @@ impl LiveMap {
             around,
             face_normals: (0..triangles).into_par_iter().map(|t| face_normal(&mesh, t)).collect(),
             normals: Vec::new(),
-            cone: Cone::new(rays.clamp(1, 1000), OPENING.to_radians(), Weights::Plain),
+            axis: Cone::new(1, 0.0, Weights::Plain),
             values: vec![f32::NAN; n],
             reach: vec![(Vec3::INFINITY, Vec3::NEG_INFINITY); n],
             stale: (0..n as u32).collect(),
@@ -199,9 +196,10 @@ impl LiveMap {
             face_normals: &self.face_normals,
             corner_normals: &[],
             sign: 1.0,
-            cone: &self.cone,
-            outliers: Outliers::SigmaMedian,
-            correction: Correction::Angle,
+            cone: &self.axis,
+            outliers: Outliers::Keep,
+            correction: Correction::None,
+            acute: None,
         };
         let found: Vec<(f32, (Vec3, Vec3))> = now
             .par_chunks(256)
@@ -241,11 +239,6 @@ impl LiveMap {
         self.snapshot.revision()
     }
 
-    /// Rays that are cast for each vertex.
-    pub fn rays(&self) -> usize {
-        self.cone.dirs.len()
-    }
-
     fn measure(&self, caster: &Caster<'_>, v: usize) -> (f32, (Vec3, Vec3)) {
         let point = self.mesh.positions[v];
         let away = self.normals[v];
@@ -253,24 +246,14 @@ impl LiveMap {
             return (f32::NAN, (point, point));
         }
         let own = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
-        let site = Site { point, away, own, clear: f32::INFINITY };
-        let (x, y) = frame(away);
-        let (mut lo, mut hi) = (point, point);
-        let mut found = Vec::with_capacity(self.cone.dirs.len());
-        for d in &self.cone.dirs {
-            let dir = x * d.x + y * d.y - away * d.z;
-            match caster.hit(&site, dir) {
-                Some(hit) => {
-                    let end = point + dir * hit.t;
-                    (lo, hi) = (lo.min(end), hi.max(end));
-                    // One ray is the axis itself: its length is the thickness.
-                    let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
-                    found.push((if self.cone.dirs.len() == 1 { hit.t } else { hit.t * cos }, 1.0));
-                }
-                None => (lo, hi) = (Vec3::NEG_INFINITY, Vec3::INFINITY),
+        let site = Site { point, away, along: Vec3::ZERO, own, clear: f32::INFINITY };
+        match caster.hit(&site, -away) {
+            Some(hit) => {
+                let end = point - away * hit.t;
+                (hit.t, (point.min(end), point.max(end)))
             }
+            None => (f32::NAN, (Vec3::NEG_INFINITY, Vec3::INFINITY)),
         }
-        (fold(&mut found, caster.outliers).map_or(f32::NAN, |f| f.value), (lo, hi))
     }
 
     fn normal(&self, v: usize) -> Vec3 {

@@ -17,8 +17,6 @@ use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::thickness::cone::frame;
 
-/// Rays a vertex by which thickness is measured.
-const THICKNESS_RAYS: usize = 12;
 /// Directions in which a vertex looks for light, spread by the cosine to its normal.
 const DIRECTIONS: usize = 64;
 /// Vertices measured between two looks at the progress.
@@ -29,8 +27,7 @@ const SOFT: f32 = 0.25;
 /// What a mask is made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MaskMeasure {
-    /// Protects what is at most so thick (clay units), after the shape diameter function of
-    /// Shapira, Shamir and Cohen-Or (2008).
+    /// Protects what is at most so thick (clay units), by one ray along each vertex's normal.
     Thin(f32),
     /// Protects where at least this share of the light of an even sky is blocked by the object
     /// itself, 0 to 1: ambient occlusion.
@@ -126,7 +123,7 @@ fn by_page(
 }
 
 fn thin(snapshot: &Snapshot, below: f32, job: &Job) -> Result<Vec<(u32, Vec<u8>)>, Cancelled> {
-    let mut map = LiveMap::new(snapshot, THICKNESS_RAYS, job)?;
+    let mut map = LiveMap::new(snapshot, job)?;
     let all = map.values().len().max(1);
     while map.work(Vec3::ZERO, BLOCK, job)? > 0 {
         job.progress(1.0 - map.stale() as f32 / all as f32);

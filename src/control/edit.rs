@@ -292,15 +292,32 @@ pub struct HashReply {
     pub hash: String,
 }
 
+/// How wall thickness is defined; as `--method` of `sculptd thickness`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ThicknessDefinition {
+    /// One ray along the normal.
+    Ray,
+    /// The mean of a cone of rays.
+    Cone,
+    /// The largest ball between the place and the side opposite.
+    Sphere,
+}
+
 /// Parameters of `thickness`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct ThicknessParams {
-    /// Rays for each vertex.
+    /// The definition; `null`: a ray, or a cone where more than one ray is asked for.
+    pub method: Option<ThicknessDefinition>,
+    /// Rays of a cone.
     #[cfg_attr(feature = "schema", schemars(range(min = 1, max = 1000)))]
     pub rays: u32,
-    /// What is near this point is measured first; [`crate::range::COORDINATE`].
+    /// Walls below this are too thin, in the mesh's unit; `null`: no limit.
+    pub limit: Option<f32>,
+    /// Not used any more; [`crate::range::COORDINATE`].
     #[cfg_attr(
         feature = "schema",
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
@@ -310,26 +327,41 @@ pub struct ThicknessParams {
 
 impl Default for ThicknessParams {
     fn default() -> Self {
-        ThicknessParams { rays: 1, near: [0.0; 3] }
+        ThicknessParams { method: None, rays: 1, limit: None, near: [0.0; 3] }
     }
 }
 
-/// Reply of `thickness`. Lengths are in the mesh's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Reply of `thickness`: what `sculptd thickness` says of the same mesh. Lengths are in the mesh's
+/// unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThicknessReply {
     /// The revision of the mesh that was measured.
     pub revision: u64,
+    /// The definition.
+    pub method: ThicknessDefinition,
     /// Vertices of the mesh.
     pub vertices: u64,
-    /// Vertices that were measured this time: those whose thickness may have changed.
+    /// Vertices that were measured this time: none where nothing changed since the last call.
     pub measured: u64,
     /// Vertices with a thickness; the others see no opposite wall.
     pub valid: u64,
-    /// The thinnest; `null` where none is valid.
+    /// The least wall; `null` where no place has one.
     pub min: Option<f32>,
     /// The thickest.
     pub max: Option<f32>,
-    /// The mean over vertices.
+    /// The mean over the area.
     pub mean: f64,
+    /// Half of the area is thinner.
+    pub median: Option<f32>,
+    /// No wall is thinner; `null` where no place has one.
+    pub lower: Option<f64>,
+    /// Some wall is no thicker.
+    pub upper: Option<f64>,
+    /// The two bounds are proven over the whole surface.
+    pub certified: bool,
+    /// What the bounds say, in one sentence.
+    pub statement: String,
+    /// The share of the area below the limit, in per cent; `null` without a limit.
+    pub below_percent: Option<f64>,
 }

@@ -222,7 +222,7 @@ methods! {
     "export" Export export(ExportParams) -> ExportReply;
     /// One number over all objects.
     "hash" Hash hash(NoParams) -> HashReply;
-    /// Wall thickness of the object, measured again only where it may have changed.
+    /// Wall thickness of the object, as `sculptd thickness` measures a file.
     "thickness" Thickness thickness(ThicknessParams) -> ThicknessReply;
     /// Puts a mesh from a file of at most 1 GiB into the hands, to be carried to its place.
     "take-up" TakeUp take_up(PathParams) -> TakeUpReply;

@@ -7,6 +7,7 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::boolean::resolution;
 use crate::{Aabb, PolyMesh, TriMesh};
 
 /// A file's mesh about its own centre, scaled.
@@ -29,6 +30,8 @@ pub struct CentredMesh {
     pub counts: [usize; 2],
     /// Added to the mesh's coordinates, gives the file's, scaled.
     pub centre: DVec3,
+    /// How far a coordinate of the file may be off by its own rounding, scaled.
+    pub grain: f64,
 }
 
 impl CentredMesh {
@@ -45,7 +48,8 @@ impl CentredMesh {
         let (mut mesh, _) = poly.triangulate();
         mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
         let counts = [mesh.positions.len(), mesh.triangles.len()];
-        CentredMesh { mesh, counts, centre: centre * scale }
+        let grain = resolution(poly).error * scale;
+        CentredMesh { mesh, counts, centre: centre * scale, grain }
     }
 
     /// A point of this frame in the file's coordinates, scaled.

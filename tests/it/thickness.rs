@@ -71,8 +71,9 @@ fn errors(shape: &Known, settings: &ThicknessSettings) -> (f32, f32) {
 
 #[test]
 fn the_error_tables() {
-    let one = ThicknessSettings { rays: 1, ..ThicknessSettings::default() };
+    let one = ThicknessSettings::default();
     let cone = |opening, correction| ThicknessSettings {
+        method: ThicknessMethod::Cone,
         rays: 25,
         opening,
         correction,
@@ -123,7 +124,7 @@ fn the_error_tables() {
 #[test]
 fn on_a_closed_mesh_every_value_is_there() {
     for shape in shapes() {
-        for method in [ThicknessMethod::Ray, ThicknessMethod::Sphere] {
+        for method in [ThicknessMethod::Ray, ThicknessMethod::Cone, ThicknessMethod::Sphere] {
             for rays in [1, 25] {
                 let settings = ThicknessSettings {
                     method,

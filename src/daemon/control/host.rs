@@ -14,10 +14,19 @@ use crate::session::Health;
 use crate::session::history::Handle;
 use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
-use sculptd_clay::live_thickness::LiveMap;
 use sculptd_control::RpcError;
+use sculptd_control::edit::{ThicknessParams, ThicknessReply};
 use sculptd_engine::answer::Answer;
 use sculptd_geometry::job::Job;
+
+/// The last answer about wall thickness, and what it was the answer to.
+#[derive(Debug)]
+pub struct KeptThickness {
+    pub(super) params: ThicknessParams,
+    /// Of the object's transform.
+    pub(super) scale: f64,
+    pub(super) reply: ThicknessReply,
+}
 
 /// What a request may touch. Cloning it gives another handle to the same.
 #[derive(Debug, Clone)]
@@ -27,7 +36,7 @@ pub struct Host {
     /// What each brush begins with.
     pub presets: Presets,
     /// The wall thickness of the object, as last asked for.
-    pub thickness: Arc<Mutex<Option<LiveMap>>>,
+    pub thickness: Arc<Mutex<Option<KeptThickness>>>,
     /// The Boolean under way.
     pub joining: Arc<Mutex<Option<Arc<Job>>>>,
     /// How the session file stands; `None`: the run is not recorded.

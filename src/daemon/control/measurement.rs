@@ -1,41 +1,61 @@
 //! The wall thickness of the object, as a client asks for it again and again.
 
-use super::host::{Host, failed, locked};
-use sculptd_clay::live_thickness::LiveMap;
+use super::host::{Host, KeptThickness, failed, locked};
 use sculptd_control::RpcError;
-use sculptd_control::edit::{ThicknessParams, ThicknessReply};
+use sculptd_control::edit::{ThicknessDefinition, ThicknessParams, ThicknessReply};
+use sculptd_geometry::CentredMesh;
 use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
+use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings, overlap};
 
-/// Brings the map that the host keeps up to the state of the mesh. The first call measures all.
+/// Measures the newest mesh as `sculptd thickness` does. The same question about the same mesh is
+/// answered from memory.
 pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<ThicknessReply, RpcError> {
     let state = host.published.load_full();
-    let (mesh, transform, job) = (&state.mesh, state.transform(), Job::default());
-    let rays = params.rays as usize;
+    let (mesh, scale) = (&state.mesh, state.transform().scale);
     let mut kept = locked(&host.thickness);
-    // Taken out while it works, so that a panic leaves none rather than half of one.
-    let current = kept.take().filter(|m| m.rays() == rays);
-    let advanced = current.and_then(|mut m| m.advance(mesh).is_ok().then_some(m));
-    let mut map = match advanced {
-        Some(map) => map,
-        None => LiveMap::new(mesh, rays, &job).map_err(failed)?,
+    let same = |k: &&KeptThickness| {
+        k.params == *params && k.scale == scale && k.reply.revision == mesh.revision()
     };
-    let measured = map.stale() as u64;
-    map.work(transform.inverse().point(params.near.into()), usize::MAX, &job).map_err(failed)?;
-    let values = map.values();
-    // The map is of the clay's own frame; walls are told in the world's unit.
-    let unit = transform.scale as f32;
-    let valid = values.iter().filter(|v| v.is_finite()).map(|v| v * unit);
-    let valid: Vec<f32> = valid.collect();
-    let sum = valid.iter().map(|&v| f64::from(v)).sum::<f64>();
+    if let Some(k) = kept.as_ref().filter(same) {
+        return Ok(ThicknessReply { measured: 0, ..k.reply.clone() });
+    }
+    let (method, definition) = match params.method {
+        Some(ThicknessDefinition::Sphere) => (ThicknessMethod::Sphere, ThicknessDefinition::Sphere),
+        Some(ThicknessDefinition::Ray) => (ThicknessMethod::Ray, ThicknessDefinition::Ray),
+        None if params.rays == 1 => (ThicknessMethod::Ray, ThicknessDefinition::Ray),
+        _ => (ThicknessMethod::Cone, ThicknessDefinition::Cone),
+    };
+    let rays = params.rays as usize;
+    let settings = ThicknessSettings { method, rays, ..ThicknessSettings::default() };
+    let limits =
+        ThicknessLimits { fail_below: params.limit.filter(|l| *l > 0.0), ..Default::default() };
+    let whole = mesh.to_tri().to_poly();
+    let united = overlap::united(&whole, &Job::default()).map_err(failed)?;
+    let mut part = CentredMesh::new(united.as_ref().unwrap_or(&whole), scale);
+    let vertices = part.mesh.positions.len() as u64;
+    let walls = add_places(&mut part.mesh, None, settings.crease);
+    let found = check("", &part, walls.as_ref(), &settings, limits, &Job::default(), || 0.0);
+    let found = found.map_err(failed)?;
+    let (answer, values) = (found.answer, &found.thickness.values);
+    let valid = values.iter().take(vertices as usize).filter(|v| v.is_finite()).count() as u64;
+    let s = &answer.summary;
     let reply = ThicknessReply {
-        revision: map.revision(),
-        vertices: values.len() as u64,
-        measured,
-        valid: valid.len() as u64,
-        min: valid.iter().copied().reduce(f32::min),
-        max: valid.iter().copied().reduce(f32::max),
-        mean: sum / valid.len().max(1) as f64,
+        revision: mesh.revision(),
+        method: definition,
+        vertices,
+        measured: vertices,
+        valid,
+        min: s.min,
+        max: s.max,
+        mean: f64::from(s.mean.unwrap_or(0.0)),
+        median: s.median,
+        lower: answer.least.map(|l| l.lower),
+        upper: answer.least.map(|l| l.upper),
+        certified: answer.least.is_some_and(|l| l.certified),
+        statement: answer.statement,
+        below_percent: answer.below.map(|b| b.area_percent),
     };
-    *kept = Some(map);
+    *kept = Some(KeptThickness { params: *params, scale, reply: reply.clone() });
     Ok(reply)
 }

@@ -1,16 +1,17 @@
 //! A part checked against limits: what the command line prints, the report shows and a batch
 //! collects.
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::preset::Preset;
 use super::refine::{refine, refine_within};
-use super::summary::ThicknessSummary;
+use super::summary::{BeyondArea, ThicknessSummary};
 use super::warnings::warnings;
 use super::worst::ThinRegion;
 use super::{
-    Thickness, ThicknessError, ThicknessMethod, ThicknessSettings, Walls, WeldedSurface,
-    measure_at_places,
+    Comparison, LeastWall, Thickness, ThicknessError, ThicknessMethod, ThicknessSettings,
+    WallQuery, Walls, WeldedSurface, measure_at_places,
 };
 use crate::job::Job;
 use crate::measure::measures;
@@ -98,6 +99,8 @@ pub enum Verdict {
     Warn,
     /// A value fails.
     Fail,
+    /// The limit lies between the bounds of the least wall.
+    Undecided,
 }
 
 /// The share of the area on the wrong side of a limit.
@@ -107,6 +110,8 @@ pub struct AreaBeyond {
     pub limit: f32,
     /// Of the area that has values, 0 to 100.
     pub area_percent: f64,
+    /// How far `area_percent` may be off.
+    pub error_percent: f64,
 }
 
 /// A spot in the file's own coordinates (in millimetres).
@@ -137,6 +142,10 @@ pub struct ThicknessAnswer {
     pub limits: ThicknessLimits,
     /// What they say.
     pub verdict: Verdict,
+    /// The least wall between two bounds; `null` where no place has a wall.
+    pub least: Option<LeastWall>,
+    /// What the bounds say, in one sentence.
+    pub statement: String,
     /// The statistics; their fields stand beside these in JSON.
     #[serde(flatten)]
     pub summary: ThicknessSummary,
@@ -191,38 +200,46 @@ pub fn check(
     seconds: impl Fn() -> f64,
 ) -> Result<CheckedPart, ThicknessError> {
     let began = seconds();
-    let thickness = measure_at_places(&part.mesh, walls, settings, job)?;
+    let asked = limits.fail_below.or(limits.warn_below);
+    let query =
+        WallQuery { limit: asked.map(f64::from), thinnest: asked.is_none(), grain: part.grain };
+    let thickness = measure_at_places(&part.mesh, walls, settings, query, job)?;
     let took = seconds() - began;
     let summary = thickness.summary();
     let sizes = measures(&part.mesh);
-    // Without a limit the thinnest hundredth of the vertices is shown.
-    let limit = limits.fail_below.or(limits.warn_below);
-    let spot_limit = limit.or_else(|| thickness.quantile(0.01).map(f32::next_up));
+    // Without a limit the thinnest hundredth of the area is shown.
+    let limit = asked;
+    let shown = thickness.thin.as_ref().map(|t| t.limit as f32);
+    let spot_limit = limit.or(shown).or_else(|| thickness.quantile(0.01).map(f32::next_up));
     let spots = spot_limit.map_or(Vec::new(), |l| {
         let least = if limit.is_some() { limits.minimum_area } else { 0.0 };
         thickness.worst(l, least, SPOTS)
     });
     let beyond = |limit: f32, above: bool| {
-        let (out, all) = thickness.area_beyond(limit, above);
-        AreaBeyond { limit, area_percent: if all > 0.0 { 100.0 * out / all } else { 0.0 } }
+        let BeyondArea { area, error, all } = thickness.area_beyond(limit, above);
+        let percent = |area: f64| if all > 0.0 { 100.0 * area / all } else { 0.0 };
+        AreaBeyond { limit, area_percent: percent(area), error_percent: percent(error) }
     };
     let uneven = limits.neighbour_ratio.map(|r| {
         let ratios = thickness.neighbour_ratio(1.0);
         ratios.iter().filter(|&&x| x > r).count() as u64
     });
-    let broken = |limit: Option<f32>| {
-        limit.is_some_and(|l| {
-            if limits.minimum_area > 0.0 {
-                !thickness.worst(l, limits.minimum_area, 1).is_empty()
-            } else {
-                summary.min.is_some_and(|m| m < l)
-            }
-        })
+    let compared = |limit: Option<f32>| {
+        let Some(limit) = limit else { return Comparison::Reached };
+        let found = thickness.compare(limit);
+        // Below the limit, but nowhere on as much area as makes a defect.
+        let small =
+            limits.minimum_area > 0.0 && thickness.worst(limit, limits.minimum_area, 1).is_empty();
+        if small { Comparison::Reached } else { found }
     };
-    let too_thick = limits.fail_above.is_some_and(|l| summary.max.is_some_and(|m| m > l));
-    let verdict = if broken(limits.fail_below) || too_thick {
+    let room = 8.0 * thickness.rounding;
+    let too_thick = limits.fail_above.is_some_and(|l| summary.max.is_some_and(|m| m - room > l));
+    let (fails, warns) = (compared(limits.fail_below), compared(limits.warn_below));
+    let verdict = if fails == Comparison::Below || too_thick {
         Verdict::Fail
-    } else if broken(limits.warn_below) || uneven.is_some_and(|n| n > 0) {
+    } else if fails == Comparison::Undecided {
+        Verdict::Undecided
+    } else if warns != Comparison::Reached || uneven.is_some_and(|n| n > 0) {
         Verdict::Warn
     } else if summary.min.is_some()
         && limits.fail_below.or(limits.warn_below).or(limits.fail_above).is_some()
@@ -231,6 +248,12 @@ pub fn check(
     } else {
         Verdict::Unjudged
     };
+    let moved = |p: [f64; 3]| (DVec3::from(p) + part.centre).to_array();
+    let least = thickness.least.map(|l| LeastWall {
+        position: moved(l.position),
+        opposite: moved(l.opposite),
+        ..l
+    });
     let size = sizes.dimensions.iter().copied().fold(0.0f64, f64::max) as f32;
     let place = |s: &ThinRegion| WorstSpot {
         position: part.to_file(s.position.into()).to_array(),
@@ -241,13 +264,15 @@ pub fn check(
     let answer = ThicknessAnswer {
         file: file.into(),
         method: settings.method,
-        rays: if settings.method == ThicknessMethod::Ray { settings.rays } else { 1 },
+        rays: settings.rays_at_a_place(),
         settings: *settings,
         limits,
         verdict,
         below: limit.map(|l| beyond(l, false)),
         above: limits.fail_above.map(|l| beyond(l, true)),
         uneven,
+        statement: statement(least, limits.fail_below.or(limits.warn_below), &thickness),
+        least,
         worst: spots.iter().map(place).collect(),
         vertices: part.counts[0],
         triangles: part.counts[1],
@@ -261,4 +286,29 @@ pub fn check(
         summary,
     };
     Ok(CheckedPart { answer, thickness, spots })
+}
+
+/// What the bounds of the least wall say of a limit.
+fn statement(least: Option<LeastWall>, limit: Option<f32>, thickness: &Thickness) -> String {
+    let Some(l) = least else {
+        return "no place has a wall: each belongs to an edge or meets nothing".into();
+    };
+    let how = if l.certified { "certified" } else { "sampled, not certified" };
+    let [x, y, z] = l.position;
+    let (lower, upper) = (digits(l.lower), digits(l.upper));
+    match limit.map(|limit| (limit, thickness.compare(limit))) {
+        Some((limit, Comparison::Reached)) => {
+            format!("no wall below {} mm ({how})", digits(f64::from(limit)))
+        }
+        Some((_, Comparison::Undecided)) => {
+            format!("undecided between {lower} and {upper} mm: raise the effort")
+        }
+        _ => format!("wall of {lower} to {upper} mm at ({x:.3}, {y:.3}, {z:.3}) ({how})"),
+    }
+}
+
+/// Six digits, at least three of them after the point.
+fn digits(value: f64) -> String {
+    let before = if value > 0.0 { value.log10().floor() as i32 + 1 } else { 1 };
+    format!("{value:.*}", (6 - before).clamp(3, 12) as usize)
 }

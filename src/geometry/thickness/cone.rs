@@ -75,6 +75,16 @@ pub fn frame(n: Vec3) -> (Vec3, Vec3) {
     )
 }
 
+/// The same with the first direction as near to `along` as it can be: so it turns with the part.
+pub fn frame_along(n: Vec3, along: Vec3) -> (Vec3, Vec3) {
+    let flat = along - n * along.dot(n);
+    if !(flat.length_squared() > 1e-8 * along.length_squared()) {
+        return frame(n);
+    }
+    let x = flat.normalize();
+    (x, n.cross(x))
+}
+
 /// What a cone's values come to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Folded {

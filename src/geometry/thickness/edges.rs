@@ -32,7 +32,8 @@ pub(super) fn apply(
             for v in marked {
                 let away = surface.normals[v] * caster.sign;
                 let (point, clear) = (surface.positions[v], own.clear(v));
-                let site = Site { point, away, own: own.at(v), clear };
+                let along = surface.along(v);
+                let site = Site { point, away, along, own: own.at(v), clear };
                 if let Some(ball) = caster.ball(&site) {
                     values[v] = SiteValue {
                         value: ball.diameter,
@@ -143,6 +144,7 @@ fn under_faces(
         let site = Site {
             point,
             away: surface.face_normals[t as usize] * caster.sign,
+            along: b - a,
             own: own.at(v),
             clear: f32::INFINITY,
         };

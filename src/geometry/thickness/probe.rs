@@ -3,8 +3,10 @@
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-use super::cone::{Cone, frame};
+use super::cone::{Cone, frame_along};
+use super::measuring::single;
 use super::ray::{Caster, ConeScratch, Correction, Site};
+use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
 use super::{MeasuredSide, ThicknessError, ThicknessMethod, ThicknessSettings};
 use crate::TriMesh;
@@ -29,6 +31,8 @@ pub struct Probe {
     pub normal: [f32; 3],
     /// Index into the mesh's triangles.
     pub triangle: u32,
+    /// The triangle that the ray along the normal meets.
+    pub opposite: Option<u32>,
     /// In the mesh's unit; `None` where no wall is ahead.
     pub thickness: Option<f32>,
     /// Standard error of the cone's mean; 0 of one ray and of the sphere.
@@ -52,7 +56,7 @@ pub struct Probe {
 /// let found = probe::probe(&slab, &ThicknessSettings::default(), place, &Job::default());
 /// let found = found.expect("not cancelled").expect("a surface");
 /// assert_eq!((found.position, found.normal), ([20.0, 24.0, 3.0], [0.0, 0.0, 1.0]));
-/// assert!((found.thickness.expect("a wall") - 3.0).abs() < 1e-4 && found.rays.len() == 25);
+/// assert!((found.thickness.expect("a wall") - 3.0).abs() < 1e-4 && found.rays.len() == 1);
 /// ```
 pub fn probe(
     mesh: &TriMesh,
@@ -87,26 +91,34 @@ pub fn probe(
         return Ok(None);
     }
     let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
-    let cone = Cone::new(settings.rays, settings.opening.to_radians(), settings.weights);
+    let rays = settings.rays_at_a_place();
+    let cone = Cone::new(rays, settings.opening.to_radians(), settings.weights);
+    let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
+    let tilts = surface.tilts(single(&tree));
+    let acute = AcuteEdges::new(&surface, &tilts, f64::from(sign));
     let caster = Caster {
         tree: &tree,
         face_normals: &surface.face_normals,
         corner_normals: &surface.corner_normals(crease),
-        sign: if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out },
+        sign,
         cone: &cone,
         outliers: settings.outliers,
-        correction: if settings.rays == 1 { Correction::None } else { settings.correction },
+        correction: if rays == 1 { Correction::None } else { settings.correction },
+        acute: Some(&acute),
     };
     let away = normal.normalize() * caster.sign;
-    let site = Site { point: nearest.point.as_vec3(), away, own: &own, clear: f32::INFINITY };
+    let along = surface.along(corners[0] as usize);
+    let point = nearest.point.as_vec3();
+    let site = Site { point, away, along, own: &own, clear: f32::INFINITY };
     let by_rays = match settings.method {
-        ThicknessMethod::Ray => {
-            caster.measure(&site, &mut ConeScratch::default()).map(|(f, _)| (f.value, f.error))
+        ThicknessMethod::Ray | ThicknessMethod::Cone => {
+            let found = caster.measure(&site, &mut ConeScratch::default());
+            found.map(|c| (c.folded.value, c.folded.error))
         }
         ThicknessMethod::Sphere => None,
     };
-    let found = by_rays.or_else(|| caster.ball(&site).map(|b| (b.diameter, 0.0)));
-    let (x, y) = frame(away);
+    let found = by_rays.or_else(|| caster.wall_ball(&site).map(|b| (b.diameter, 0.0)));
+    let (x, y) = frame_along(away, along);
     let ray = |d: &Vec3| {
         let direction = x * d.x + y * d.y - away * d.z;
         let length = caster.hit(&site, direction).map(|h| h.t);
@@ -116,6 +128,7 @@ pub fn probe(
         position: site.point.to_array(),
         normal: away.to_array(),
         triangle: nearest.triangle,
+        opposite: caster.hit(&site, -away).map(|h| h.triangle),
         thickness: found.map(|f| f.0),
         error: found.map_or(0.0, |f| f.1),
         rays: cone.dirs.iter().map(ray).collect(),

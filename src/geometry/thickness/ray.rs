@@ -18,7 +18,8 @@
 
 use glam::Vec3;
 
-use super::cone::{Cone, Folded, Outliers, fold, frame};
+use super::cone::{Cone, Folded, Outliers, fold, frame_along};
+use super::sharp_edges::{AcuteEdges, GRAZING};
 use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
 /// What a ray's length is corrected by.
@@ -40,6 +41,8 @@ pub struct Site<'a> {
     pub point: Vec3,
     /// Away from what is measured, of unit length.
     pub away: Vec3,
+    /// A direction along the surface, which the cone's directions follow; zero: none is known.
+    pub along: Vec3,
     /// Triangles that the point lies on, rising.
     pub own: &'a [u32],
     /// How far its own triangles are left out of account by balls, mesh units; infinity: all the
@@ -76,11 +79,24 @@ pub struct Caster<'a> {
     pub outliers: Outliers,
     /// What a ray's length is corrected by.
     pub correction: Correction,
+    /// Places beside these have no wall to a turned side; without them each has one.
+    pub acute: Option<&'a AcuteEdges>,
 }
 
 /// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60
 /// degrees.
 const SAME_WALL: f32 = 0.5;
+
+/// What a cone of rays measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConeValue {
+    /// The mean and its error.
+    pub folded: Folded,
+    /// The wall that the axis ray meets is turned by more than 40 degrees from the site's.
+    pub turned: bool,
+    /// The triangle that the axis ray meets.
+    pub wall: Option<u32>,
+}
 
 /// What a thread reuses from site to site.
 #[derive(Debug, Default)]
@@ -105,7 +121,8 @@ impl Caster<'_> {
     // is not inlined without being told.
     #[inline(always)]
     fn faces(&self, site: &Site<'_>, t: u32) -> bool {
-        self.face_normals[t as usize].dot(site.away) * self.sign < 0.0 && !site.owns(t)
+        self.face_normals[t as usize].dot(site.away) * self.sign < -(GRAZING as f32)
+            && !site.owns(t)
     }
 
     /// How far the box of the mesh reaches along the site's axis: no wall is thicker.
@@ -114,14 +131,14 @@ impl Caster<'_> {
         (hi - lo).dot(site.away.abs()) * 1.000_01
     }
 
-    /// The cone's value, and whether the wall that the axis ray meets is turned by more than
-    /// 40 degrees from the site's; `scratch` is reused between calls.
-    pub fn measure(&self, site: &Site<'_>, scratch: &mut ConeScratch) -> Option<(Folded, bool)> {
+    /// The cone's value; `scratch` is reused between calls. Its error is at least the distance from
+    /// the length of the axis ray.
+    pub fn measure(&self, site: &Site<'_>, scratch: &mut ConeScratch) -> Option<ConeValue> {
         let ConeScratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
         let longest = self.longest(site);
         let mut turned = false;
-        let (x, y) = frame(site.away);
+        let (x, y) = frame_along(site.away, site.along);
         let mut first = None::<Vec3>;
         // Turned about the axis so that +z of the cone runs into the wall.
         rays.clear();
@@ -134,9 +151,10 @@ impl Caster<'_> {
         self.tree.closest_hits(stack, rays, |_, t| self.faces(site, t), hits);
         for (i, (&Ray { dir, .. }, &hit)) in rays.iter().zip(&*hits).enumerate() {
             if i == 0 {
-                if self.correction == Correction::Chord {
-                    first = hit.map(|h| self.wall(&h));
-                }
+                first = hit.map(|h| match self.correction {
+                    Correction::Chord => self.wall(&h),
+                    _ => self.face_normals[h.triangle as usize] * -self.sign,
+                });
                 turned = hit.is_some_and(|h| {
                     -self.sign * self.face_normals[h.triangle as usize].dot(site.away) < TURNED
                 });
@@ -146,6 +164,10 @@ impl Caster<'_> {
             match self.correction {
                 Correction::None => scratch.push((hit.t, weight)),
                 Correction::Angle => {
+                    let b = self.face_normals[hit.triangle as usize] * -self.sign;
+                    if i > 0 && b.dot(first.unwrap_or(site.away)) < SAME_WALL {
+                        continue;
+                    }
                     let cos = self.face_normals[hit.triangle as usize].dot(dir).abs();
                     scratch.push((hit.t * cos, weight));
                 }
@@ -180,7 +202,13 @@ impl Caster<'_> {
                 }
             }
         }
-        fold(scratch, self.outliers).map(|f| (f, turned))
+        let axis = hits.first().copied().flatten();
+        fold(scratch, self.outliers).map(|mut folded| {
+            if let Some(hit) = axis.filter(|_| rays.len() > 1) {
+                folded.error = folded.error.max((folded.value - hit.t).abs());
+            }
+            ConeValue { folded, turned, wall: axis.map(|h| h.triangle) }
+        })
     }
 
     /// The smooth normal of the wall at a hit, turned towards the site.

@@ -104,6 +104,7 @@ fn verdict(out: &mut String, a: &ThicknessAnswer) {
         Verdict::Warn => ("warn", "Warning"),
         Verdict::Fail => ("fail", "Fail"),
         Verdict::Unjudged => ("unjudged", "Not judged"),
+        Verdict::Undecided => ("warn", "Undecided"),
     };
     let _ = write!(out, "<p class=\"verdict {class}\" role=status><strong>{word}.</strong> ");
     match (a.summary.min, a.summary.max) {
@@ -112,9 +113,14 @@ fn verdict(out: &mut String, a: &ThicknessAnswer) {
         }
         _ => out.push_str("No wall could be measured."),
     }
+    let _ = write!(out, " Least wall: {}.", escape(&a.statement));
     for (beyond, word) in [(&a.below, "below"), (&a.above, "above")] {
         if let Some(b) = beyond {
-            let _ = write!(out, " {:.3} % of the area is {word} {} mm.", b.area_percent, b.limit);
+            let _ = write!(
+                out,
+                " {:.3} ± {:.3} % of the area is {word} {} mm.",
+                b.area_percent, b.error_percent, b.limit
+            );
         }
     }
     if a.verdict == Verdict::Unjudged {
@@ -187,7 +193,8 @@ fn statistics(out: &mut String, a: &ThicknessAnswer) {
         ("Mean by area", n(s.mean)),
         ("Maximum", n(s.max)),
         ("Places with a value", format!("{:.2} % of {}", s.valid * 100.0, a.places)),
-        ("Error bound (95 % of the places)", format!("{:.4} mm", s.error_bound)),
+        ("Most frequent class", n(s.most_frequent)),
+        ("Error bound of the map", format!("{:.4} mm", s.error_bound)),
         ("Volume", format!("{:.3} mm³", a.volume)),
         ("Surface area", format!("{:.3} mm²", a.area)),
         ("Dimensions", format!("{x:.3} × {y:.3} × {z:.3} mm")),
@@ -311,15 +318,15 @@ fn worst(
 fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     let s = &a.settings;
     let how = match s.method {
-        ThicknessMethod::Sphere => "Thickness is the diameter of the largest sphere that lies in \
-            the wall and touches the surface at the \
-                           place; in a convex edge it goes to zero, so places held by an edge \
-                           follow the edge policy."
+        ThicknessMethod::Sphere => "Thickness (sphere) is the diameter of the largest ball that \
+            touches the surface at the place and fits under the side opposite; sides turned by \
+            more than 40 degrees do not hold it."
             .to_string(),
-        ThicknessMethod::Ray if s.rays == 1 => "Thickness is the length of one ray into the wall, \
-            opposite the surface's normal."
+        ThicknessMethod::Ray => "Thickness (ray) is the length of one ray into the wall, \
+            opposite the surface's normal. The least wall is proven over every point of every \
+            facet: what it says does not depend on sampling."
             .into(),
-        ThicknessMethod::Ray => {
+        ThicknessMethod::Cone => {
             let corrected = match s.correction {
                 Correction::None => {
                     "The rays' own lengths are averaged, which is up to 32 % too \
@@ -336,7 +343,7 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
                 }
             };
             format!(
-                "Thickness is the mean of {} rays in a cone of {} degrees into the wall. \
+                "Thickness (cone) is the mean of {} rays in a cone of {} degrees into the wall. \
                 {corrected}",
                 s.rays, s.opening
             )
@@ -348,11 +355,12 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
         out,
         "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that \
          face the same way.</p>\
-         <p>Error bound: 95 % of the values are within {:.4} mm of the surface that the triangles \
-         describe. It adds single precision, the uncertainty of the normal, and twice the standard \
-         error of the cone's mean. What the triangles miss of the real part is not in it.</p>\
-         <p>Limits: warn below {}, fail below {}, fail above {}; a value fails when it is strictly \
-         beyond.</p>\
+         <p>A place beside an acute edge or tip, whose opposite side is turned by more than 40 \
+         degrees, belongs to the edge and has no wall.</p>\
+         <p>Error bound: every value of the map away from edges is within {:.4} mm of the surface \
+         that the triangles stand for.</p>\
+         <p>Limits: warn below {}, fail below {}, fail above {}; a wall fails when it is \
+         beyond for sure; a tie passes.</p>\
          <table><tbody><tr><th scope=row>File<td>{}<tr><th scope=row>Size<td>{} bytes<tr><th \
          scope=row>Hash (FNV-1a, 64 bits)\
          <td><code>{:016x}</code><tr><th scope=row>Program<td>{}</table>",

@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::{Correction, Reason, Thickness, ThicknessMethod};
+use super::{AreaSample, Correction, Reason, Thickness, ThicknessMethod};
 
 /// Classes of the histogram: the first is the area without a value, the other hundred run from 0 to
 /// [`ThicknessSummary::histogram_top`].
@@ -12,15 +12,16 @@ pub const CLASSES: usize = 101;
 /// The statistics of a map of thickness. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct ThicknessSummary {
-    /// Over the vertices with a value; `null` where none has one. Faces do not count: the middle of
-    /// a sliver between two sharp edges is as near to another wall as the sliver is wide.
+    /// The least wall, see [`Thickness::least`]; `null` where no place has a wall.
     pub min: Option<f32>,
-    /// The largest value of a vertex or, where all its corners lie on sharp edges, a face.
+    /// The largest value of a sample.
     pub max: Option<f32>,
-    /// The mean over the area, see [`Thickness::area_values`].
+    /// The mean over the area, see [`Thickness::samples`].
     pub mean: Option<f32>,
     /// Half of the area is thinner.
     pub median: Option<f32>,
+    /// The mean of the class of the histogram with the largest area: the usual wall.
+    pub most_frequent: Option<f32>,
     /// Share of the vertices that belong to a face and have a value, 0 to 1.
     pub valid: f32,
     /// The area in each of [`CLASSES`] classes, in the square of the unit. The last class also
@@ -30,7 +31,7 @@ pub struct ThicknessSummary {
     /// area stay below, where that is less. So the rims of a plate, which are as thick as the plate
     /// is long, do not press the walls into one class.
     pub histogram_top: Option<f32>,
-    /// Where the smallest value is.
+    /// Where the least wall is.
     pub thinnest: Option<[f32; 3]>,
     /// Where the largest value is.
     pub thickest: Option<[f32; 3]>,
@@ -53,6 +54,17 @@ pub struct MissingCounts {
     pub no_face: u64,
     /// The vertex lies on a sharp edge, and the policy is [`super::EdgePolicy::Neutral`].
     pub edge: u64,
+}
+
+/// The area beyond a limit, in the square of the unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeyondArea {
+    /// The area.
+    pub area: f64,
+    /// How far `area` may be off.
+    pub error: f64,
+    /// The area that has values at all.
+    pub all: f64,
 }
 
 /// Over the area that has values; `None` where none has.
@@ -78,17 +90,19 @@ impl Thickness {
         })
     }
 
-    /// The statistics. Mean, median and histogram are weighted by area, so that a finer mesh of the
-    /// same part says the same; the most is over the values that those are made of too, so that no
-    /// mean lies above it.
+    /// The statistics. Maximum, mean, median and histogram are over places spread evenly over the
+    /// area, so that a finer mesh of the same part says the same.
     pub fn summary(&self) -> ThicknessSummary {
         let mut missing = MissingCounts::default();
-        let mut edge_vertices = 0;
-        let mut known: Vec<(f32, Vec3)> = Vec::with_capacity(self.values.len());
+        let (mut edge_vertices, mut known) = (0, 0u64);
+        let mut least: Option<(f32, Vec3)> = None;
         for (value, reason, at) in self.each() {
             edge_vertices += (reason == Reason::Edge) as u64;
             if value.is_finite() {
-                known.push((value, at));
+                known += 1;
+                if least.is_none_or(|l| value < l.0) {
+                    least = Some((value, at));
+                }
                 continue;
             }
             match reason {
@@ -98,91 +112,84 @@ impl Thickness {
                 Reason::NothingAhead | Reason::Measured => missing.nothing_ahead += 1,
             }
         }
-        let n = known.len();
-        known.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut thickest = known.last().copied();
-        for (t, &value) in self.area_values.iter().enumerate() {
-            if let Some([a, b, c]) = self.surface.corners(t)
-                && thickest.is_none_or(|most| value > most.0)
-                && value.is_finite()
-            {
-                thickest = Some((value, (a + b + c) / 3.0));
-            }
-        }
+        let largest = |a: &&AreaSample, b: &&AreaSample| {
+            a.value.total_cmp(&b.value).then(b.triangle.cmp(&a.triangle))
+        };
+        let thickest = self.samples.iter().filter(|s| s.value.is_finite()).max_by(largest);
         let AreaStatistics { mean, median, most } = self.by_area();
         let absent = missing.nothing_ahead + missing.no_normal + missing.edge;
-        let max = thickest.map(|v| v.0);
+        let max = thickest.map(|v| v.value);
         let top = max.map(|max| most.map_or(max, |most| (most * 1.05).min(max)));
         let mut histogram = vec![0.0f64; CLASSES];
-        for (value, area) in self.areas() {
-            let share = value / top.filter(|&m| m > 0.0).unwrap_or(1.0);
-            let class = if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 };
-            histogram[class] += area;
+        for s in &self.samples {
+            histogram[class_of(s.value, top)] += self.sample_area;
         }
+        let most_frequent = top.and_then(|top| self.usual(top, &histogram));
+        // Where every place belongs to an edge, the map's least value still tells of the size.
+        let least = match self.least {
+            Some(l) => Some((l.value as f32, l.place().as_vec3())),
+            None => least,
+        };
         ThicknessSummary {
-            min: known.first().map(|v| v.0),
+            min: least.map(|v| v.0),
             max,
             mean,
             median,
-            valid: n as f32 / (n as f32 + absent as f32).max(1.0),
+            most_frequent,
+            valid: known as f32 / (known as f32 + absent as f32).max(1.0),
             histogram,
             histogram_top: top,
-            thinnest: known.first().map(|v| v.1.to_array()),
-            thickest: thickest.map(|v| v.1.to_array()),
+            thinnest: least.map(|v| v.1.to_array()),
+            thickest: thickest.map(|v| v.position.to_array()),
             missing,
             edge_vertices,
             error_bound: self.error_bound(),
         }
     }
 
-    /// The value and the area of each triangle.
-    fn areas(&self) -> impl Iterator<Item = (f32, f64)> + '_ {
-        self.area_values.iter().enumerate().filter_map(|(t, &value)| {
-            self.surface.corners(t).map(|corners| (value, triangle_area(corners)))
-        })
+    /// The mean of the class of the histogram with the largest area.
+    fn usual(&self, top: f32, histogram: &[f64]) -> Option<f32> {
+        let classes = histogram.iter().enumerate().skip(1);
+        let (fullest, _) = classes.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(&a.0)))?;
+        let own = self.samples.iter().filter(|s| class_of(s.value, Some(top)) == fullest);
+        let (sum, n) = own.fold((0.0, 0.0), |(s, n), v| (s + f64::from(v.value), n + 1.0));
+        (n > 0.0).then_some((sum / n) as f32)
     }
 
     fn by_area(&self) -> AreaStatistics {
-        let mut known: Vec<(f32, f64)> = self.areas().filter(|v| v.0.is_finite()).collect();
-        known.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let all: f64 = known.iter().map(|v| v.1).sum();
-        if !(all > 0.0) {
+        let values = self.samples.iter().map(|s| s.value);
+        let mut known: Vec<f32> = values.filter(|v| v.is_finite()).collect();
+        if known.is_empty() {
             return AreaStatistics::default();
         }
-        let sum: f64 = known.iter().map(|&(v, area)| v as f64 * area).sum();
-        let share = |share: f64| {
-            let mut below = 0.0;
-            let found = known.iter().find(|v| {
-                below += v.1;
-                below >= all * share
-            });
-            found.or(known.last()).map(|v| v.0)
-        };
-        AreaStatistics { mean: Some((sum / all) as f32), median: share(0.5), most: share(0.99) }
+        known.sort_unstable_by(f32::total_cmp);
+        let sum: f64 = known.iter().map(|&v| f64::from(v)).sum();
+        let share = |share: f64| known[((known.len() - 1) as f64 * share) as usize];
+        let mean = (sum / known.len() as f64) as f32;
+        AreaStatistics { mean: Some(mean), median: Some(share(0.5)), most: Some(share(0.99)) }
     }
 
-    /// A bound that 95 of 100 values keep, against the surface that the triangles stand for. Three
-    /// parts are added: single precision (1e-6 of the largest coordinate, four times over for the
-    /// origin, the hit and two shears); the normal, uncertain by half of how the faces at the
-    /// vertex spread, which lengthens a ray by 1/cos of it; and, for a cone, twice the standard
-    /// error of the kept rays' mean. A cone that is not corrected also carries the bias of its
-    /// geometry, up to 32 % at 120 degrees, which is included.
+    /// A bound that every value keeps that does not lie on a sharp edge, against the
+    /// curved surface that the triangles stand for. Four parts are added: single precision; the
+    /// normal, uncertain by half of how the faces at the vertex spread, which lengthens a ray by
+    /// 1/cos of it; the facets' distance from the curved surface; and for a cone how far its mean
+    /// lies from the ray along the normal. A cone that is not corrected also carries the bias of
+    /// its geometry, up to 32 % at 120 degrees, which is included.
     pub fn error_bound(&self) -> f32 {
         let s = &self.surface;
         let half = (self.settings.opening * 0.5).to_radians();
         // The mean length of the cone's rays through a slab, over its thickness: (int dz / z) /
         // (int dz).
-        let long = if self.settings.rays > 1 && half > 0.0 {
+        let long = if self.settings.rays_at_a_place() > 1 && half > 0.0 {
             -half.cos().ln() / (1.0 - half.cos())
         } else {
             1.0
         };
-        let biased = self.settings.method == ThicknessMethod::Ray
-            && self.settings.correction == Correction::None;
-        let mut bounds: Vec<f32> = Vec::with_capacity(self.values.len());
+        let biased = self.settings.correction == Correction::None;
+        let mut most = 4.0 * self.rounding;
         for (i, &w) in s.weld.iter().enumerate() {
             let (value, v) = (self.values[i], w as usize);
-            if !value.is_finite() || s.sharp[v] {
+            if !value.is_finite() || s.sharp[v] || self.reasons[i] != Reason::Measured {
                 continue;
             }
             let least = s
@@ -191,18 +198,20 @@ impl Thickness {
                 .map(|&t| s.face_normals[t as usize].dot(s.normals[v]))
                 .fold(1.0f32, f32::min);
             let tilt = (least.clamp(-1.0, 1.0).acos() * 0.5).min(1.2);
-            let mut bound =
-                4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + 2.0 * self.errors[i];
+            let mut bound = 4.0 * self.rounding + value * (1.0 / tilt.cos() - 1.0) + self.errors[i];
+            if self.settings.method == ThicknessMethod::Sphere {
+                // Touches up to 20 degrees beside the normal, and a facet's normal that is off by
+                // twice `tilt`.
+                bound += value * 0.37 * 2.0 * tilt;
+            }
             if biased {
                 bound += value * (1.0 - 1.0 / long);
             }
-            bounds.push(bound);
+            most = most.max(bound);
         }
-        let at = bounds.len() * 95 / 100;
-        if bounds.is_empty() {
-            return 4.0 * self.rounding;
-        }
-        *bounds.select_nth_unstable_by(at, f32::total_cmp).1
+        // Places between the vertices lie on facets, which stand off the curved surface.
+        let off = (0..s.triangles.len() as u32).map(|t| s.sagitta(t)).fold(0.0, f32::max);
+        most + off
     }
 
     /// Welded vertex values, for walks over the surface.
@@ -214,23 +223,28 @@ impl Thickness {
         out
     }
 
-    /// Area of the surface where the value, linear over each triangle, is strictly below `limit`
-    /// (or, with `above`, strictly over it), and the area that has values at all.
-    pub fn area_beyond(&self, limit: f32, above: bool) -> (f64, f64) {
-        let values = self.welded_values();
-        let (mut out, mut all) = (0.0f64, 0.0f64);
+    /// Area of the surface where the value is strictly below `limit` (or, with `above`, strictly
+    /// over it), the area that has values at all, and the error of the first. Below the limit that
+    /// was asked for, rays along the normal are integrated facet by facet; else the samples count.
+    pub fn area_beyond(&self, limit: f32, above: bool) -> BeyondArea {
         let sign = if above { -1.0 } else { 1.0 };
-        for t in 0..self.surface.triangles.len() {
-            let Some(p) = self.surface.corners(t) else { continue };
-            let v = self.surface.triangles[t].map(|c| (values[c as usize] - limit) * sign);
-            if v.iter().any(|x| !x.is_finite()) {
-                continue;
-            }
-            let area = triangle_area(p);
-            all += area;
-            out += area * negative_share(v) as f64;
+        let known = self.samples.iter().filter(|s| s.value.is_finite()).count();
+        let all = known as f64 * self.sample_area;
+        let exact = self.thin.as_ref().filter(|t| !above && t.limit as f32 == limit);
+        if let Some(thin) = exact {
+            let (area, error) =
+                thin.facets.iter().fold((0.0, 0.0), |(a, e), f| (a + f.area, e + f.error));
+            return BeyondArea { area: area.min(all), error, all };
         }
-        (out, all)
+        let room = 8.0 * self.rounding * sign;
+        let beyond = |s: &&AreaSample| {
+            (s.value - limit) * sign < 0.0 && (s.value - limit + room) * sign < 0.0
+        };
+        let count = self.samples.iter().filter(beyond).count();
+        let share = count as f64 / known.max(1) as f64;
+        // Twice the standard deviation of independent samples; evenly spread ones do better.
+        let error = 2.0 * (share * (1.0 - share) / known.max(1) as f64).sqrt() * all;
+        BeyondArea { area: count as f64 * self.sample_area, error: error + self.sample_area, all }
     }
 
     /// The largest ratio, either way, between the value at a vertex and those of the vertices
@@ -274,21 +288,10 @@ pub(super) fn triangle_area([a, b, c]: [Vec3; 3]) -> f64 {
     (b - a).as_dvec3().cross((c - a).as_dvec3()).length() * 0.5
 }
 
-/// Share of a triangle's area where the linear function with these corner values is negative.
-fn negative_share(mut v: [f32; 3]) -> f32 {
-    v.sort_by(f32::total_cmp);
-    let [a, b, c] = v;
-    if c <= 0.0 {
-        // Strictly below: a triangle that only touches the limit has no area below it.
-        return if a < 0.0 { 1.0 } else { 0.0 };
-    }
-    if a >= 0.0 {
-        0.0
-    } else if b >= 0.0 {
-        a * a / ((a - b) * (a - c))
-    } else {
-        1.0 - c * c / ((c - a) * (c - b))
-    }
+/// The class of the histogram that a value belongs to.
+fn class_of(value: f32, top: Option<f32>) -> usize {
+    let share = value / top.filter(|&m| m > 0.0).unwrap_or(1.0);
+    if share.is_finite() { 1 + ((share * 100.0) as usize).min(99) } else { 0 }
 }
 
 #[cfg(test)]
@@ -296,8 +299,7 @@ mod tests {
     use glam::DVec3;
 
     use super::super::refine::refine;
-    use super::super::{EdgePolicy, ThicknessSettings, measure};
-    use super::negative_share;
+    use super::super::{EdgePolicy, ThicknessMethod, ThicknessSettings, measure};
     use crate::job::Job;
     use crate::shapes::{cone, cuboid};
 
@@ -322,6 +324,7 @@ mod tests {
     fn no_wall_is_thicker_than_the_part() {
         let mesh = cone(30.0, 50.0, 48).triangulate().0;
         let settings = ThicknessSettings {
+            method: ThicknessMethod::Cone,
             rays: 100,
             opening: 120.0,
             edges: EdgePolicy::Raw,
@@ -333,14 +336,5 @@ mod tests {
             let most = (hi - lo).dot(normal.abs()) * 1.001;
             assert!(value.is_nan() || value <= most, "{value} in {most}");
         }
-    }
-
-    #[test]
-    fn the_share_below_is_exact() {
-        assert_eq!(negative_share([1.0, 2.0, 3.0]), 0.0);
-        assert_eq!(negative_share([0.0, 0.0, 0.0]), 0.0);
-        assert_eq!(negative_share([-1.0, -2.0, 0.0]), 1.0);
-        assert!((negative_share([-1.0, 1.0, 1.0]) - 0.25).abs() < 1e-6);
-        assert!((negative_share([1.0, -1.0, -1.0]) - 0.75).abs() < 1e-6);
     }
 }

@@ -127,6 +127,46 @@ impl WeldedSurface {
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
     }
 
+    /// How far rounding may turn each triangle, radians; `grain`: how far a coordinate may be off.
+    pub fn tilts(&self, grain: f64) -> Vec<f32> {
+        let one = |t: usize| {
+            let Some([a, b, c]) = self.corners(t) else { return 1.0 };
+            let long = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            let twice = (b - a).cross(c - a).length();
+            (4.0 * grain as f32 * long / twice).min(1.0)
+        };
+        (0..self.triangles.len()).map(one).collect()
+    }
+
+    /// How far triangle `t` may lie from the curved surface that it stands for: by how its normal
+    /// differs from those at its corners that are not sharp.
+    pub fn sagitta(&self, t: u32) -> f32 {
+        let Some([a, b, c]) = self.corners(t as usize) else { return 0.0 };
+        let own = self.face_normals[t as usize];
+        let smooth = self.triangles[t as usize].into_iter().filter(|&v| !self.sharp[v as usize]);
+        let one = |v: u32| {
+            let n = self.normals[v as usize];
+            let cos = own.dot(n).clamp(0.3, 1.0);
+            let across = n - own * cos;
+            // The sine of the angle, and the width of the triangle in the direction it bends in.
+            let sin = across.length();
+            if !(sin > 1e-6) {
+                return 0.0;
+            }
+            let [a, b, c] = [a, b, c].map(|p| p.dot(across) / sin);
+            0.5 * (a.max(b).max(c) - a.min(b).min(c)) * sin / cos
+        };
+        smooth.map(one).fold(0.0, f32::max)
+    }
+
+    /// A direction of the surface at welded vertex `v`, which turns with the part: that of an edge.
+    pub fn along(&self, v: usize) -> Vec3 {
+        let Some(&t) = self.around(v).first() else { return Vec3::ZERO };
+        let corners = self.triangles[t as usize];
+        let k = corners.iter().position(|&c| c as usize == v).unwrap_or(0);
+        self.positions[corners[(k + 1) % 3] as usize] - self.positions[v]
+    }
+
     /// Fills `starts` and `around` from the triangles.
     fn triangles_that_meet(&mut self) {
         let n = self.positions.len();

@@ -157,7 +157,9 @@ mod tests {
     use glam::DVec3;
 
     use super::super::refine::{Refined, refine};
-    use super::super::{Thickness, ThicknessMethod, ThicknessSettings, measure_at_places};
+    use super::super::{
+        Thickness, ThicknessMethod, ThicknessSettings, WallQuery, measure_at_places,
+    };
     use super::*;
     use crate::job::Job;
     use crate::shapes::{cuboid, cylinder};
@@ -173,7 +175,14 @@ mod tests {
             for method in [ThicknessMethod::Ray, ThicknessMethod::Sphere] {
                 let settings = ThicknessSettings { method, ..ThicknessSettings::default() };
                 let with = |walls: Option<&Walls>| {
-                    measure_at_places(&mesh, walls, &settings, &Job::default()).expect("measured")
+                    measure_at_places(
+                        &mesh,
+                        walls,
+                        &settings,
+                        WallQuery::default(),
+                        &Job::default(),
+                    )
+                    .expect("measured")
                 };
                 let (parts, whole) = (with(None), with(Some(&walls)));
                 let quantiles =

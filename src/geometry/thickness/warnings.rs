@@ -56,11 +56,13 @@ pub fn warnings(faults: &MeshFaults, summary: &ThicknessSummary, size: f32) -> V
             .into()
     });
     say(faults.shells.saturating_sub(1), &|n| {
-        format!(
-            "{} separate shells: a cavity is measured rightly, but where shells overlap, each \
-                counts as a wall of its own",
-            n + 1
-        )
+        let overlap = if faults.boundary_edges > 0 {
+            "; as the mesh is open, they are not united, and where they overlap each counts as a \
+             wall of its own"
+        } else {
+            ""
+        };
+        format!("{} separate shells: a cavity counts as a cavity{overlap}", n + 1)
     });
     say(summary.missing.no_normal as usize, &|n| {
         format!(

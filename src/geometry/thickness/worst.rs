@@ -1,7 +1,8 @@
 //! The worst spots: connected regions beyond a limit, the thinnest first.
 
-use super::Thickness;
 use super::summary::triangle_area;
+use super::{Thickness, ThinFacet, ThinFacets};
+use crate::disjoint_sets::DisjointSets;
 
 /// A connected region below the limit.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -22,6 +23,9 @@ impl Thickness {
     /// At most `count` regions of values strictly below `limit` and of at least `minimum_area`, the
     /// thinnest first.
     pub fn worst(&self, limit: f32, minimum_area: f64, count: usize) -> Vec<ThinRegion> {
+        if let Some(thin) = self.thin.as_ref().filter(|t| t.limit as f32 == limit) {
+            return thin.regions(minimum_area, count);
+        }
         let (s, values) = (&self.surface, self.welded_values());
         let mut area = vec![0.0f64; s.positions.len()];
         for t in 0..s.triangles.len() {
@@ -79,6 +83,45 @@ impl Thickness {
         }
         let at = ((known.len() - 1) as f32 * share) as usize;
         Some(*known.select_nth_unstable_by(at, f32::total_cmp).1)
+    }
+}
+
+impl ThinFacets {
+    /// At most `count` regions of facets that share corners, of at least `minimum_area`, the
+    /// thinnest first.
+    fn regions(&self, minimum_area: f64, count: usize) -> Vec<ThinRegion> {
+        let mut corners: Vec<u32> = self.facets.iter().flat_map(|f| f.corners).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let place = |v: u32| corners.partition_point(|&c| c < v) as u32;
+        let mut sets = DisjointSets::new(corners.len());
+        for f in &self.facets {
+            let [a, b, c] = f.corners.map(place);
+            sets.join(a, b);
+            sets.join(b, c);
+        }
+        let mut regions: Vec<(u32, &ThinFacet)> =
+            self.facets.iter().map(|f| (sets.root(place(f.corners[0])), f)).collect();
+        regions.sort_by_key(|r| r.0);
+        let mut spots = Vec::new();
+        for region in regions.chunk_by(|a, b| a.0 == b.0) {
+            let area: f64 = region.iter().map(|r| r.1.area).sum();
+            let thinnest = region.iter().min_by(|a, b| a.1.least.total_cmp(&b.1.least));
+            let Some((_, thinnest)) = thinnest.filter(|_| area >= minimum_area) else { continue };
+            let mut own: Vec<u32> = region.iter().flat_map(|r| r.1.corners).collect();
+            own.sort_unstable();
+            own.dedup();
+            spots.push(ThinRegion {
+                position: thinnest.position.as_vec3().to_array(),
+                normal: thinnest.normal.as_vec3().to_array(),
+                thickness: thinnest.least as f32,
+                area,
+                vertices: own.len() as u32,
+            });
+        }
+        spots.sort_by(|a, b| a.thickness.total_cmp(&b.thickness).then(b.area.total_cmp(&a.area)));
+        spots.truncate(count);
+        spots
     }
 }
 

@@ -71,7 +71,7 @@ pub(super) fn run(args: &ThicknessArgs, limits: ThicknessLimits, json: bool) -> 
         writeln!(w, "{} files, {reused} taken from the last run; {}", rows.len(), page.display())
     });
     let count = |v: &str| rows.iter().filter(|r| r.verdict == v).count();
-    match (count("fail"), count("unreadable")) {
+    match (count("fail") + count("undecided"), count("unreadable")) {
         (0, 0) => Ok(()),
         (0, n) => Err(Fail::Input(format!("{n} of {} files could not be read", rows.len()))),
         (n, _) => Err(Fail::Check(format!("{n} of {} files fail", rows.len()))),
@@ -146,6 +146,7 @@ fn row(
             Verdict::Warn => "warn",
             Verdict::Fail => "fail",
             Verdict::Unjudged => "unjudged",
+            Verdict::Undecided => "undecided",
         }
         .into(),
         min: a.summary.min,
@@ -222,7 +223,7 @@ pub(super) fn junit(rows: &[Row]) -> String {
             thickness\" tests=\"{}\" failures=\"{}\" \
          errors=\"{}\" time=\"{seconds:.3}\">\n",
         rows.len(),
-        count("fail"),
+        count("fail") + count("undecided"),
         count("unreadable")
     );
     for r in rows {
@@ -233,7 +234,7 @@ pub(super) fn junit(rows: &[Row]) -> String {
         ));
         let why = escape(r.why.as_deref().unwrap_or(""));
         match r.verdict.as_str() {
-            "fail" => out.push_str(&format!("<failure message=\"{why}\"/>")),
+            "fail" | "undecided" => out.push_str(&format!("<failure message=\"{why}\"/>")),
             "unreadable" => out.push_str(&format!("<error message=\"{why}\"/>")),
             _ => {}
         }

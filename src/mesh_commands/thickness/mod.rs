@@ -1,6 +1,7 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
 mod batch;
+mod ply;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,11 +18,12 @@ use sculptd_geometry::thickness::check::{
     CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
 };
 use sculptd_geometry::thickness::colour::colour;
+use sculptd_geometry::thickness::overlap;
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
-    Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, Thickness, ThicknessMethod,
+    Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, ThicknessMethod,
     ThicknessSettings, Walls, Weights,
 };
 use sculptd_geometry::{CentredMesh, TriMesh};
@@ -39,10 +41,12 @@ pub struct ThicknessArgs {
     /// of the whole part's; in the file's coordinates, millimetres. `--png` draws both.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
-    /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex.
+    /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex, and a
+    /// `thickness` of each face, measured at its middle.
     #[arg(long, value_name = "FILE")]
     pub ply: Option<PathBuf>,
-    /// Write a picture of the coloured part.
+    /// Write a picture of the coloured part; with `--at`, of the rays, the face that is measured
+    /// from (blue) and the one that is met (orange).
     #[arg(long, value_name = "FILE")]
     pub png: Option<PathBuf>,
     /// Write the report: one HTML page that needs nothing else.
@@ -60,20 +64,21 @@ pub struct ThicknessArgs {
 /// How thickness is defined and measured.
 #[derive(Debug, Clone, clap::Args)]
 pub struct How {
-    /// Rays at each vertex, 1 to 1000.
-    #[arg(long, value_name = "N", default_value_t = 25)]
-    pub rays: usize,
-    /// `ray`: along the normal, or a cone around it; `sphere`: the largest ball inside the wall.
-    #[arg(long, value_enum, default_value = "ray")]
-    pub method: MethodArg,
+    /// Rays of a cone, 1 to 1000 [default: 25]. More than one means `--method cone`.
+    #[arg(long, value_name = "N")]
+    pub rays: Option<usize>,
+    /// The definition of thickness [default: ray].
+    #[arg(long, value_enum)]
+    pub method: Option<DefinitionArg>,
     /// The cone's full angle, degrees, 0 to 120.
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
     pub opening: f32,
-    /// What each ray's length is corrected by: nothing, the hit face's angle, or the chord's (no
-    /// bias on bent walls).
+    /// What the length of each ray of a cone is corrected by: nothing, the hit face's angle, or the
+    /// chord's (no bias on bent walls).
     #[arg(long, value_enum, default_value = "chord")]
     pub correction: CorrectionArg,
-    /// keep, range:0.1 to range:0.9, sigma-mean, sigma-median
+    /// Rays of a cone that do not count: keep, within:0.1-0.9 (of the range of the values),
+    /// range:0.1 to range:0.9, sigma-mean, sigma-median
     #[arg(long, value_name = "RULE", default_value = "sigma-median", value_parser = outliers)]
     pub outliers: Outliers,
     /// What a ray counts in the mean.
@@ -128,7 +133,17 @@ macro_rules! choice {
         }
     };
 }
-choice!(MethodArg -> ThicknessMethod { Ray, Sphere });
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum DefinitionArg {
+    /// Length of one ray along the normal. The least wall is proven.
+    Ray,
+    /// Mean of a cone of rays (shape diameter function): smooths what is narrower than the cone.
+    Cone,
+    /// Diameter of the largest ball between the place and the side opposite.
+    Sphere,
+}
+
 choice!(CorrectionArg -> Correction { None, Angle, Chord });
 choice!(WeightsArg -> Weights { Plain, InverseAngle });
 choice!(SideArg -> MeasuredSide { Wall, Gap });
@@ -183,10 +198,18 @@ fn outliers(text: &str) -> Result<Outliers, String> {
 
 impl How {
     pub fn settings(&self) -> ThicknessSettings {
+        let many = self.rays.is_some_and(|r| r > 1);
+        let method = match self.method {
+            Some(DefinitionArg::Sphere) => ThicknessMethod::Sphere,
+            Some(DefinitionArg::Cone) => ThicknessMethod::Cone,
+            // Older scripts ask for a cone by its number of rays.
+            _ if many => ThicknessMethod::Cone,
+            _ => ThicknessMethod::Ray,
+        };
         ThicknessSettings {
-            method: self.method.into(),
+            method,
             side: self.side.into(),
-            rays: self.rays,
+            rays: self.rays.unwrap_or(ThicknessSettings::default().rays),
             opening: self.opening,
             correction: self.correction.into(),
             outliers: self.outliers,
@@ -259,9 +282,24 @@ pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fa
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
-    let mut mesh = CentredMesh::new(&loaded.mesh, how.unit.scale());
+    let mut warnings = loaded.warnings;
+    let united = overlap::united(&loaded.mesh, job).map_err(|e| {
+        Fail::Input(format!(
+            "{}: the shells overlap, and their union failed ({e}). Unite them with \
+             `sculptd boolean union` and measure the result.",
+            path.display()
+        ))
+    })?;
+    if united.is_some() {
+        warnings.push("the shells overlap: measured on their union".into());
+    }
+    let solid = united.as_ref().unwrap_or(&loaded.mesh);
+    let mut mesh = CentredMesh::new(solid, how.unit.scale());
+    if united.is_some() {
+        mesh.counts = CentredMesh::new(&loaded.mesh, how.unit.scale()).counts;
+    }
     let walls = add_places(&mut mesh.mesh, how.spacing, how.crease);
-    Ok((Part { mesh, walls }, loaded.warnings))
+    Ok((Part { mesh, walls }, warnings))
 }
 
 /// Three numbers with commas between.
@@ -283,6 +321,10 @@ struct AtAnswer {
     normal: [f32; 3],
     thickness: Option<f32>,
     error: f32,
+    /// The face that is measured from, and the one that the ray along the normal meets; indices of
+    /// the file's triangles.
+    triangle: u32,
+    opposite: Option<u32>,
     rays: Vec<ProbedRay>,
 }
 
@@ -299,10 +341,10 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
         let png = png.map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
-    let Probe { position, normal, thickness, error, rays, .. } = found;
+    let Probe { position, normal, triangle, opposite, thickness, error, rays } = found;
     let position = part.to_file(position.into()).to_array();
     let file = path.display().to_string();
-    let out = AtAnswer { file, position, normal, thickness, error, rays };
+    let out = AtAnswer { file, position, normal, thickness, error, triangle, opposite, rays };
     answer(json, &out, |w| {
         let [x, y, z] = out.position;
         let value = out.thickness.map_or("none".into(), |v| format!("{v:.4} mm"));
@@ -323,6 +365,15 @@ fn drawn(mesh: &TriMesh, found: &Probe) -> Picture {
     let (side, _) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
     let camera = Camera::from_side(mesh, side + normal * 0.4, 4.0 / 3.0);
     let mut picture = draw(mesh, None, &camera, 1200, 900);
+    // The outlines of the face that is measured from, and of the one that is met.
+    let faces = [(Some(found.triangle), [20, 90, 200]), (found.opposite, [230, 120, 0])];
+    for (face, colour) in faces {
+        let Some(face) = face else { continue };
+        let corners = mesh.corners(face as usize).map(|p| picture.place(&camera, p));
+        for k in 0..3 {
+            picture.line(corners[k], corners[(k + 1) % 3], colour);
+        }
+    }
     let from = picture.place(&camera, place);
     for ray in &found.rays {
         let Some(length) = ray.length else { continue };
@@ -359,7 +410,7 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
         eprintln!("sculptd: warning: {}: {w}", path.display());
     }
     if let Some(out) = &args.ply {
-        write_beside(out, |w| write_ply(w, &part, &checked.thickness))
+        write_beside(out, |w| ply::write(w, &part, &checked.thickness))
             .map_err(|e| Fail::io(out, &e))?;
     }
     if let Some(out) = &args.png {
@@ -396,16 +447,13 @@ fn one(
     let (Part { mesh: part, walls }, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
-    let mut checked = check(
-        &path.display().to_string(),
-        &part,
-        walls.as_ref(),
-        &args.how.settings(),
-        limits,
-        job,
-        seconds,
-    )
-    .map_err(|e| Fail::Usage(e.to_string()))?;
+    let mut settings = args.how.settings();
+    if args.ply.is_some() {
+        settings.at = MeasuredPlaces::VerticesAndFaces;
+    }
+    let mut checked =
+        check(&path.display().to_string(), &part, walls.as_ref(), &settings, limits, job, seconds)
+            .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
     Ok((part, checked))
 }
@@ -422,26 +470,27 @@ fn write_report(out: &Path, path: &Path, part: &CentredMesh, checked: &CheckedPa
 }
 
 fn judge(a: &ThicknessAnswer) -> Outcome {
-    if a.verdict != Verdict::Fail {
+    if !matches!(a.verdict, Verdict::Fail | Verdict::Undecided) {
         return Ok(());
     }
-    let number = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4} mm"));
     let mut why = Vec::new();
-    if let (Some(limit), Some(min)) = (a.limits.fail_below, a.summary.min)
-        && min < limit
-    {
-        why.push(format!(
-            "the thinnest wall is {}, below the limit of {limit} mm",
-            number(a.summary.min)
-        ));
+    if a.limits.fail_below.is_some() {
+        let place = a.least.filter(|l| a.limits.fail_below.is_some_and(|m| l.upper < f64::from(m)));
+        match (place, a.verdict, a.limits.fail_below, a.summary.min) {
+            (_, Verdict::Undecided, ..) => why.push(a.statement.clone()),
+            (Some(_), _, Some(limit), _) => {
+                why.push(format!("{}, below the limit of {limit} mm", a.statement));
+            }
+            (None, _, Some(limit), Some(min)) if a.least.is_none() && min < limit => {
+                why.push(format!("the part measures {min:.4} mm, below the limit of {limit} mm"));
+            }
+            _ => {}
+        }
     }
     if let (Some(limit), Some(max)) = (a.limits.fail_above, a.summary.max)
         && max > limit
     {
-        why.push(format!(
-            "the thickest wall is {}, above the limit of {limit} mm",
-            number(a.summary.max)
-        ));
+        why.push(format!("the thickest wall is {max:.4} mm, above the limit of {limit} mm"));
     }
     Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
 }
@@ -462,18 +511,18 @@ fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
         n(s.mean),
         n(s.max)
     )?;
-    writeln!(
-        w,
-        "  valid      {:.2} %   error bound {:.2e} mm (95 % of the vertices)",
-        s.valid * 100.0,
-        s.error_bound
-    )?;
+    writeln!(w, "  method     {}", method_name(a))?;
+    writeln!(w, "  least      {}", a.statement)?;
+    if let Some(usual) = s.most_frequent {
+        writeln!(w, "  usual      {usual:.4} mm (the class with the largest area)")?;
+    }
+    writeln!(w, "  valid      {:.2} %   error bound {:.2e} mm", s.valid * 100.0, s.error_bound)?;
     for (name, beyond) in [("below", a.below), ("above", a.above)] {
         if let Some(b) = beyond {
             writeln!(
                 w,
-                "  {name:9}  {:.3} % of the area is {name} {} mm",
-                b.area_percent, b.limit
+                "  {name:9}  {:.3} +- {:.3} % of the area is {name} {} mm",
+                b.area_percent, b.error_percent, b.limit
             )?;
         }
     }
@@ -494,6 +543,15 @@ fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
     writeln!(w, "  {:.3} s, {:.2} million rays a second", a.seconds, a.rays_per_second * 1e-6)
 }
 
+/// The definition in words.
+fn method_name(a: &ThicknessAnswer) -> String {
+    match a.method {
+        ThicknessMethod::Ray => "ray along the normal".into(),
+        ThicknessMethod::Cone => format!("cone of {} rays", a.rays),
+        ThicknessMethod::Sphere => "sphere".into(),
+    }
+}
+
 /// As people read it.
 pub fn verdict(v: Verdict) -> &'static str {
     match v {
@@ -501,36 +559,6 @@ pub fn verdict(v: Verdict) -> &'static str {
         Verdict::Pass => "pass",
         Verdict::Warn => "warn",
         Verdict::Fail => "fail",
+        Verdict::Undecided => "undecided",
     }
-}
-
-/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
-/// reason.
-fn write_ply(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::Result<()> {
-    let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
-    write!(
-        w,
-        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 \
-            measured, 1 edge, 2 nothing \
-         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double \
-         y\nproperty double z\n\
-         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float \
-         thickness\nproperty uchar reason\n\
-         element face {m}\nproperty list uchar int vertex_indices\nend_header\n"
-    )?;
-    let colours = t.colours(t.scale());
-    let mut rows = Vec::with_capacity(n * 32 + m * 13);
-    for v in 0..n {
-        for x in (part.mesh.positions[v].as_dvec3() + part.centre).to_array() {
-            rows.extend(x.to_le_bytes());
-        }
-        rows.extend(colours[v]);
-        rows.extend(t.values[v].to_le_bytes());
-        rows.push(t.reasons[v] as u8);
-    }
-    for c in &part.mesh.triangles {
-        rows.push(3);
-        c.iter().for_each(|v| rows.extend(v.to_le_bytes()));
-    }
-    w.write_all(&rows)
 }

@@ -44,7 +44,7 @@ pub(super) fn follow(
     while let Ok((mut wanted, _)) = requests.recv() {
         loop {
             if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
-                map = pool.install(|| LiveMap::new(&wanted.mesh, 1, &job)).ok();
+                map = pool.install(|| LiveMap::new(&wanted.mesh, &job)).ok();
                 pages.clear();
             }
             let Some(map) = &mut map else { return };

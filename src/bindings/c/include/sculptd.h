@@ -197,9 +197,9 @@ enum SculptdStatus sculptd_boolean(const struct SculptdMesh *a,
                                    struct SculptdMesh **result,
                                    struct SculptdBooleanFacts *facts);
 
-// The thickness of the wall under each vertex by a cone of `rays` rays (0: 25), in the mesh's
-// unit; NaN where there is none. `values` has room for `count` numbers, as many as the mesh has
-// vertices, or is null with a count of 0.
+// The thickness of the wall under each vertex by one ray along its normal (`rays` 0 or 1), or by
+// a cone of `rays` rays, in the mesh's unit; NaN where there is none. `values` has room for
+// `count` numbers, as many as the mesh has vertices, or is null with a count of 0.
 //
 // # Safety
 // `mesh` came from this library and was not freed; `values` has room; `statistics` may be written.

@@ -3,7 +3,7 @@
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::boolean::{BooleanOptions, Operation, compute};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::thickness::{ThicknessSettings, measure};
+use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings, measure};
 
 use crate::boundary::{
     Failure, SculptdStatus, copy_out, exclusive, guarded, hand_out, optional_mut, reference,
@@ -106,9 +106,9 @@ pub struct SculptdThickness {
     pub valid: f32,
 }
 
-/// The thickness of the wall under each vertex by a cone of `rays` rays (0: 25), in the mesh's
-/// unit; NaN where there is none. `values` has room for `count` numbers, as many as the mesh has
-/// vertices, or is null with a count of 0.
+/// The thickness of the wall under each vertex by one ray along its normal (`rays` 0 or 1), or by
+/// a cone of `rays` rays, in the mesh's unit; NaN where there is none. `values` has room for
+/// `count` numbers, as many as the mesh has vertices, or is null with a count of 0.
 ///
 /// # Safety
 /// `mesh` came from this library and was not freed; `values` has room; `statistics` may be written.
@@ -131,8 +131,9 @@ pub unsafe extern "C" fn sculptd_thickness(
         }
         // SAFETY: as this function's caller promises.
         let statistics = unsafe { exclusive(statistics, "statistics") }?;
-        let rays = if rays == 0 { ThicknessSettings::default().rays } else { rays };
-        let settings = ThicknessSettings { rays, ..ThicknessSettings::default() };
+        let method = if rays > 1 { ThicknessMethod::Cone } else { ThicknessMethod::Ray };
+        let rays = rays.max(1);
+        let settings = ThicknessSettings { method, rays, ..ThicknessSettings::default() };
         let part = CentredMesh::new(poly, 1.0);
         let measured = measure(&part.mesh, &settings, &Job::default())?;
         let s = measured.summary();

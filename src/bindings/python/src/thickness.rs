@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sculptd_geometry::CentredMesh;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
-    self, EdgePolicy, MeasuredSide, ThicknessMethod, ThicknessSettings,
+    self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
+    ThicknessSettings, WallQuery, overlap,
 };
-
-use sculptd_geometry::thickness::summary::ThicknessSummary;
 
 use crate::array::shared;
 use crate::errors;
@@ -43,17 +45,47 @@ impl Thickness {
         shared(py, self.reasons.clone(), &self.reasons, vec![self.reasons.len()])
     }
 
-    /// float32, one a vertex: the standard error of the mean of its cone of rays.
+    /// float32, one a vertex: how far its value may be off, besides rounding and its normal.
     #[getter]
     fn errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let errors = &self.measured.errors;
         shared(py, self.measured.clone(), errors, vec![errors.len()])
     }
 
-    /// The least value; None where no vertex has one.
+    /// The least wall; None where no place has one.
     #[getter]
     fn min(&self) -> Option<f32> {
         self.summary.min
+    }
+
+    /// The least wall between two bounds: a dict with `lower`, `upper`, `certified`, `position`,
+    /// `opposite`; None where no place has a wall.
+    #[getter]
+    fn least<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let moved = |p: [f64; 3]| (DVec3::from(p) + self.part.centre).to_array();
+        let least = self.measured.least.map(|l| LeastWall {
+            position: moved(l.position),
+            opposite: moved(l.opposite),
+            ..l
+        });
+        least.map(|l| plain(py, &l)).transpose()
+    }
+
+    /// Whether no wall is below `limit`: True, False, or None where the bounds cannot tell.
+    fn reaches(&self, limit: f32) -> Option<bool> {
+        match self.measured.compare(limit) {
+            Comparison::Reached => Some(true),
+            Comparison::Below => Some(false),
+            Comparison::Undecided => None,
+        }
+    }
+
+    /// float32, one a triangle of the mesh: the value at its middle. Measured when `faces=True` was
+    /// asked for, else empty.
+    #[getter]
+    fn face_values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let values = &self.measured.face_values;
+        shared(py, self.measured.clone(), values, vec![values.len()])
     }
 
     /// The largest value.
@@ -92,9 +124,10 @@ impl Thickness {
     }
 
     /// The area that is thinner than `limit`: in square units, and as a share of the whole, 0 to 1.
-    fn below(&self, limit: f32) -> (f64, f64) {
-        let (thin, all) = self.measured.area_beyond(limit, false);
-        (thin, if all > 0.0 { thin / all } else { 0.0 })
+    fn below(&self, py: Python<'_>, limit: f32) -> PyResult<(f64, f64)> {
+        let found = self.against(py, limit)?;
+        let BeyondArea { area, all, .. } = found.area_beyond(limit, false);
+        Ok((area, if all > 0.0 { area / all } else { 0.0 }))
     }
 
     /// The thinnest regions below `limit`, the worst first: dicts with `position`, `thickness`,
@@ -107,7 +140,8 @@ impl Thickness {
         count: usize,
     ) -> PyResult<Bound<'py, PyList>> {
         let out = PyList::empty(py);
-        for spot in self.measured.worst(limit, 0.0, count) {
+        let found = self.against(py, limit)?;
+        for spot in found.worst(limit, 0.0, count) {
             let d = PyDict::new(py);
             d.set_item("position", self.part.to_file(spot.position.into()).to_array())?;
             d.set_item("thickness", spot.thickness)?;
@@ -123,15 +157,34 @@ impl Thickness {
     }
 }
 
+impl Thickness {
+    /// The same measured against a limit, as the command line does.
+    fn against(&self, py: Python<'_>, limit: f32) -> PyResult<Arc<thickness::Thickness>> {
+        let settings = self.measured.settings;
+        if settings.method != ThicknessMethod::Ray {
+            return Ok(self.measured.clone());
+        }
+        let query =
+            WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
+        let part = self.part.clone();
+        py.detach(|| {
+            thickness::measure_at_places(&part.mesh, None, &settings, query, &Job::default())
+        })
+        .map(Arc::new)
+        .map_err(|e| errors::thickness(&e))
+    }
+}
+
 /// How thick the walls are under every vertex.
 ///
-/// `method`: 'ray' (a cone of `rays` rays of `opening` degrees, corrected by the chord) or 'sphere'
-/// (the largest ball that touches the surface there and fits inside). `side`: 'wall', or 'gap' for
-/// the clearance in front of the surface. `edges`: what a vertex on a sharp edge says:
-/// 'extrapolate', 'raw', 'sphere' or 'neutral'.
+/// `method`: 'ray' (one ray along the normal; the least wall is proven), 'cone' (the mean of `rays`
+/// rays within `opening` degrees, corrected by the chord) or 'sphere' (the largest ball between the
+/// place and the side opposite). `faces=True` measures the middle of each triangle, too. `side`:
+/// 'wall', or 'gap' for the clearance in front of the surface. `edges`: what a vertex on a sharp
+/// edge says: 'extrapolate', 'raw', 'sphere' or 'neutral'.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, method="ray", rays=25, opening=60.0, side="wall",
-                    edges="extrapolate", progress=None))]
+                    edges="extrapolate", faces=false, progress=None))]
 fn thickness_of(
     py: Python<'_>,
     mesh: &Bound<'_, Mesh>,
@@ -140,6 +193,7 @@ fn thickness_of(
     opening: f32,
     side: &str,
     edges: &str,
+    faces: bool,
     progress: Progress,
 ) -> PyResult<Thickness> {
     let unknown = |what: &str, found: &str, expected: &str| {
@@ -148,8 +202,9 @@ fn thickness_of(
     let settings = ThicknessSettings {
         method: match method {
             "ray" => ThicknessMethod::Ray,
+            "cone" => ThicknessMethod::Cone,
             "sphere" => ThicknessMethod::Sphere,
-            other => return Err(unknown("method", other, "'ray' or 'sphere'")),
+            other => return Err(unknown("method", other, "'ray', 'cone' or 'sphere'")),
         },
         side: match side {
             "wall" => MeasuredSide::Wall,
@@ -167,19 +222,29 @@ fn thickness_of(
         },
         rays,
         opening,
+        at: if faces { MeasuredPlaces::VerticesAndFaces } else { MeasuredPlaces::Vertices },
         ..ThicknessSettings::default()
     };
     let poly = mesh.get().poly.clone();
-    let (part, measured, summary) = watched(py, &progress, |job| {
+    let found = watched(py, &progress, |job| {
+        if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
+            return Ok(None);
+        }
         let part = CentredMesh::new(&poly, 1.0);
-        let measured = thickness::measure(&part.mesh, &settings, job)?;
+        let query = WallQuery { grain: part.grain, ..WallQuery::default() };
+        let measured = thickness::measure_at_places(&part.mesh, None, &settings, query, job)?;
         let mut summary = measured.summary();
         let moved = |p: [f32; 3]| part.to_file(p.into()).as_vec3().to_array();
         summary.thinnest = summary.thinnest.map(moved);
         summary.thickest = summary.thickest.map(moved);
-        Ok((part, measured, summary))
+        Ok(Some((part, measured, summary)))
     })?
     .map_err(|e| errors::thickness(&e))?;
+    let Some((part, measured, summary)) = found else {
+        return Err(PyValueError::new_err(
+            "the shells of the mesh overlap: unite them first and measure the result",
+        ));
+    };
     let reasons = Arc::new(measured.reasons.iter().map(|&r| r as u8).collect());
     Ok(Thickness { measured: Arc::new(measured), part: Arc::new(part), summary, reasons })
 }

@@ -163,16 +163,22 @@ class Questions(unittest.TestCase):
         walls = sculptd.thickness(plate)
         self.assertEqual(walls.values.shape, (len(plate.vertices),))
         self.assertAlmostEqual(walls.median, 2.0, delta=0.05)
+        self.assertIs(walls.reaches(1.5), True)
+        self.assertIs(walls.reaches(2.5), False)
+        self.assertAlmostEqual(walls.least["lower"], walls.min, delta=1e-3)
         area, share = walls.below(3.0)
-        # Both sides but for a rim, where the values go over to those of the narrow faces.
-        self.assertTrue(650 < area < 810, area)
+        # Both sides, facet by facet.
+        self.assertTrue(780 < area < 805, area)
         self.assertAlmostEqual(area / share, 960.0, delta=2.0)
         self.assertEqual(walls.below(0.5), (0.0, 0.0))
         worst = walls.worst(3.0)[0]
         self.assertLess(worst["thickness"], 3.0)
         self.assertEqual(set(walls.summary()) & {"min", "histogram"}, {"min", "histogram"})
         balls = sculptd.thickness(plate, method="sphere")
-        self.assertLessEqual(balls.max, 2.1)
+        self.assertAlmostEqual(balls.median, 2.0, delta=0.05)
+        self.assertLessEqual(balls.min, balls.median)
+        faces = sculptd.thickness(plate, method="cone", faces=True)
+        self.assertGreater(faces.face_values.size, len(plate.vertices))
         with self.assertRaisesRegex(ValueError, "rays"):
             sculptd.thickness(plate, rays=0)
 
@@ -264,7 +270,7 @@ class LongWork(unittest.TestCase):
             raise Enough
 
         with self.assertRaises(Enough):
-            sculptd.thickness(self.big, rays=500, progress=progress)
+            sculptd.thickness(self.big, method="cone", rays=500, progress=progress)
 
     def test_the_interpreter_runs_meanwhile(self):
         ticks = []
@@ -278,7 +284,7 @@ class LongWork(unittest.TestCase):
         thread = threading.Thread(target=count)
         thread.start()
         start = time.monotonic()
-        sculptd.thickness(self.big, rays=200)
+        sculptd.thickness(self.big, method="cone", rays=200)
         took = time.monotonic() - start
         stop.set()
         thread.join()
@@ -295,7 +301,7 @@ class LongWork(unittest.TestCase):
         timer.start()
         start = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
-            sculptd.thickness(self.big, rays=1000)
+            sculptd.thickness(self.big, method="cone", rays=1000)
         self.assertLess(time.monotonic() - start, 20.0)
         timer.join()
 

@@ -1,0 +1,481 @@
+//! The least wall of a solid, proven: no point of the surface was left out.
+//!
+//! Definition (*ray*): at a point of a facet, the length of the ray opposite the facet's normal to
+//! the first facet that faces it. The least wall is the least of these over all points of all
+//! facets. [`FacetShaft`] gives it exactly for a pair of facets, and a walk over the tree finds the
+//! pairs; what is deeper than the least wall found so far is not looked at. So the result depends
+//! neither on where samples lie, nor on the triangles that a flat facet is cut into.
+//!
+//! Edges: where the opposite side is turned by more than 40 degrees from parallel, and an acute
+//! edge or tip (less than 90 degrees of material) lies within 1.5 times the value, the place tells
+//! of that edge and has no wall. An edge of less than 40 degrees is a wall that runs out to zero.
+//! A wedge that ends in a land or a rounding is as thick as it is there.
+
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::shaft::{FacetShaft, Patch};
+use super::sharp_edges::{AcuteEdges, REACH, distance_squared, grazing};
+use super::surface::WeldedSurface;
+use crate::bvh::{Bvh8, Ray};
+use crate::job::{Cancelled, Job};
+
+/// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
+pub(super) const OPPOSED: f64 = 0.766_044_443;
+/// Rounding of a coordinate moves the distance of two facets by at most this many of it.
+const ROUNDINGS: f64 = 4.0;
+/// Slope beyond which sides are a wall beside the shaft and not below it.
+const STEEPEST: f64 = 50.0;
+/// Parts into which a patch is cut to decide what of it belongs to an edge.
+const PARTS: usize = 256;
+/// Facets in a task; what one task finds bounds the later facets of the same task.
+const CHUNK: usize = 512;
+/// Facets in the first round; each round has twice as many, and starts from what the last found.
+const ROUND: usize = 4096;
+
+/// What the search needs to know of the solid.
+#[derive(Debug)]
+pub(super) struct Solid<'a> {
+    pub tree: &'a Bvh8,
+    pub surface: &'a WeldedSurface,
+    /// 1 where normals point out of what is measured, -1 where into it.
+    pub sign: f64,
+    /// How far a coordinate may be off, in the mesh's unit.
+    pub grain: f64,
+    pub edges: &'a AcuteEdges,
+    /// See [`WeldedSurface::tilts`].
+    pub tilts: &'a [f32],
+    /// Sides turned by more than 40 degrees from parallel do not count.
+    pub opposed_only: bool,
+}
+
+/// The least wall between two bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LeastWall {
+    /// No wall is thinner.
+    pub lower: f64,
+    /// Some wall is no thicker.
+    pub upper: f64,
+    /// The thinnest wall that was found, by the coordinates as they are.
+    pub value: f64,
+    /// The bounds are proven over the whole surface, and not only at sampled places.
+    pub certified: bool,
+    /// The bounds differ by rounding only.
+    pub settled: bool,
+    /// Where the wall of `upper` is measured from.
+    pub position: [f64; 3],
+    /// The opposite point of that wall.
+    pub opposite: [f64; 3],
+    /// Out of the wall at `position`, of unit length.
+    pub normal: [f64; 3],
+}
+
+/// How a wall compares with a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Comparison {
+    /// Not below the limit; a tie passes.
+    Reached,
+    /// Below the limit for sure.
+    Below,
+    /// The bounds are too far apart to tell.
+    Undecided,
+}
+
+impl LeastWall {
+    /// Where it is measured from.
+    pub fn place(&self) -> DVec3 {
+        self.position.into()
+    }
+
+    /// Compares with a limit. A limit between bounds that differ by rounding only is a tie, which
+    /// passes.
+    pub fn against(&self, limit: f64) -> Comparison {
+        if self.upper < limit {
+            Comparison::Below
+        } else if self.lower >= limit || self.settled {
+            Comparison::Reached
+        } else {
+            Comparison::Undecided
+        }
+    }
+}
+
+/// A facet with walls below a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThinFacet {
+    /// Index into the mesh's triangles.
+    pub triangle: u32,
+    /// The least wall under it.
+    pub least: f64,
+    /// Where that is measured from.
+    pub position: DVec3,
+    /// Out of the wall, of unit length.
+    pub normal: DVec3,
+    /// The welded vertices at its corners.
+    pub corners: [u32; 3],
+    /// The area with walls below the limit.
+    pub area: f64,
+    /// How far `area` may be off.
+    pub error: f64,
+}
+
+/// A wall that a search found.
+#[derive(Debug, Clone, Copy)]
+struct FoundWall {
+    depth: f64,
+    foot: DVec3,
+    hit: DVec3,
+    away: DVec3,
+}
+
+/// What a search carries along.
+#[derive(Debug, Clone, Copy)]
+struct Search {
+    /// Walls that are not thinner by the tolerance are not looked for.
+    best: f64,
+    found: Option<FoundWall>,
+    /// The least depth of places of which it was not decided whether they are an edge's.
+    open: f64,
+    /// The least depth that rounding may have hidden at the sides of a shaft.
+    low: f64,
+}
+
+impl Solid<'_> {
+    /// Walls whose difference from a limit is smaller tie with it.
+    pub fn tolerance(&self) -> f64 {
+        ROUNDINGS * self.grain + self.step()
+    }
+
+    /// The search does not look for walls that are thinner by less than this.
+    fn step(&self) -> f64 {
+        0.5 * self.grain
+    }
+
+    fn shaft(&self, t: u32, erode: f64) -> Option<FacetShaft> {
+        let corners = self.surface.corners(t as usize)?.map(Vec3::as_dvec3);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero() * self.sign;
+        if normal == DVec3::ZERO {
+            return None;
+        }
+        // The direction of a narrower one is not known.
+        FacetShaft::new(corners, -normal, erode).filter(|p| p.height > 8.0 * self.grain)
+    }
+
+    /// The cosine of the angle between facet `t`, turned round, and the shaft's facet.
+    fn facing(&self, shaft: &FacetShaft, t: u32) -> f64 {
+        self.surface.face_normals[t as usize].as_dvec3().dot(shaft.into) * self.sign
+    }
+
+    /// The least wall over all facets, or nothing where no place has a wall. `order` are the
+    /// facets, those near to each other in space one after the other.
+    pub fn least(&self, order: &[u32], job: &Job) -> Result<Option<LeastWall>, Cancelled> {
+        let mut all = self.first_bound(order, job)?;
+        let (mut from, mut size) = (0, ROUND);
+        let done = AtomicUsize::new(0);
+        while from < order.len() {
+            let round = &order[from..(from + size).min(order.len())];
+            let best = all.best;
+            let found: Vec<Search> = round
+                .par_chunks(CHUNK)
+                .map(|chunk| {
+                    job.check()?;
+                    let mut search =
+                        Search { best, found: None, open: f64::INFINITY, low: f64::INFINITY };
+                    chunk.iter().for_each(|&t| self.facet(t, &mut search));
+                    done.fetch_add(chunk.len(), Relaxed);
+                    Ok(search)
+                })
+                .collect::<Result<_, Cancelled>>()?;
+            for s in found {
+                all.open = all.open.min(s.open);
+                all.low = all.low.min(s.low);
+                let better = |f: &FoundWall| all.found.is_none_or(|a| f.depth < a.depth);
+                if let Some(f) = s.found.filter(better) {
+                    (all.found, all.best) = (Some(f), f.depth);
+                }
+            }
+            from += round.len();
+            size *= 2;
+        }
+        let error = ROUNDINGS * self.grain;
+        Ok(all.found.map(|f| LeastWall {
+            lower: (f.depth - self.step()).min(all.open).min(all.low).max(error) - error,
+            upper: f.depth + error,
+            value: f.depth,
+            certified: true,
+            settled: all.open >= f.depth - error,
+            position: f.foot.to_array(),
+            opposite: f.hit.to_array(),
+            normal: f.away.to_array(),
+        }))
+    }
+
+    /// A wall by one ray in the middle of some facets: what is deeper needs no look.
+    fn first_bound(&self, order: &[u32], job: &Job) -> Result<Search, Cancelled> {
+        const RAYS: usize = 50_000;
+        let step = order.len().div_ceil(RAYS).max(1);
+        let some: Vec<u32> = order.iter().copied().step_by(step).collect();
+        let found: Vec<Option<FoundWall>> = some
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                job.check()?;
+                let walls = chunk.iter().filter_map(|&t| {
+                    let shaft = self.shaft(t, 0.0)?;
+                    let corners = self.surface.corners(t as usize)?.map(Vec3::as_dvec3);
+                    let foot = corners.iter().sum::<DVec3>() / 3.0;
+                    let (u, depth) = self.first_hit(&shaft, t, foot)?;
+                    let wall = depth > ROUNDINGS * self.grain && self.facing(&shaft, u) >= OPPOSED;
+                    let (hit, away) = (foot + shaft.into * depth, -shaft.into);
+                    wall.then_some(FoundWall { depth, foot, hit, away })
+                });
+                Ok(walls.min_by(|a, b| a.depth.total_cmp(&b.depth)))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let found = found.into_iter().flatten().min_by(|a, b| a.depth.total_cmp(&b.depth));
+        let best = found.map_or(f64::INFINITY, |f| f.depth);
+        Ok(Search { best, found, open: f64::INFINITY, low: f64::INFINITY })
+    }
+
+    /// The first facet that faces `t` under `foot`, a point of `t`, and its depth.
+    fn first_hit(&self, shaft: &FacetShaft, t: u32, foot: DVec3) -> Option<(u32, f64)> {
+        let ray = Ray::new(foot.as_vec3(), shaft.into.as_vec3());
+        let faces = |u: u32| u != t && self.facing(shaft, u) > grazing(self.tilts, t, u);
+        self.tree.closest_hit(ray, faces).map(|h| (h.triangle, f64::from(h.t)))
+    }
+
+    /// Looks under facet `t`.
+    fn facet(&self, t: u32, search: &mut Search) {
+        let Some(shaft) = self.shaft(t, 2.0 * self.grain) else { return };
+        let (tolerance, least) = (self.step(), ROUNDINGS * self.grain);
+        let depth = search.best - tolerance;
+        let from = if self.opposed_only { OPPOSED } else { 0.0 };
+        shaft.each_below(self.tree, depth, |u, corners| {
+            let facing = self.facing(&shaft, u);
+            if u != t && facing > grazing(self.tilts, t, u).max(from) {
+                let patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
+                let low = patch.lowest().map_or(f64::INFINITY, |c| c.z);
+                if low < search.best - tolerance && !patch.narrow(2.0 * self.grain) {
+                    self.settle(&shaft, t, facing, patch, search);
+                }
+            }
+            search.best - tolerance
+        });
+    }
+
+    /// Finds the least wall of a patch that is below what is known. Cuts it until the lowest place
+    /// of a part is a wall, or the part is an edge's or hidden behind one.
+    fn settle(&self, shaft: &FacetShaft, t: u32, facing: f64, patch: Patch, search: &mut Search) {
+        let tolerance = self.step();
+        let turned = facing < OPPOSED;
+        let mut parts = vec![patch];
+        let mut count = 0;
+        while let Some(part) = parts.pop() {
+            let Some(low) = part.lowest().filter(|c| c.z < search.best - tolerance) else {
+                continue;
+            };
+            if part.narrow(2.0 * self.grain) {
+                continue;
+            }
+            count += 1;
+            if count > PARTS {
+                search.open = search.open.min(low.z);
+                continue;
+            }
+            if turned {
+                match self.belongs_to_edge(shaft, &part, low) {
+                    Some(true) => continue,
+                    Some(false) => {}
+                    None => {
+                        parts.extend(part.halves().0);
+                        continue;
+                    }
+                }
+            }
+            if self.hidden_by_edge(shaft, t, &part, low) {
+                parts.extend(part.halves().0);
+                continue;
+            }
+            // The sides of shafts were moved inwards, and narrow patches left out.
+            let slope = (1.0 / (facing * facing) - 1.0).max(0.0).sqrt().min(STEEPEST);
+            search.low = search.low.min(low.z - ROUNDINGS * self.grain * slope);
+            search.best = low.z;
+            search.found = Some(FoundWall {
+                depth: low.z,
+                foot: shaft.foot(low),
+                hit: shaft.place(low),
+                away: -shaft.into,
+            });
+        }
+    }
+
+    /// Whether a part of a turned patch is an edge's: all of it, or its lowest place not; `None`
+    /// where that differs within it.
+    fn belongs_to_edge(&self, shaft: &FacetShaft, part: &Patch, low: DVec3) -> Option<bool> {
+        let own = self.edges.nearest(shaft.foot(low), REACH * low.z + 4.0 * self.grain);
+        if own.is_none() {
+            return Some(false);
+        }
+        let middle = shaft.foot(part.middle());
+        let size = part.corners().iter().map(|c| shaft.foot(*c).distance(middle));
+        let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
+        let (segment, _) = self.edges.nearest(middle, reach)?;
+        // The distance from a segment is convex and the depth linear: corners decide.
+        let near = |c: &DVec3| {
+            let d = distance_squared(shaft.foot(*c), segment).sqrt();
+            d <= REACH * c.z + 8.0 * self.grain
+        };
+        part.corners().iter().all(near).then_some(true)
+    }
+
+    /// The first thing under the lowest place of a part is an edge's: what comes behind does not
+    /// count.
+    fn hidden_by_edge(&self, shaft: &FacetShaft, t: u32, part: &Patch, low: DVec3) -> bool {
+        if self.edges.is_empty() {
+            return false;
+        }
+        let inside = low.lerp(part.middle(), 1e-3);
+        let Some((u, depth)) = self.first_hit(shaft, t, shaft.foot(inside)) else { return false };
+        let nearer = depth < inside.z - 16.0 * self.grain;
+        nearer && self.facing(shaft, u) < OPPOSED && self.edge_at(shaft, inside, depth)
+    }
+
+    /// Whether a value to a turned side is an edge's, measured at `place`.
+    pub fn is_edge(&self, place: Vec3, value: f32) -> bool {
+        let reach = REACH * f64::from(value) + 8.0 * self.grain;
+        self.edges.nearest(place.as_dvec3(), reach).is_some()
+    }
+
+    /// Whether a value of `depth`, to a turned side, is an edge's at this place.
+    fn edge_at(&self, shaft: &FacetShaft, place: DVec3, depth: f64) -> bool {
+        self.edges.nearest(shaft.foot(place), REACH * depth + 8.0 * self.grain).is_some()
+    }
+
+    /// The facets with walls below `limit`, rising.
+    pub fn thin(&self, order: &[u32], limit: f64, job: &Job) -> Result<Vec<ThinFacet>, Cancelled> {
+        let area = |&t: &u32| self.shaft(t, 0.0).map_or(0.0, |p| p.area);
+        let all: f64 = order.iter().map(area).sum();
+        let found: Vec<Vec<ThinFacet>> = order
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                job.check()?;
+                Ok(chunk.iter().filter_map(|&t| self.thin_facet(t, limit, all)).collect())
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut found = found.concat();
+        found.sort_unstable_by_key(|f| f.triangle);
+        Ok(found)
+    }
+
+    fn thin_facet(&self, t: u32, limit: f64, all: f64) -> Option<ThinFacet> {
+        let below = limit + self.step();
+        let mut search =
+            Search { best: below, found: None, open: f64::INFINITY, low: f64::INFINITY };
+        self.facet(t, &mut search);
+        let least = search.found?;
+        let shaft = self.shaft(t, 0.0)?;
+        let (area, error) = self.area_below(&shaft, t, limit, all);
+        let corners = self.surface.triangles[t as usize];
+        let (normal, position) = (least.away, least.foot);
+        let least = least.depth;
+        Some(ThinFacet { triangle: t, least, position, normal, corners, area, error })
+    }
+
+    /// The area of the shaft's triangle with walls below `limit`, and its error.
+    fn area_below(&self, shaft: &FacetShaft, t: u32, limit: f64, all: f64) -> (f64, f64) {
+        /// The share of the whole surface that is not cut any more.
+        const SMALL: f64 = 1e-5;
+        let least = ROUNDINGS * self.grain;
+        let mut met: Vec<(u32, [Vec3; 3])> = Vec::new();
+        shaft.each_below(self.tree, limit, |u, corners| {
+            if u != t {
+                met.push((u, corners));
+            }
+            limit
+        });
+        met.sort_unstable_by_key(|m| m.0);
+        met.dedup_by_key(|m| m.0);
+        let (mut area, mut error, mut again) = (0.0, 0.0, 0.0);
+        for (u, corners) in met {
+            let facing = self.facing(shaft, u);
+            let mut patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
+            patch.cut(|c| limit - c.z);
+            if patch.narrow(2.0 * self.grain) {
+                continue;
+            }
+            let side = grazing(self.tilts, t, u);
+            if facing > side {
+                let (own, doubt) = self.area_of_walls(shaft, facing, patch);
+                area += own;
+                error += doubt;
+            } else if facing < -side {
+                // Where a ray enters matter again, it may leave it again and be counted twice.
+                again += patch.area();
+            }
+        }
+        if again <= 0.0 || area <= 0.0 {
+            return (area.min(shaft.area), error);
+        }
+        if shaft.area <= SMALL * all {
+            return self.area_by_rays(shaft, t, limit);
+        }
+        shaft.four().iter().fold((0.0, 0.0), |(area, error), &corners| {
+            let Some(part) = FacetShaft::new(corners, shaft.into, 0.0) else {
+                return (area, error);
+            };
+            let (own, doubt) = self.area_below(&part, t, limit, all);
+            (area + own, error + doubt)
+        })
+    }
+
+    /// The same by four rays, for a small triangle.
+    fn area_by_rays(&self, shaft: &FacetShaft, t: u32, limit: f64) -> (f64, f64) {
+        let parts = shaft.four();
+        let hits = parts.iter().filter(|c| {
+            let foot = c.iter().sum::<DVec3>() / 3.0;
+            self.first_hit(shaft, t, foot).is_some_and(|(u, depth)| {
+                let turned = self.facing(shaft, u) < OPPOSED;
+                let reach = REACH * depth + 8.0 * self.grain;
+                depth < limit && !(turned && self.edges.nearest(foot, reach).is_some())
+            })
+        });
+        let share = hits.count() as f64 / 4.0;
+        (shaft.area * share, if share > 0.0 && share < 1.0 { shaft.area * 0.25 } else { 0.0 })
+    }
+
+    /// The area of a patch without what is an edge's, and its error.
+    fn area_of_walls(&self, shaft: &FacetShaft, facing: f64, patch: Patch) -> (f64, f64) {
+        if facing >= OPPOSED || self.edges.is_empty() {
+            return (patch.area(), 0.0);
+        }
+        let small = patch.area() / PARTS as f64;
+        let (mut area, mut error) = (0.0, 0.0);
+        let mut parts = vec![patch];
+        while let Some(part) = parts.pop() {
+            let middle = part.middle();
+            let foot = shaft.foot(middle);
+            let size = part.corners().iter().map(|c| shaft.foot(*c).distance(foot));
+            let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
+            let Some((segment, _)) = self.edges.nearest(foot, reach) else {
+                area += part.area();
+                continue;
+            };
+            let far = |c: &DVec3| distance_squared(shaft.foot(*c), segment).sqrt() - REACH * c.z;
+            if part.corners().iter().all(|c| far(c) <= 8.0 * self.grain) {
+                continue;
+            }
+            if part.area() <= small {
+                let own = part.area();
+                area += if self.edge_at(shaft, middle, middle.z) { 0.0 } else { own };
+                error += own * 0.5;
+                continue;
+            }
+            parts.extend(part.halves().0);
+        }
+        (area, error)
+    }
+}

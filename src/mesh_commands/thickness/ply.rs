@@ -1,0 +1,39 @@
+//! The map as a PLY file.
+
+use std::io::Write;
+
+use sculptd_geometry::CentredMesh;
+use sculptd_geometry::thickness::Thickness;
+
+/// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
+/// reason.
+pub(super) fn write(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::Result<()> {
+    let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
+    write!(
+        w,
+        "ply\nformat binary_little_endian 1.0\ncomment thickness in mm; nan: no value; reason 0 \
+            measured, 1 edge, 2 nothing \
+         ahead, 3 no normal, 4 no face\nelement vertex {n}\nproperty double x\nproperty double \
+         y\nproperty double z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float \
+         thickness\nproperty uchar reason\n\
+         element face {m}\nproperty list uchar int vertex_indices\nproperty float \
+         thickness\nend_header\n"
+    )?;
+    let colours = t.colours(t.scale());
+    let mut rows = Vec::with_capacity(n * 32 + m * 17);
+    for v in 0..n {
+        for x in (part.mesh.positions[v].as_dvec3() + part.centre).to_array() {
+            rows.extend(x.to_le_bytes());
+        }
+        rows.extend(colours[v]);
+        rows.extend(t.values[v].to_le_bytes());
+        rows.push(t.reasons[v] as u8);
+    }
+    for (f, c) in part.mesh.triangles.iter().enumerate() {
+        rows.push(3);
+        c.iter().for_each(|v| rows.extend(v.to_le_bytes()));
+        rows.extend(t.face_values.get(f).copied().unwrap_or(f32::NAN).to_le_bytes());
+    }
+    w.write_all(&rows)
+}
