@@ -1,0 +1,220 @@
+//! The report descriptor as a second witness of a family's parser.
+//!
+//! A descriptor that states a tip, an eraser, buttons, axes and a pressure says what the bits of a
+//! report mean. [`contradictions`] writes one report for each statement, reads it with the parser
+//! that the catalogue has chosen, and returns every statement that is read as something else.
+//! Descriptors lie, too; which of the two is right is decided once for each class, in the tests
+//! over the public descriptors.
+
+use crate::catalogue::Found;
+use crate::descriptor::{Bits, Descriptor, PenLayout};
+use crate::hid::decoder::Decoder;
+use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
+
+/// What a descriptor states of one report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Statement {
+    /// A pen in range over the tablet touches nothing.
+    Hover,
+    /// The tip switch is a contact of the pen.
+    Tip,
+    /// The invert bit turns the pen over.
+    Invert,
+    /// The eraser bit is a contact of the eraser.
+    Eraser,
+    /// The first barrel button.
+    Barrel,
+    /// The second barrel button.
+    SecondBarrel,
+    /// The third barrel button.
+    ThirdBarrel,
+    /// The largest count of both axes is the area's far corner.
+    FarCorner,
+    /// The largest pressure is full pressure.
+    FullPressure,
+}
+
+/// A statement of a descriptor that the parser reads as something else.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contradiction {
+    /// The report; `None` where the descriptor uses no report ids.
+    pub report_id: Option<u8>,
+    /// What the descriptor states.
+    pub statement: Statement,
+    /// What the parser read instead, for people.
+    pub read_as: String,
+}
+
+impl Contradiction {
+    /// One line for people.
+    pub fn in_words(&self) -> String {
+        let report = self.report_id.map_or(String::new(), |id| format!("report {id:02x}: "));
+        let what = match self.statement {
+            Statement::Hover => "a hovering pen",
+            Statement::Tip => "the tip switch",
+            Statement::Invert => "the invert bit",
+            Statement::Eraser => "the eraser bit",
+            Statement::Barrel => "the barrel button",
+            Statement::SecondBarrel => "the second barrel button",
+            Statement::ThirdBarrel => "the third barrel button",
+            Statement::FarCorner => "the far corner",
+            Statement::FullPressure => "full pressure",
+        };
+        format!("{report}{what} of the descriptor is read as {}", self.read_as)
+    }
+}
+
+/// What a cross-check compared, and what it found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CrossCheck {
+    /// Statements that were compared.
+    pub compared: usize,
+    /// Statements that the parser reads as something else.
+    pub contradictions: Vec<Contradiction>,
+}
+
+/// How far the far corner may be from the area's, as a share of the area.
+const CORNER: f32 = 0.02;
+/// Least share that counts as full pressure: models of one descriptor differ by one count.
+const FULL: f32 = 0.99;
+
+/// Compares the parser of a model with the descriptor of its interface.
+///
+/// Reports that the parser does not read are left out: other interfaces and modes send them.
+pub fn cross_check(found: &Found, descriptor: &[u8]) -> CrossCheck {
+    let mut out = CrossCheck::default();
+    let Ok(d) = Descriptor::parse(descriptor) else { return out };
+    for layout in d.pens.iter().filter(|p| !p.as_mouse && !p.bare && p.in_range.is_some()) {
+        let length = d.input_lengths.iter().find(|l| l.0 == layout.report_id).map_or(0, |l| l.1);
+        let witness = Witness { found, descriptor, layout, length };
+        if witness.is_read() {
+            witness.compare(&mut out);
+        }
+    }
+    out
+}
+
+/// One described report, and the parser under test.
+struct Witness<'a> {
+    found: &'a Found,
+    descriptor: &'a [u8],
+    layout: &'a PenLayout,
+    length: usize,
+}
+
+impl<'a> Witness<'a> {
+    /// Whether the family's parser, and not the descriptor, reads this report.
+    fn is_read(&self) -> bool {
+        let mut engine =
+            super::family::Engine::new(&self.found.tablet, self.found.id(), self.descriptor);
+        let mut batch = crate::report::Batch::default();
+        engine.parse(&self.report(&[]), &mut batch);
+        batch.as_slice().iter().any(|p| matches!(p, crate::report::Parsed::Pen(_)))
+    }
+
+    /// A report of a pen in range in the middle of the tablet with these fields set.
+    fn report(&self, fields: &[(&Bits, i32)]) -> Vec<u8> {
+        let mut report = vec![0; self.length];
+        if let (Some(id), Some(first)) = (self.layout.report_id, report.first_mut()) {
+            *first = id;
+        }
+        let set = |bits: &Option<Bits>, report: &mut [u8]| {
+            if let Some(bits) = bits {
+                bits.write(report, 1);
+            }
+        };
+        set(&self.layout.in_range, &mut report);
+        set(&self.layout.sense, &mut report);
+        for axis in [&self.layout.x, &self.layout.y].into_iter().flatten() {
+            axis.write(&mut report, axis.min / 2 + axis.max / 2);
+        }
+        for (bits, value) in fields {
+            bits.write(&mut report, *value);
+        }
+        report
+    }
+
+    /// The pen after three equal reports with these fields, in a visit that began by hovering.
+    fn read(&self, fields: &[(&Bits, i32)]) -> Option<Pen> {
+        let mut decoder = Decoder::new(self.found, self.descriptor, DeviceId(0));
+        let mut pen = None;
+        let mut take = |s: Sample| {
+            if let Body::Pen(p) = s.body {
+                pen = Some(p);
+            }
+        };
+        // An eraser is decided as the pen enters: it hovers turned over before it touches.
+        let turned: Vec<_> = fields
+            .iter()
+            .filter(|(bits, _)| self.layout.invert.as_ref() == Some(bits))
+            .copied()
+            .collect();
+        let reports = [self.report(&turned), self.report(&turned), self.report(fields)];
+        for (i, report) in reports.iter().chain([&reports[2]; 2]).enumerate() {
+            decoder.feed(report, i as u64 * 5_000, &mut take);
+        }
+        pen
+    }
+
+    fn compare(&self, out: &mut CrossCheck) {
+        let l = self.layout;
+        let press = l.pressure.as_ref().map(|p| (p, p.max));
+        let with = |bits: [Option<&'a Bits>; 2]| -> Vec<(&'a Bits, i32)> {
+            bits.into_iter().flatten().map(|b| (b, 1)).chain(press).collect()
+        };
+        let mut check = |statement, fields: &[(&Bits, i32)], holds: &dyn Fn(&Pen) -> bool| {
+            out.compared += 1;
+            let pen = self.read(fields);
+            if pen.as_ref().is_none_or(|p| !holds(p)) {
+                let read_as = pen.map_or_else(|| "nothing".to_owned(), |p| in_words(&p));
+                let report_id = l.report_id;
+                out.contradictions.push(Contradiction { report_id, statement, read_as });
+            }
+        };
+        let is = |tool: Tool, tip: bool| {
+            move |p: &Pen| p.in_range && p.tool == tool && p.tip == tip && p.buttons == 0
+        };
+        check(Statement::Hover, &[], &is(Tool::Pen, false));
+        if l.tip.is_some() {
+            check(Statement::Tip, &with([l.tip.as_ref(), None]), &is(Tool::Pen, true));
+        }
+        if let Some(invert) = &l.invert {
+            check(Statement::Invert, &[(invert, 1)], &is(Tool::Eraser, false));
+        }
+        if l.eraser.is_some() {
+            let fields = with([l.invert.as_ref(), l.eraser.as_ref()]);
+            check(Statement::Eraser, &fields, &is(Tool::Eraser, true));
+        }
+        let barrels = [Statement::Barrel, Statement::SecondBarrel, Statement::ThirdBarrel];
+        for (i, (statement, bits)) in barrels.into_iter().zip(&l.barrel).enumerate() {
+            if let Some(bits) = bits {
+                let holds = move |p: &Pen| {
+                    p.in_range && p.tool == Tool::Pen && !p.tip && p.buttons == 1 << i
+                };
+                check(statement, &[(bits, 1)], &holds);
+            }
+        }
+        if let (Some(x), Some(y)) = (&l.x, &l.y) {
+            let far = |p: &Pen| (p.pos_mm / p.area_mm - 1.0).abs().max_element() <= CORNER;
+            check(Statement::FarCorner, &[(x, x.max), (y, y.max)], &far);
+        }
+        if let (Some(_), Some(_)) = (&l.tip, &l.pressure) {
+            let full = |p: &Pen| p.pressure.is_some_and(|v| v >= FULL);
+            check(Statement::FullPressure, &with([l.tip.as_ref(), None]), &full);
+        }
+    }
+}
+
+fn in_words(p: &Pen) -> String {
+    if !p.in_range {
+        return "a pen that has left".to_owned();
+    }
+    let tool = if p.tool == Tool::Eraser { "an eraser" } else { "a pen" };
+    let tip = if p.tip { "in contact" } else { "in the air" };
+    let at = p.pos_mm / p.area_mm * 100.0;
+    let pressure = p.pressure.map_or("none".to_owned(), |v| format!("{:.0} %", v * 100.0));
+    format!(
+        "{tool} {tip}, buttons {:03b}, pressure {pressure}, at {:.0} % and {:.0} % of the area",
+        p.buttons, at.x, at.y
+    )
+}
