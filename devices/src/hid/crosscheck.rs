@@ -10,6 +10,7 @@ use crate::catalogue::Found;
 use crate::descriptor::{Bits, Descriptor, PenLayout};
 use crate::hid::decoder::Decoder;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
+use crate::tablet::Family;
 
 /// What a descriptor states of one report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -71,6 +72,38 @@ pub struct CrossCheck {
     pub compared: usize,
     /// Statements that the parser reads as something else.
     pub contradictions: Vec<Contradiction>,
+}
+
+/// Which of the two is right where a parser contradicts a descriptor, decided once for each class:
+/// returns the reason for which the parser is, or `None` where nothing is decided.
+pub fn decision(found: &Found, contradiction: &Contradiction) -> Option<&'static str> {
+    use Statement::{Barrel, Eraser, FarCorner, Invert};
+    let id = found.id();
+    match (id.parser, contradiction.statement) {
+        (Family::UcLogic | Family::Huion, Eraser) => Some(
+            "what these descriptors call an eraser is the second button (Linux, HID-BPF program \
+             XPPen__Artist24)",
+        ),
+        // Secondary tip, then barrel: the first and the second button.
+        (Family::UcLogic, Barrel) if id.vid == 0x5543 => {
+            Some("the first button is called a secondary tip switch, the second a barrel switch")
+        }
+        (Family::KyePlain, Eraser | Invert) => {
+            Some("invert is the second button, and there is no eraser (Linux hid-kye.c)")
+        }
+        (Family::KyePlain, FarCorner) if id.pid == 0x501a => {
+            Some("the tablet sends up to 40,960 counts (Linux hid-kye.c)")
+        }
+        _ => None,
+    }
+}
+
+/// Adds every contradiction that is not decided to the note of a model, for people.
+pub fn note_undecided(found: &mut Found, descriptor: &[u8]) {
+    let all = cross_check(found, descriptor).contradictions;
+    let open = all.iter().filter(|c| decision(found, c).is_none()).map(Contradiction::in_words);
+    let lines: Vec<String> = found.note.clone().into_iter().chain(open).collect();
+    found.note = (!lines.is_empty()).then(|| lines.join("; "));
 }
 
 /// How far the far corner may be from the area's, as a share of the area.
@@ -217,4 +250,52 @@ fn in_words(p: &Pen) -> String {
         "{tool} {tip}, buttons {:03b}, pressure {pressure}, at {:.0} % and {:.0} % of the area",
         p.buttons, at.x, at.y
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::{Catalogue, Identification, Identity};
+
+    /// Tip, two barrel buttons, eraser, invert, in range, sense; axes of 24 bits and pressure: the
+    /// report of an Intuos Pro, as its descriptor states it.
+    const INTUOS_PRO: &[u8] = &[
+        0x05, 0x0d, 0x09, 0x02, 0xa1, 0x01, 0x85, 0x10, 0x09, 0x20, 0xa1, 0x00, 0x09, 0x42, 0x09,
+        0x44, 0x09, 0x5a, 0x09, 0x45, 0x09, 0x3c, 0x09, 0x32, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01,
+        0x95, 0x06, 0x81, 0x02, 0x06, 0x0d, 0xff, 0x09, 0x36, 0x95, 0x01, 0x81, 0x02, 0x81, 0x03,
+        0x05, 0x01, 0x75, 0x18, 0x09, 0x30, 0x27, 0x80, 0xaf, 0x00, 0x00, 0x81, 0x02, 0x09, 0x31,
+        0x27, 0xd8, 0x73, 0x00, 0x00, 0x81, 0x02, 0x05, 0x0d, 0x09, 0x30, 0x75, 0x10, 0x26, 0xff,
+        0x1f, 0x81, 0x02, 0x75, 0x08, 0x95, 0x11, 0x81, 0x03, 0xc0, 0xc0,
+    ];
+
+    fn intuos_pro() -> Found {
+        let who = Identity {
+            vid: 0x056a,
+            pid: 0x0357,
+            seen_lengths: vec![27],
+            descriptor: INTUOS_PRO.to_vec(),
+            ..Identity::default()
+        };
+        match Catalogue::builtin().unwrap().identify(&who) {
+            Identification::Identified(found) => found,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_parser_that_agrees_has_nothing_noted_and_one_that_does_not_has() {
+        let mut found = intuos_pro();
+        assert_eq!(found.id().parser, Family::WacomIntuosV2);
+        let check = cross_check(&found, INTUOS_PRO);
+        assert_eq!((check.compared, check.contradictions), (8, Vec::new()));
+        // The same descriptor with eraser and invert exchanged.
+        let mut exchanged = INTUOS_PRO.to_vec();
+        exchanged.swap(19, 21);
+        let all = cross_check(&found, &exchanged).contradictions;
+        let stated: Vec<_> = all.iter().map(|c| c.statement).collect();
+        assert_eq!(stated, [Statement::Invert]);
+        note_undecided(&mut found, &exchanged);
+        let note = found.note.unwrap();
+        assert!(note.contains("the invert bit of the descriptor is read as an eraser in contact"));
+    }
 }

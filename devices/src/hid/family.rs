@@ -14,6 +14,8 @@ use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 /// libinput's.
 const SILENCE_US: u64 = 50_000;
 
+/// USB vendor of Huion's tablets and Gaomon's.
+const HUION: u16 = 0x256c;
 /// USB vendor whose pens seem to leave when their second button is pressed.
 const XP_PEN: u16 = 0x28bd;
 /// USB vendor whose second barrel button is sent as tip and first button.
@@ -86,7 +88,11 @@ impl Engine {
                 range_bit,
                 no_tilt: quirk(Quirk::NoTilt),
                 untilted,
-                bits: UcLogicBits::of(&described, id.vid == XP_PEN),
+                bits: UcLogicBits::of(
+                    &described,
+                    id.vid == XP_PEN,
+                    id.vid == HUION || packing == Packing::Huion && id.vid != XP_PEN,
+                ),
             };
             Engine::UcLogic(traits, uclogic::UcLogicMemory::default())
         };

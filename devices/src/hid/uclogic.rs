@@ -67,6 +67,8 @@ pub struct UcLogicBits {
     pub second_bounces: bool,
     /// The third button shares the invert bit.
     pub third_is_invert: bool,
+    /// Reports 08 are Huion's: bit 3 is the third button, bit 5 the eraser.
+    pub huion: bool,
 }
 
 impl UcLogicBits {
@@ -84,9 +86,9 @@ impl UcLogicBits {
     ///
     /// `bounces`: the vendor is one whose second button, called an eraser, makes the pen seem to
     /// leave.
-    pub fn of(d: &Descriptor, bounces: bool) -> UcLogicBits {
+    pub fn of(d: &Descriptor, bounces: bool, huion: bool) -> UcLogicBits {
         let Some(pen) = d.pens.iter().find(|p| !p.as_mouse && p.report_id.is_some()) else {
-            return UcLogicBits::default();
+            return UcLogicBits { huion, ..UcLogicBits::default() };
         };
         let mask = |bits: &Option<Bits>| {
             let bit = bits.as_ref().and_then(|b| b.start.checked_sub(8)).filter(|b| *b < 8);
@@ -94,14 +96,15 @@ impl UcLogicBits {
         };
         let (named, eraser) = (mask(&pen.barrel[1]), mask(&pen.eraser));
         let (secondary, invert) = (mask(&pen.secondary_tip), mask(&pen.invert));
-        let apart = secondary != 0 || named != 0 && eraser != 0;
+        let own_eraser = (secondary == 4 || named & !4 != 0) && invert != 0;
         UcLogicBits {
             id: pen.report_id.unwrap_or(0),
-            second: if eraser != 0 && named & !eraser != 0 { named } else { 0 },
-            eraser: if apart && invert != 0 { eraser } else { 0 },
+            second: if own_eraser { named } else { 0 },
+            eraser: if own_eraser { eraser } else { 0 },
             invert,
             second_bounces: bounces && invert == 0 && eraser == 4 && named == 0 && secondary == 0,
             third_is_invert: secondary == 4 && invert != 0,
+            huion,
         }
     }
 }
@@ -254,7 +257,9 @@ fn switches(id: u8, flags: u8, bits: &UcLogicBits) -> (bool, bool, u32) {
     let set = |mask: u8| u32::from(flags & mask != 0);
     match id {
         // Huion's own protocol: bit 3 is the third button of its newer pens, bit 5 the eraser.
-        0x08 => (flags & 0x20 != 0, flags & 1 != 0, first | set(4) << 1 | set(8) << 2),
+        0x08 if bits.huion => {
+            (flags & 0x20 != 0, flags & 1 != 0, first | set(4) << 1 | set(8) << 2)
+        }
         _ if id == bits.id && bits.invert != 0 => {
             let eraser = flags & (bits.invert | bits.eraser) != 0;
             let second = if bits.second != 0 { bits.second } else { 4 };

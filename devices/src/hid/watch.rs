@@ -18,6 +18,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::bus::{Bus, HidApiBus, Node, read_more};
+use super::crosscheck::note_undecided;
 use super::reader;
 use crate::calibration::{self, Calibration, Calibrations};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
@@ -320,8 +321,9 @@ impl Watcher {
         let mut device = self.bus.open(node).map_err(|e| Refusal::Later(in_words(&e)))?;
         let mut who = node.who.clone();
         read_more(&mut who, device.as_mut());
-        let (found, candidates) =
+        let (mut found, candidates) =
             choose(node, &who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+        note_undecided(&mut found, &who.descriptor);
         let id = found.id();
         for report in id.init_feature.iter().filter_map(|h| hex_bytes(h)) {
             note_failure(node, device.send_feature(&report));
