@@ -287,6 +287,13 @@ impl Watcher {
                 }
                 Err(refusal) => {
                     let mut status = NodeStatus::of(node);
+                    // What it would be read as is known without opening it, where its descriptor is.
+                    let known = Some(node).filter(|n| !n.who.descriptor.is_empty());
+                    if let Some(Ok((found, candidates))) =
+                        known.map(|n| choose(n, &n.who, &self.config, &self.catalogue))
+                    {
+                        status.found(&found, candidates);
+                    }
                     status.reason = Some(match refusal {
                         Refusal::Final(why) => why,
                         Refusal::Later(why) => {
@@ -435,9 +442,7 @@ fn key(node: &Node, serial: bool) -> String {
 fn in_words(e: &io::Error) -> String {
     match e.kind() {
         io::ErrorKind::PermissionDenied => {
-            "permission denied: install the udev rule (config/70-sculptd.rules) and plug it in \
-             again"
-                .to_owned()
+            "permission denied: `sculptd doctor` prints the line that gives you access".to_owned()
         }
         _ => e.to_string(),
     }
