@@ -48,8 +48,8 @@ pub(super) fn ring_place(v: u8) -> Option<f32> {
     (v & 0x80 != 0).then_some(place as f32 / 72.0)
 }
 
-/// Bit 3: the eraser touches. Bit 4: the eraser is the end that is near (usages Eraser and Invert of
-/// these tablets' descriptors).
+/// Bit 3: the eraser touches. Bit 4: the eraser is the end that is near (usages Eraser and Invert
+/// of these tablets' descriptors).
 fn end_of_pen(flags: u8) -> Tool {
     if flags & 0x18 != 0 { Tool::Eraser } else { Tool::Pen }
 }

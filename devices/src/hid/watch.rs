@@ -287,7 +287,7 @@ impl Watcher {
                 }
                 Err(refusal) => {
                     let mut status = NodeStatus::of(node);
-                    // What it would be read as is known without opening it, where its descriptor is.
+                    // What it is read as is known without opening it, where its descriptor is.
                     let known = Some(node).filter(|n| !n.who.descriptor.is_empty());
                     if let Some(Ok((found, candidates))) =
                         known.map(|n| choose(n, &n.who, &self.config, &self.catalogue))

@@ -103,9 +103,10 @@ fn three_buttons_and_the_eraser_of_huions_third_generation() {
 
 /// Tip, barrel, secondary tip, invert, eraser, one bit more, in range; axes of 16 bits, pressure,
 /// tilt: what a Kamvas sends before its driver switches it.
-const KAMVAS_FIRMWARE: &str = "05 0d 09 02 a1 01 85 0a 09 20 a1 01 09 42 09 44 09 43 09 3c 09 45 15 \
-    00 25 01 75 01 95 06 81 02 09 32 75 01 95 01 81 02 81 03 05 01 09 30 09 31 55 0d 65 33 26 ff 7f \
-    35 00 46 00 08 75 10 95 02 81 02 05 0d 09 30 26 ff 3f 75 10 95 01 81 02 09 3d 09 3e 15 a6 25 5a \
+const KAMVAS_FIRMWARE: &str = "05 0d 09 02 a1 01 85 0a 09 20 a1 01 \
+    09 42 09 44 09 43 09 3c 09 45 15 00 25 01 75 01 95 \
+    06 81 02 09 32 75 01 95 01 81 02 81 03 05 01 09 30 09 31 55 0d 65 33 26 ff 7f 35 00 46 \
+    00 08 75 10 95 02 81 02 05 0d 09 30 26 ff 3f 75 10 95 01 81 02 09 3d 09 3e 15 a6 25 5a \
     75 08 95 02 81 02 c0 c0";
 
 #[test]
@@ -134,10 +135,11 @@ fn the_third_button_of_a_kamvas_shares_its_bit_with_the_eraser() {
 }
 
 /// What the kernel's HID-BPF program describes: tip, two barrel buttons, button 0x4A.
-const KAMVAS_BPF: &str = "05 0d 09 02 a1 01 85 08 09 20 a1 00 15 00 25 01 75 01 95 03 09 42 09 44 09 \
-    5a 81 02 05 09 09 4a 95 01 81 02 95 03 81 03 05 0d 09 32 95 01 81 02 05 01 65 11 55 0e 09 30 75 \
-    18 27 20 11 01 00 35 00 46 a8 0d 81 02 09 31 75 10 27 ac 99 00 00 46 af 07 81 02 05 0d 09 30 65 \
-    00 26 ff 3f 81 02 c0 c0";
+const KAMVAS_BPF: &str = "05 0d 09 02 a1 01 85 08 09 20 a1 00 \
+    15 00 25 01 75 01 95 03 09 42 09 44 09 5a 81 02 05 \
+    09 09 4a 95 01 81 02 95 03 81 03 05 0d 09 32 95 01 81 02 05 01 65 11 55 0e 09 30 75 18 \
+    27 20 11 01 00 35 00 46 a8 0d 81 02 09 31 75 10 27 ac 99 00 00 46 af 07 81 02 05 0d 09 \
+    30 65 00 26 ff 3f 81 02 c0 c0";
 
 #[test]
 fn the_third_button_is_kept_under_hid_bpf() {
@@ -152,10 +154,11 @@ fn the_third_button_is_kept_under_hid_bpf() {
 }
 
 /// Tip, barrel, eraser, two bits of padding, in range; axes of 15 bits, pressure, tilt.
-const ARTIST_24: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 09 42 09 44 09 45 15 00 25 01 75 01 95 03 \
-    81 02 95 02 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 0d 46 f0 \
-    50 26 ff 7f 81 02 09 31 46 91 2d 26 ff 7f 81 02 b4 09 30 45 00 26 ff 1f 81 42 09 3d 15 81 25 7f 75 \
-    08 95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
+const ARTIST_24: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 \
+    09 42 09 44 09 45 15 00 25 01 75 01 95 03 81 02 95 \
+    02 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 0d 46 \
+    f0 50 26 ff 7f 81 02 09 31 46 91 2d 26 ff 7f 81 02 b4 09 30 45 00 26 ff 1f 81 42 09 3d \
+    15 81 25 7f 75 08 95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
 
 fn artist(flags: u8) -> Vec<u8> {
     let pressure = if flags & 1 != 0 { 15 } else { 0 };
@@ -177,15 +180,17 @@ fn the_second_button_of_an_artist_24_does_not_cut_its_stroke() {
 }
 
 /// As an Artist 24's, with invert after the eraser, which its own pens have.
-const PRO_16_GEN_2: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 09 42 09 44 09 45 09 3c 15 00 25 01 75 \
-    01 95 04 81 02 95 01 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 \
-    0d 46 ff 34 26 ff 7f 81 02 09 31 46 20 21 26 ff 7f 81 02 b4 09 30 45 00 26 ff 3f 81 42 09 3d 15 81 \
-    25 7f 75 08 95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
+const PRO_16_GEN_2: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 \
+    09 42 09 44 09 45 09 3c 15 00 25 01 75 01 95 04 81 \
+    02 95 01 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 \
+    0d 46 ff 34 26 ff 7f 81 02 09 31 46 20 21 26 ff 7f 81 02 b4 09 30 45 00 26 ff 3f 81 42 \
+    09 3d 15 81 25 7f 75 08 95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
 /// Tip, barrel, eraser, tablet pick, invert: a descriptor that has a bit for each.
-const PRO_16: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 09 42 09 44 09 45 09 46 09 3c 15 00 25 01 75 \
-    01 95 05 81 02 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 0d 46 74 34 \
-    26 ff 7f 81 02 09 31 46 7f 1d 26 ff 7f 81 02 b4 09 30 45 00 26 ff 1f 81 42 09 3d 15 81 25 7f 75 08 \
-    95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
+const PRO_16: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 \
+    09 42 09 44 09 45 09 46 09 3c 15 00 25 01 75 01 95 \
+    05 81 02 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 0d 46 \
+    74 34 26 ff 7f 81 02 09 31 46 7f 1d 26 ff 7f 81 02 b4 09 30 45 00 26 ff 1f 81 42 09 3d \
+    15 81 25 7f 75 08 95 01 81 02 09 3e 15 81 25 7f 81 02 c0 c0";
 
 #[test]
 fn the_eraser_of_an_artist_pro_touches_and_its_second_button_does_not_erase() {
@@ -201,10 +206,11 @@ fn the_eraser_of_an_artist_pro_touches_and_its_second_button_does_not_erase() {
 }
 
 /// A selector of tip, barrel button and tablet pick in two bits, invert, in range.
-const SIRIUS: &str = "05 0d 09 02 a1 01 85 10 09 20 a1 00 09 42 09 44 09 46 15 01 25 03 95 01 75 02 81 \
-    00 75 01 15 00 25 01 09 3c 81 02 81 03 09 32 81 02 95 03 81 03 75 10 95 01 05 01 65 13 55 0d 35 00 \
-    09 30 46 10 27 26 20 4e 81 02 09 31 46 70 17 26 e0 2e 81 02 05 0d 09 30 45 00 65 00 26 ff 03 81 02 \
-    c0 c0";
+const SIRIUS: &str = "05 0d 09 02 a1 01 85 10 09 20 a1 00 \
+    09 42 09 44 09 46 15 01 25 03 95 01 75 02 81 00 75 \
+    01 15 00 25 01 09 3c 81 02 81 03 09 32 81 02 95 03 81 03 75 10 95 01 05 01 65 13 55 0d \
+    35 00 09 30 46 10 27 26 20 4e 81 02 09 31 46 70 17 26 e0 2e 81 02 05 0d 09 30 45 00 65 \
+    00 26 ff 03 81 02 c0 c0";
 
 #[test]
 fn a_barrel_button_of_a_waltop_in_the_air_is_no_contact() {
@@ -288,10 +294,11 @@ fn a_pen_pulled_away_in_contact_ends_its_stroke_50_ms_later() {
 }
 
 /// Tip, barrel, invert, eraser, padding, in range; axes and pressure.
-const TABLET_PC: &str = "05 0d 09 02 a1 01 85 03 09 20 a1 00 09 42 09 44 09 3c 09 45 15 00 25 01 75 01 \
-    95 04 81 02 95 01 81 03 09 32 95 01 81 02 95 02 81 03 05 01 09 30 75 10 95 01 a4 65 11 55 0e 35 00 \
-    46 7a 08 15 00 26 c4 54 81 02 09 31 46 50 05 26 20 35 81 02 b4 05 0d 09 30 15 00 26 ff 0f 81 02 c0 \
-    c0";
+const TABLET_PC: &str = "05 0d 09 02 a1 01 85 03 09 20 a1 00 \
+    09 42 09 44 09 3c 09 45 15 00 25 01 75 01 95 04 81 \
+    02 95 01 81 03 09 32 95 01 81 02 95 02 81 03 05 01 09 30 75 10 95 01 a4 65 11 55 0e 35 \
+    00 46 7a 08 15 00 26 c4 54 81 02 09 31 46 50 05 26 20 35 81 02 b4 05 0d 09 30 15 00 26 \
+    ff 0f 81 02 c0 c0";
 
 #[test]
 fn a_pen_whose_pressure_is_always_0_draws() {

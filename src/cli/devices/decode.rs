@@ -16,8 +16,8 @@ use super::{recording_fail, write_text};
 struct DecodedRow {
     t_us: u64,
     device: u16,
-    /// `pen`, `eraser`, `mouse`, `touch`; `pad` for a tablet's keys and wheels; `hands` for a tracker's frame, whose position is its
-    /// first palm's x and y and whose buttons count hands.
+    /// `pen`, `eraser`, `mouse`, `touch`; `pad` for a tablet's keys and wheels; `hands` for a
+    /// tracker's frame, whose position is its first palm's x and y and whose buttons count hands.
     tool: &'static str,
     in_range: bool,
     tip: bool,

@@ -102,8 +102,8 @@ impl HandGate {
         self.known.is_empty()
     }
 
-    /// Returns the hands of a frame that can be true, each under the number that it keeps. Allocates
-    /// only while more hands are known than ever before.
+    /// Returns the hands of a frame that can be true, each under the number that it keeps.
+    /// Allocates only while more hands are known than ever before.
     pub fn pass(&mut self, t_us: u64, hands: &Hands) -> Hands {
         self.known.retain(|k| t_us.saturating_sub(k.t_us) <= FORGOTTEN_US);
         let seen = hands.as_slice();
@@ -158,8 +158,8 @@ impl HandGate {
         of_known
     }
 
-    /// Whether a hand that is none of the known ones may act: at once where no known hand is missed,
-    /// else when it has stayed for [`PERSISTS_US`].
+    /// Whether a hand that is none of the known ones may act: at once where no known hand is
+    /// missed, else when it has stayed for [`PERSISTS_US`].
     fn may_be_new(&mut self, t_us: u64, hand: &Hand, of_known: &[Option<usize>]) -> bool {
         let missed = |(k, known): (usize, &Known)| {
             let same = known.tracker_id == hand.id

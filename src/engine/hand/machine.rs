@@ -101,7 +101,8 @@ impl Track {
         false
     }
 
-    /// The fingers of a pinch parted while the hand was not seen: what the hand does is judged anew.
+    /// The fingers of a pinch parted while the hand was not seen: what the hand does is judged
+    /// anew.
     pub fn open_unseen(&mut self, t_us: u64) {
         if self.pose == Pose::Pinch {
             (self.pose, self.pose_us) = (Pose::Neutral, t_us);

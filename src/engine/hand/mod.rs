@@ -298,8 +298,8 @@ impl HandTools {
         self.held.retain(|h| t_us.saturating_sub(h.track.seen_us) <= bridge_us);
     }
 
-    /// Whether two hands act together and one of them was not seen in this frame: they go on when it
-    /// is.
+    /// Whether two hands act together and one of them was not seen in this frame: they go on when
+    /// it is.
     fn waits_for_second(&self, t_us: u64) -> bool {
         let together = self.pair.is_some() || self.apart_mm.is_some();
         together && self.held.len() > 1 && self.held.iter().any(|h| h.track.seen_us != t_us)

@@ -131,8 +131,8 @@ impl Features {
     }
 }
 
-/// The tracker's word, unless the bones contradict it: its flag may be stuck. Without a word, by how
-/// far the tip is from the palm.
+/// The tracker's word, unless the bones contradict it: its flag may be stuck. Without a word, by
+/// how far the tip is from the palm.
 fn is_extended(finger: &Finger, palm: Vec3, width: f32) -> bool {
     let reach = (finger.tip - palm).length() / width;
     let Some(word) = finger.extended else { return reach > 0.95 };

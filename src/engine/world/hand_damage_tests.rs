@@ -90,8 +90,8 @@ fn world() -> World {
     World::new(clay, Camera::default(), BrushSettings::default(), Workers::new(1), options)
 }
 
-/// The clay after a stream, and before, where it is followed, after each second frame; the number of
-/// its dabs, and whether nothing is held any more.
+/// The clay after a stream, and before, where it is followed, after each second frame; the number
+/// of its dabs, and whether nothing is held any more.
 fn sculpted(stream: &[(u64, Hands)], follows: bool) -> (Vec<Vec<Vec3>>, u64, bool) {
     let mut world = world();
     let (mut dabs, mut way) = (0, Vec::new());

@@ -1,11 +1,11 @@
 //! Which map and which delay bring the places of a pen onto those of a pointer, and whether the
 //! motion says so without doubt.
 //!
-//! A delay can be taken for a map: on a circle at constant speed it is a turn, on a line at constant
-//! speed a shift. So a fit is believed only where every other delay and every other kind of map that
-//! explains the pairs as well puts the corners of the part that is used on the same pixels (the profile
-//! likelihood of the delay; Pawitan, In All Likelihood, 2001, chapter 3), and where the least
-//! squares leave the corners no room.
+//! A delay can be taken for a map: on a circle at constant speed it is a turn, on a line at
+//! constant speed a shift. So a fit is believed only where every other delay and every other kind
+//! of map that explains the pairs as well puts the corners of the part that is used on the same
+//! pixels (the profile likelihood of the delay; Pawitan, In All Likelihood, 2001, chapter 3), and
+//! where the least squares leave the corners no room.
 //!
 //! A desktop scales an area, moves it, mirrors it or turns it by a right angle. Only where no such
 //! map fits is any other affine map tried.
