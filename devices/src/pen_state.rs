@@ -1,13 +1,14 @@
 //! The state of a pen, the same for every family: proximity, contact, tool, buttons.
 //!
 //! Rules:
-//! * Every visit ends: by a report, by silence (in families that send no such report), or by
-//!   unplugging.
+//! * Every visit ends: by a report, by silence (in the air only in families that send no such
+//!   report, in contact in all of them), or by unplugging.
 //! * Hover never presses; a contact ends before or with its visit; buttons let go when the pen
 //!   leaves.
 //! * The tool is decided as the pen enters. A change of tool within a visit ends it and begins
 //!   another.
-//! * Pressure is clamped to 0..1; nothing wraps.
+//! * Pressure is clamped to 0..1; nothing wraps. A pen whose tip touches and whose pressure has
+//!   never been anything but 0 has none.
 
 use glam::Vec2;
 
@@ -22,6 +23,17 @@ const DOWN: f32 = 0.05;
 const UP: f32 = 0.01;
 /// A rest pressure above this is a hand pressing, not a worn pen.
 const MOST_OFFSET: f32 = 0.5;
+
+/// A pen in contact that is silent for so long, in microseconds, was pulled away. The figure is
+/// libinput's.
+pub const CONTACT_SILENCE_US: u64 = 50_000;
+/// The same for a pen that rests under full pressure on a tablet that sends changes alone: in
+/// recordings of such tablets a resting pen is silent for up to 183 ms.
+const RESTING_SILENCE_US: u64 = 250_000;
+/// A pen slower than this rests, mm/s. Those recordings have up to 22 mm/s before a silence.
+const RESTING_SPEED: f32 = 24.0;
+/// Reports in contact without pressure that prove a pen to have none, if it never had any.
+const NO_PRESSURE: u32 = 4;
 
 /// Part of an axis by which a pen at the edge may be beyond it.
 const EDGE_SHARE: i64 = 100;
@@ -39,6 +51,8 @@ pub struct PenConfig {
     pub scale: PenScale,
     /// Microseconds of silence after which the pen has left; `None` where a report always says it.
     pub silence_us: Option<u64>,
+    /// Microseconds of silence after which a pen in contact has left, whatever its family says.
+    pub contact_silence_us: u64,
     /// The family always reports tilt: it is 0 until the first report.
     pub tilts: bool,
 }
@@ -69,8 +83,20 @@ pub struct PenState {
     fresh: bool,
     /// The rest pressure of a worn pen, as a share.
     offset: f32,
-    /// The last tip switch seen, where there is one.
+    /// The tip switch of this report, where it says so.
     switch: Option<bool>,
+    /// Pressure while the tip switch last said that nothing touches, as a share. A report that
+    /// hides the switch behind a button is judged by what is above it.
+    resting: f32,
+    /// The tablet repeats equal reports of a pen that rests: its silence is never rest.
+    repeats: bool,
+    /// The last two reports of a contact have full pressure, and are less apart than
+    /// [`RESTING_SPEED`].
+    rests: bool,
+    /// Reports in contact without pressure, while the pen never had any.
+    unpressed: u32,
+    /// The pen has had pressure.
+    pressed: bool,
     /// Reports above the stated full pressure, and the highest of them.
     over: (u32, u32),
     /// Full pressure as reports have proved it, where it is more than the stated one.
@@ -93,6 +119,11 @@ impl PenState {
             fresh: true,
             offset: 0.0,
             switch: None,
+            resting: 0.0,
+            repeats: false,
+            rests: false,
+            unpressed: 0,
+            pressed: false,
             over: (0, 0),
             proved_pressure: 0,
             outside: (0, 0),
@@ -133,11 +164,10 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        if self.pen.in_range {
-            self.cfg.silence_us.map(|s| self.last_us.saturating_add(s))
-        } else {
-            None
-        }
+        let resting = if self.rests && !self.repeats { RESTING_SILENCE_US } else { 0 };
+        let contact = self.pen.tip.then_some(self.cfg.contact_silence_us.max(resting));
+        let silence = [self.cfg.silence_us, contact].into_iter().flatten().min()?;
+        self.pen.in_range.then(|| self.last_us.saturating_add(silence))
     }
 
     /// Ends the visit if the pen has been silent for too long. The sample's time is when the
@@ -151,6 +181,7 @@ impl PenState {
     /// The pen left, or its device was unplugged.
     pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
         self.switch = None;
+        self.resting = 0.0;
         self.fresh = true;
         if !self.pen.in_range {
             return;
@@ -168,9 +199,9 @@ impl PenState {
         self.offset = 0.0;
     }
 
-    /// A report of a pen in range.
+    /// A report of a pen in range. A reader that stalled is no silent pen: the caller knows which,
+    /// and calls [`PenState::tick`] first where the time since the last report was silence.
     pub fn report(&mut self, r: &PenReport, t_us: u64, emit: &mut dyn FnMut(Sample)) {
-        self.tick(t_us, emit);
         if let Some(tool) = r.tool {
             if self.pen.in_range && tool != self.pen.tool {
                 self.leave(t_us, emit);
@@ -181,6 +212,7 @@ impl PenState {
         if entering && r.pos.is_none() {
             return; // Its position is not known.
         }
+        let (before, before_us) = (self.pen, self.last_us);
         self.pen.in_range = true;
         self.last_us = t_us;
         self.count_outside(r);
@@ -191,14 +223,23 @@ impl PenState {
         if let Some(b) = r.buttons {
             self.pen.buttons = b;
         }
-        if r.tip.is_some() {
-            self.switch = r.tip;
-        }
+        self.switch = r.tip;
         self.press(r, entering);
+        self.rest_since(&before, t_us.saturating_sub(before_us));
         let maximum = self.cfg.scale.max_pressure.max(self.proved_pressure);
         self.pressure_use.take(r.pressure, self.pen.tip, maximum);
         self.fresh = false;
         self.emit(t_us, emit);
+    }
+
+    /// What the last two reports say of a silence that may follow.
+    fn rest_since(&mut self, before: &Pen, took_us: u64) {
+        let both = before.tip && self.pen.tip;
+        self.repeats |= both && took_us > 0 && *before == self.pen;
+        let moved = self.pen.pos_mm.distance(before.pos_mm);
+        // A lighter hand trembles, and the pressure with it.
+        let full = self.pen.pressure == Some(1.0);
+        self.rests = both && full && moved <= RESTING_SPEED * took_us as f32 * 1e-6;
     }
 
     fn count_outside(&mut self, r: &PenReport) {
@@ -259,11 +300,15 @@ impl PenState {
             } else if share < self.offset {
                 self.offset = share;
             }
+            if r.tip == Some(false) && share <= MOST_OFFSET {
+                self.resting = share;
+            }
             // Pressure is passed on as it is measured, also in the air: `tip` says whether the pen
             // touches.
             self.pen.pressure = Some(if self.pen.tool == Tool::Mouse { 0.0 } else { share });
         }
-        let felt = self.pen.pressure.map(|p| ((p - self.offset) / (1.0 - self.offset)).max(0.0));
+        let rest = if self.switch.is_none() { self.offset.max(self.resting) } else { self.offset };
+        let felt = self.pen.pressure.map(|p| ((p - rest) / (1.0 - rest)).max(0.0));
         let spike = self.fresh && felt.is_some_and(|p| p >= 1.0);
         if spike {
             self.pen.pressure = Some(0.0);
@@ -275,6 +320,21 @@ impl PenState {
             (_, None, Some(p)) => p >= if self.pen.tip { UP } else { DOWN },
             (_, None, None) => false,
         };
+        self.without_pressure(r);
+    }
+
+    /// Some pens send a pressure that is always 0, and would draw nothing.
+    fn without_pressure(&mut self, r: &PenReport) {
+        self.pressed |= r.pressure.is_some_and(|p| p > 0);
+        let touches = r.tip == Some(true) && r.pressure == Some(0);
+        if self.pressed || self.pen.tool == Tool::Mouse {
+            self.unpressed = 0;
+        } else if touches {
+            self.unpressed = self.unpressed.saturating_add(1);
+        }
+        if self.unpressed >= NO_PRESSURE {
+            self.pen.pressure = None;
+        }
     }
 
     /// A worn pen reports pressure while it hovers. The offset is learned only high over the

@@ -18,6 +18,8 @@ const NEAR: f64 = 0.25;
 /// Counts that a pen uses between nothing and its maximum, at least, in classes of 1/32.
 const LEAST_CLASSES: u32 = 6;
 const CLASSES: u32 = 32;
+/// A pen without pressure in so many reports in contact has none.
+const LEAST_UNPRESSED: u64 = 4;
 
 /// Figures of the reports of one pen that touch.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -54,6 +56,8 @@ pub enum Saturation {
     MaximumTooLow,
     /// The pressure does not rise to its maximum: the bytes are misread.
     Misread,
+    /// The pressure is 0 in every report: the tip alone says whether the pen touches.
+    AlwaysZero,
 }
 
 impl PressureUse {
@@ -110,7 +114,9 @@ impl PressureUse {
         let classes = self.classes.count_ones();
         let climbs = self.near * 2 >= self.rises + self.begun && classes >= LEAST_CLASSES;
         let varied = classes * 2 >= CLASSES;
-        if self.above * 100 > self.contacts {
+        if self.contacts >= LEAST_UNPRESSED && self.highest == 0 {
+            Saturation::AlwaysZero
+        } else if self.above * 100 > self.contacts {
             Saturation::MaximumTooLow
         } else if self.share() <= USUAL {
             Saturation::Usual
@@ -125,6 +131,10 @@ impl PressureUse {
     pub fn in_words(&self) -> Option<String> {
         let why = match self.saturation() {
             Saturation::Usual => "as usual".to_owned(),
+            Saturation::AlwaysZero => "always 0, so the pen draws with full strength wherever its \
+                                       tip touches; try another battery or nib, or calibrate the \
+                                       tablet in its vendor's software"
+                .to_owned(),
             Saturation::Pressed => format!(
                 "the person pressed that hard: reached {} times, {} of them from nearby, over {} \
                  of {CLASSES} classes of counts, and never exceeded",
@@ -181,6 +191,14 @@ mod tests {
         // The same pen, read with half of its maximum.
         assert_eq!(pressed(1.3, 1023).saturation(), Saturation::MaximumTooLow);
         assert!(pressed(1.3, 1023).in_words().is_some_and(|w| w.contains("up to 2047")));
+    }
+
+    #[test]
+    fn a_pen_without_pressure_is_reported() {
+        let mut used = PressureUse::default();
+        (0..60).for_each(|_| used.take(Some(0), true, 1023));
+        assert_eq!(used.saturation(), Saturation::AlwaysZero);
+        assert!(used.in_words().is_some_and(|w| w.contains("always 0")));
     }
 
     #[test]

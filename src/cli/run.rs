@@ -502,6 +502,13 @@ pub fn report(summary: &Summary, stats: Option<&Path>, json: bool) -> Outcome {
             "of it processor p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
             cpu.p50, cpu.p99, cpu.max
         )?;
+        if let Some(taken) = &s.sample_to_tick_ms {
+            writeln!(
+                out,
+                "sample to clay  p50 {:.3} ms, p99 {:.3} ms, max {:.3} ms",
+                taken.p50, taken.p99, taken.max
+            )?;
+        }
         if let Some(shown) = &s.sample_to_present {
             writeln!(out, "sample to screen {:>11} frames, ms p50, p99, max:", shown.frames)?;
             for stage in &shown.stages {

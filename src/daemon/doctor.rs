@@ -5,6 +5,8 @@
 
 #[cfg(target_os = "linux")]
 mod kernel_drivers;
+#[cfg(target_os = "linux")]
+mod tablets;
 
 use std::net::{TcpStream, ToSocketAddrs};
 use std::path::{Path, PathBuf};
@@ -83,7 +85,7 @@ pub struct Places {
 
 /// All checks that need a valid configuration, in the order in which a person would repair.
 pub fn all(config: &Config, places: &Places) -> Vec<Check> {
-    let mut checks = vec![tablets(config, &places.dev)];
+    let mut checks = vec![pen_tablets(config, &places.dev)];
     #[cfg(target_os = "linux")]
     if config.devices.hid
         && let Ok(catalogue) = crate::adaptors::tablets(&config.devices)
@@ -103,45 +105,40 @@ pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     checks
 }
 
-/// Every `hidraw` node that belongs to a tablet must open for reading; one that does not belong to
-/// one need not.
-fn tablets(config: &Config, dev: &Path) -> Check {
+/// Every tablet must open for reading, on its own node.
+fn pen_tablets(config: &Config, dev: &Path) -> Check {
     const NAME: &str = "pen tablets";
     if !config.devices.hid {
         return Check::skip(NAME, "devices.hid is off");
     }
-    let entries = std::fs::read_dir(dev).into_iter().flatten().flatten();
-    let mut nodes: Vec<PathBuf> = entries
-        .filter(|e| e.file_name().to_string_lossy().starts_with("hidraw"))
-        .map(|e| e.path())
-        .collect();
-    nodes.sort();
-    if nodes.is_empty() {
-        return Check::skip(
-            NAME,
-            format!("no {}: nothing is plugged in", dev.join("hidraw*").display()),
-        );
-    }
-    let closed: Vec<String> = nodes
-        .iter()
-        .filter(|p| {
-            std::fs::File::open(p).is_err_and(|e| e.kind() == std::io::ErrorKind::PermissionDenied)
+    #[cfg(target_os = "linux")]
+    return match crate::adaptors::tablets(&config.devices) {
+        Ok(catalogue) => tablets::check(dev, Path::new("/sys/class/hidraw"), &catalogue),
+        Err(e) => Check::fail(NAME, e.to_string(), "mend the tablet file named"),
+    };
+    #[cfg(not(target_os = "linux"))]
+    Check::skip(NAME, format!("there is no {} on this system", dev.join("hidraw*").display()))
+}
+
+/// The group that may use a serial port: the one that the port has, as Debian's `dialout` and
+/// Arch's `uucp`.
+fn serial_group(port: &Path, groups: &str) -> String {
+    #[cfg(unix)]
+    let gid = std::os::unix::fs::MetadataExt::gid;
+    let named = |wanted: &dyn Fn(&str, &str) -> bool| {
+        groups.lines().find_map(|line| {
+            let mut parts = line.split(':');
+            let (name, id) = (parts.next()?, parts.nth(1)?);
+            wanted(name, id).then(|| name.to_owned())
         })
-        .map(|p| p.display().to_string())
-        .collect();
-    if closed.len() < nodes.len() {
-        let all = nodes.len();
-        return Check::pass(
-            NAME,
-            format!("{} of {all} HID devices can be read", all - closed.len()),
-        );
+    };
+    #[cfg(unix)]
+    if let Some(of_port) = std::fs::metadata(port).ok().map(|m| gid(&m)).filter(|id| *id != 0)
+        && let Some(name) = named(&|_, id| id.parse() == Ok(of_port))
+    {
+        return name;
     }
-    Check::fail(
-        NAME,
-        format!("none of {} may be read by this user", closed.join(", ")),
-        "sudo cp config/70-sculptd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && \
-            sudo udevadm trigger",
-    )
+    named(&|name, _| matches!(name, "dialout" | "uucp")).unwrap_or_else(|| "dialout".to_owned())
 }
 
 fn serial(port: &Path) -> Check {
@@ -152,7 +149,10 @@ fn serial(port: &Path) -> Check {
         Err(e) if e.kind() == std::io::ErrorKind::PermissionDenied => Check::fail(
             NAME,
             format!("{shown}: {e}"),
-            "sudo usermod -aG dialout \"$USER\"   # then log in again",
+            format!(
+                "sudo usermod -aG {} \"$(id -un)\"   # then log in again",
+                serial_group(port, &std::fs::read_to_string("/etc/group").unwrap_or_default())
+            ),
         ),
         Err(e) => Check::fail(
             NAME,
@@ -381,4 +381,19 @@ fn probe(config: &LoopConfig) -> Option<Vec<f64>> {
         }
     }
     Some(took)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_serial_group_is_the_systems_own() {
+        let nowhere = Path::new("/nonexistent/ttyS0");
+        let debian = "root:x:0:\ndialout:x:20:ann\nuucp:x:10:\n";
+        let arch = "root:x:0:root\nuucp:x:986:\n";
+        assert_eq!(serial_group(nowhere, arch), "uucp");
+        assert_eq!(serial_group(nowhere, debian), "dialout");
+        assert_eq!(serial_group(nowhere, ""), "dialout");
+    }
 }

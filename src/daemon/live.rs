@@ -341,8 +341,10 @@ impl Ticking {
         discard_commands(&mut now.commands, garbage);
         now.stepped = self.clock.now_ns() - begun;
         now.figures.tick(&report, now.stepped, thread_cpu_ns() - begun_cpu);
+        let ended_us = self.clock.now_us();
+        now.samples.iter().for_each(|s| now.figures.sample(ended_us.saturating_sub(s.t_us)));
         if let Some(sample) = now.samples.last() {
-            let took_us = self.clock.now_us().saturating_sub(sample.t_us);
+            let took_us = ended_us.saturating_sub(sample.t_us);
             now.newest = (sample.t_us, tick, took_us as f64 / 1e3);
         }
     }

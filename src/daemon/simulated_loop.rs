@@ -235,6 +235,7 @@ pub fn summary(
         triangles: world.mesh().triangle_count() as u64,
         hash: format!("{:016x}", world.hash()),
         export,
+        sample_to_tick_ms: figures.sample_to_tick_ms(),
         sample_to_present: None,
     }
 }

@@ -22,6 +22,8 @@ pub struct TickStatistics {
     tick_ns: Histogram<u64>,
     /// Processor time of the tick thread alone.
     tick_cpu_ns: Histogram<u64>,
+    /// From the time of each sample to the end of the tick that it was part of; of live input only.
+    sample_ns: Histogram<u64>,
 }
 
 /// Milliseconds.
@@ -62,6 +64,10 @@ pub struct Summary {
     pub hash: String,
     /// Where the mesh was written, if it was.
     pub export: Option<String>,
+    /// How long samples of devices took to the end of their tick, on the way to the clay; absent in
+    /// a simulated run, which has no clock of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_to_tick_ms: Option<Percentiles>,
     /// How long samples took to the screen, where there was a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_to_present: Option<PresentSummary>,
@@ -78,6 +84,7 @@ impl Default for TickStatistics {
             topology_dropped: 0,
             tick_ns: histogram(),
             tick_cpu_ns: histogram(),
+            sample_ns: histogram(),
         }
     }
 }
@@ -122,6 +129,16 @@ impl TickStatistics {
         self.topology_dropped += report.topology_dropped;
         self.tick_ns.saturating_record(took_ns.clamp(1, LONGEST_NS));
         self.tick_cpu_ns.saturating_record(cpu_ns.min(LONGEST_NS));
+    }
+
+    /// A sample was part of a tick that ended so long after its time, microseconds.
+    pub fn sample(&mut self, took_us: u64) {
+        self.sample_ns.saturating_record((took_us.saturating_mul(1000)).clamp(1, LONGEST_NS));
+    }
+
+    /// From a sample's time to the end of its tick; `None` without live input.
+    pub fn sample_to_tick_ms(&self) -> Option<Percentiles> {
+        (!self.sample_ns.is_empty()).then(|| percentiles_ms(&self.sample_ns))
     }
 
     pub fn tick_ms(&self) -> Percentiles {

@@ -18,7 +18,15 @@ const NOMINAL: f64 = 0.2;
 ///
 /// `known`: the model, where the catalogue has one for these ids whose reports are described; its
 /// name and size are taken.
-pub(super) fn described(who: &Identity, d: &Descriptor, known: Option<&Tablet>) -> Identification {
+///
+/// `size_mm`: of every model with these ids, where they have one; it is taken where the descriptor
+/// states none.
+pub(super) fn described(
+    who: &Identity,
+    d: &Descriptor,
+    known: Option<&Tablet>,
+    size_mm: Option<(f64, f64)>,
+) -> Identification {
     let uc_logic = UC_LOGIC.contains(&who.vid);
     let by_kernel = rewritten(who, d);
     let params = Params::of(who).filter(|_| uc_logic && by_kernel.is_none());
@@ -54,6 +62,10 @@ pub(super) fn described(who: &Identity, d: &Descriptor, known: Option<&Tablet>) 
         (_, Some((w, h, true)), Some(stated)) if near(stated, (w, h)) => stated,
         (_, Some((w, h, _)), _) => (w, h),
         (_, None, Some(stated)) => stated,
+        (_, None, None) if size_mm.is_some_and(|size| same_shape(size, x, y)) => {
+            note = format!("{note}; with the size of the model that its ids name");
+            size_mm.unwrap_or_default()
+        }
         (_, None, None) => {
             let (size, how) = size::guessed(pen, x, y);
             note = format!("{note}; {how}");
@@ -85,7 +97,7 @@ pub(super) fn described(who: &Identity, d: &Descriptor, known: Option<&Tablet>) 
 /// The tablet that an interface's descriptor describes, where it describes one.
 pub(crate) fn by_descriptor(vid: u16, pid: u16, descriptor: &[u8]) -> Option<Found> {
     let d = Descriptor::parse(descriptor).ok().filter(|d| !d.pens.is_empty())?;
-    match described(&Identity { vid, pid, ..Identity::default() }, &d, None) {
+    match described(&Identity { vid, pid, ..Identity::default() }, &d, None, None) {
         Identification::Identified(found) => Some(found),
         _ => None,
     }
@@ -97,6 +109,13 @@ fn names_a_chip(name: &str) -> bool {
         let parts = word.split_once(':');
         parts.is_some_and(|(a, b)| a.len() == 4 && b.len() == 4)
     })
+}
+
+/// Whether the counts of the axes are those of a tablet of this shape.
+fn same_shape(size: (f64, f64), x: &Bits, y: &Bits) -> bool {
+    let span = |b: &Bits| f64::from(b.max) - f64::from(b.min);
+    let ratio = (span(x) / span(y)) / (size.0 / size.1);
+    span(x) == span(y) || (1.0 - NOMINAL..1.0 + NOMINAL).contains(&ratio)
 }
 
 fn near(a: (f64, f64), b: (f64, f64)) -> bool {

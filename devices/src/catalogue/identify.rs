@@ -8,7 +8,7 @@ use super::identity::{Identity, UC_LOGIC};
 use super::params::Params;
 use super::rewritten::rewritten;
 use super::{Catalogue, size};
-use crate::descriptor::{CollectionKind, Descriptor};
+use crate::descriptor::{Bits, CollectionKind, Descriptor};
 use crate::tablet::{Family, Id, StringIs, Tablet};
 
 /// What each piece of evidence adds to a candidate's score. A contradiction excludes the candidate
@@ -24,12 +24,16 @@ mod score {
     pub(super) const BASE_NAME: i32 = 100;
     /// The descriptor states another size, and that can be believed.
     pub(super) const OTHER_SIZE: i32 = -150;
+    /// The descriptor states less than half of the model's pressure: the pens differ.
+    pub(super) const OTHER_PRESSURE: i32 = -150;
     /// The parameter string agrees.
     pub(super) const PARAMS: i32 = 100;
     /// The descriptor has the model's range of coordinates.
     pub(super) const RANGE: i32 = 20;
     /// The interface's longest report is as long as the model's.
     pub(super) const LENGTH: i32 = 10;
+    /// The device's name holds the model's brand.
+    pub(super) const BRAND: i32 = 5;
 }
 
 /// A pair of ids is shared if it stands for so many models.
@@ -46,7 +50,7 @@ impl Catalogue {
         let d = descriptor.as_ref().ok();
         if let Some(d) = d.filter(|d| rewritten(who, d).is_some()) {
             let known = self.model_of_rewritten(who, d);
-            return described(who, d, known);
+            return described(who, d, known, None);
         }
         let (mut best, score) = self.candidates(who, d, false);
         if best.is_empty() {
@@ -65,7 +69,7 @@ impl Catalogue {
                 let found = best.remove(0);
                 match d {
                     Some(d) if found.id().parser == Family::Digitiser => {
-                        described(who, d, Some(&found.tablet))
+                        described(who, d, Some(&found.tablet), None)
                     }
                     _ => Identification::Identified(found),
                 }
@@ -78,8 +82,18 @@ impl Catalogue {
     pub(crate) fn without_model(&self, who: &Identity) -> Identification {
         match Descriptor::parse(&who.descriptor) {
             Err(e) => Identification::Declined(e.to_string()),
-            Ok(d) => described(who, &d, None),
+            Ok(d) => described(who, &d, None, self.size_of_ids(who)),
         }
+    }
+
+    /// The size of the models with these ids, where they all have one.
+    fn size_of_ids(&self, who: &Identity) -> Option<(f64, f64)> {
+        let mut sizes = self.tablets.iter().filter(|t| of_pid(t, who)).map(|t| t.area);
+        let first = sizes.next()?;
+        let other = |a: crate::tablet::Area| {
+            other_size(a.width_mm, first.width_mm) || other_size(a.height_mm, first.height_mm)
+        };
+        (!sizes.any(other)).then_some((first.width_mm, first.height_mm))
     }
 
     fn shared(&self, who: &Identity) -> bool {
@@ -237,6 +251,9 @@ fn standing(
     } else if part {
         score += score::BASE_NAME;
     }
+    if of_brand(&tablet.name, &who.name) {
+        score += score::BRAND;
+    }
     let uc_logic = UC_LOGIC.contains(&who.vid);
     let params = if uc_logic { Params::all(who) } else { Vec::new() };
     if !params.is_empty() {
@@ -278,6 +295,10 @@ fn by_descriptor(tablet: &Tablet, d: &Descriptor) -> i32 {
     let mut score = 0;
     for pen in d.pens.iter().filter(|p| !p.as_mouse) {
         let (Some(x), Some(y)) = (&pen.x, &pen.y) else { continue };
+        let weaker = |p: &Bits| p.max > 0 && p.max as u32 <= tablet.pen.max_pressure / 2;
+        if pen.pressure.as_ref().is_some_and(weaker) {
+            return score::OTHER_PRESSURE;
+        }
         if (x.max, y.max) == (tablet.area.max_x, tablet.area.max_y) {
             score = score.max(score::RANGE);
         } else if let Some((w, h)) = size::believed(x, y, true)
@@ -291,6 +312,13 @@ fn by_descriptor(tablet: &Tablet, d: &Descriptor) -> i32 {
 
 fn other_size(a: f64, b: f64) -> bool {
     (a - b).abs() > SIZE_TOLERANCE * b
+}
+
+/// Whether a word of the device's name is the model's brand.
+fn of_brand(model: &str, device: &str) -> bool {
+    let brand = model.split_whitespace().next().unwrap_or_default();
+    let mut words = device.split(|c: char| !c.is_ascii_alphanumeric() && c != '-');
+    words.any(|word| word.eq_ignore_ascii_case(brand))
 }
 
 /// A name without what stands in parentheses and without a version: `GT-191 V2` is a `GT-191`.

@@ -9,6 +9,8 @@ use crate::descriptor::{Bits, PenLayout};
 const LEAST_DIAGONAL: f64 = 60.0;
 /// Largest side of a tablet, in mm: interactive whiteboards of 86 inches.
 const MOST_SIDE: f64 = 2000.0;
+/// Largest side of a tablet of a maker of tablets and pen displays, in mm: displays of 32 inches.
+const MOST_SIDE_OF_TABLET: f64 = 720.0;
 /// By how much the resolutions of both axes may differ on a tablet with square counts.
 const SQUARE: f64 = 1.06;
 /// Unit code that vendors write where they mean inches: it is an angle of the English system.
@@ -37,7 +39,7 @@ pub(super) fn believed(x: &Bits, y: &Bits, uc_logic: bool) -> Option<(f64, f64)>
         rx == ry || (1.0 / SQUARE..SQUARE).contains(&ratio)
     };
     let plausible = width.hypot(height) >= LEAST_DIAGONAL
-        && width.max(height) <= MOST_SIDE
+        && width.max(height) <= if uc_logic { MOST_SIDE_OF_TABLET } else { MOST_SIDE }
         && (0.2..5.0).contains(&aspect);
     let good = plausible && !normalised && !copied(x) && !copied(y) && (square || !uc_logic);
     good.then_some((width, height))
@@ -87,6 +89,7 @@ mod tests {
             ("18 x 11 mm", (40_640, 715), (25_400, 422), 0x13),
             ("832 x 780 mm", (32_767, 32_767), (30_720, 30_720), 0x33),
             ("832 x 832 mm", (32_767, 32_767), (32_767, 32_767), 0x13),
+            ("1032 x 645 mm", (40_640, 40_640), (25_400, 25_400), 0x13),
             ("416 x 416 mm", (16_383, 16_383), (16_383, 16_383), 0x33),
         ] {
             assert_eq!(size(x, y, unit, -3), None, "{what}");

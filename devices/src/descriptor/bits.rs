@@ -59,6 +59,17 @@ impl Bits {
         Some(v as i64 as i32)
     }
 
+    /// Sets the field in a report; bits beyond the report's end are left out.
+    pub fn write(&self, report: &mut [u8], value: i32) {
+        for k in 0..self.len {
+            let bit = self.start + k;
+            if let Some(byte) = report.get_mut(bit / 8) {
+                let mask = 1 << (bit % 8);
+                *byte = if value >> k.min(31) & 1 == 1 { *byte | mask } else { *byte & !mask };
+            }
+        }
+    }
+
     /// Whether the field is not zero, or `None` where the report ends before it.
     pub fn set(&self, report: &[u8]) -> Option<bool> {
         self.read(report).map(|v| v != 0)

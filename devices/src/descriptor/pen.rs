@@ -46,6 +46,11 @@ pub struct PenLayout {
     pub eraser: Option<Bits>,
     /// Barrel buttons, the lower one first.
     pub barrel: [Option<Bits>; 3],
+    /// What Huion's descriptors call a secondary tip switch: the second barrel button.
+    pub secondary_tip: Option<Bits>,
+    /// The upper half of the pen's number: a usage of Wacom's own page. Its pens with three buttons
+    /// send the third as the first two together, unless there is a bit for it.
+    pub serial: Option<Bits>,
     /// Tip pressure.
     pub pressure: Option<Bits>,
     /// Tilt along x and y.
@@ -100,6 +105,10 @@ impl PenLayout {
             (0x01, 0x31) | (0xff0d, 0x131) => keep(&mut self.y),
             (0x01, 0x32) | (0xff0d, 0x132) => keep(&mut self.distance),
             (0xff0d, 0x36) => keep(&mut self.sense),
+            (0xff0d, 0x5c) => keep(&mut self.serial),
+            (0xff0d, 0x5d) => keep(&mut self.barrel[2]),
+            // The kernel's HID-BPF programs describe the third button so (BTN_STYLUS3).
+            (0x09, 0x4a) => keep(&mut self.barrel[2]),
             (0x0d | 0xff0d, id) => match id {
                 0x30 => keep(&mut self.pressure),
                 0x32 => keep(&mut self.in_range),
@@ -108,6 +117,7 @@ impl PenLayout {
                 0x3e => keep(&mut self.tilt[1]),
                 0x41 => keep(&mut self.twist),
                 0x42 => keep(&mut self.tip),
+                0x43 => keep(&mut self.secondary_tip),
                 0x44 => keep(&mut self.barrel[0]),
                 0x45 => keep(&mut self.eraser),
                 // Tablet pick is what the second button is called where there is no second barrel

@@ -6,9 +6,10 @@ use glam::Vec2;
 use super::digitiser;
 use super::family::Engine;
 use super::pad_state::PadState;
+use super::pen_firmware::PenFirmware;
 use crate::catalogue::{Found, Scale, by_descriptor};
 use crate::descriptor::{Descriptor, PadFields, PenLayout};
-use crate::pen_state::{PenConfig, PenScale, PenState};
+use crate::pen_state::{CONTACT_SILENCE_US, PenConfig, PenScale, PenState};
 use crate::pressure_use::PressureUse;
 use crate::report::{Batch, Parsed};
 use crate::sample::{DeviceId, Sample};
@@ -37,6 +38,7 @@ pub struct Counts {
 #[derive(Debug, Clone)]
 pub struct Decoder {
     engine: Engine,
+    firmware: PenFirmware,
     pen: PenState,
     pad: PadState,
     skip: usize,
@@ -71,6 +73,7 @@ impl Decoder {
                 max_distance: tablet.pen.max_distance,
             },
             silence_us: engine.silence_us(),
+            contact_silence_us: CONTACT_SILENCE_US,
             tilts: engine.has_tilt(),
         });
         let d = Descriptor::parse(descriptor).unwrap_or_default();
@@ -93,6 +96,7 @@ impl Decoder {
             plain = Some(Box::new(Decoder::new(&other, descriptor, device)));
         }
         Decoder {
+            firmware: PenFirmware::new(engine.firmware_rules()),
             engine,
             pen,
             pad: PadState::new(device),
@@ -157,7 +161,7 @@ impl Decoder {
             }
             let left = (frames - frame) as u64;
             let at_us = t_us - since * left / frames.max(1) as u64;
-            match parsed {
+            match &self.firmware.mend(*parsed) {
                 Parsed::Nothing => {}
                 Parsed::Broken => self.counts.broken += 1,
                 Parsed::Pen(r) => self.pen.report(r, at_us, emit),
@@ -187,7 +191,11 @@ impl Decoder {
 
     /// Ends the pen's visit if it has been silent for too long. Call it while no report comes.
     pub fn tick(&mut self, now_us: u64, emit: &mut dyn FnMut(Sample)) {
+        let near = self.pen.in_range();
         self.pen.tick(now_us, emit);
+        if near && !self.pen.in_range() {
+            self.firmware.forget();
+        }
         if let Some(plain) = &mut self.plain {
             plain.tick(now_us, emit);
         }
@@ -195,6 +203,7 @@ impl Decoder {
 
     /// The device was unplugged: its pen leaves, and its keys and buttons are released.
     pub fn leave(&mut self, t_us: u64, emit: &mut dyn FnMut(Sample)) {
+        self.firmware.forget();
         self.pen.leave(t_us, emit);
         self.pad.leave(t_us, emit);
         if let Some(plain) = &mut self.plain {

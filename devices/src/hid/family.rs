@@ -1,17 +1,31 @@
 //! The parsers, one for each family, with what each remembers between reports.
 
-use super::uclogic::Packing;
+use super::pen_firmware::FirmwareRules;
+use super::uclogic::{Packing, UcLogicBits};
 use super::{
     digitiser, uclogic, vendors, wacom_bamboo, wacom_bluetooth, wacom_display, wacom_graphire,
     wacom_intuos, wacom_pad, wacom_pro,
 };
-use crate::descriptor::Descriptor;
+use crate::descriptor::{Descriptor, PenLayout};
 use crate::report::{Batch, Parsed};
 use crate::tablet::{Family, Id, PadLayout, Quirk, Tablet};
 
 /// Microseconds of silence after which a pen has left that sends no report of it; the figure is
 /// libinput's.
 const SILENCE_US: u64 = 50_000;
+
+/// USB vendor of Huion's tablets and Gaomon's.
+const HUION: u16 = 0x256c;
+/// USB vendor whose pens seem to leave when their second button is pressed.
+const XP_PEN: u16 = 0x28bd;
+/// USB vendor whose second barrel button is sent as tip and first button.
+const WALTOP: u16 = 0x172f;
+
+/// Linux `wacom_set_barrel_switch3_usage`.
+fn sends_third_as_both(pen: &PenLayout) -> bool {
+    let two = pen.barrel[0].is_some() && pen.barrel[1].is_some();
+    two && pen.serial.is_some() && pen.barrel[2].is_none()
+}
 
 /// A family bound to one model.
 #[derive(Debug, Clone)]
@@ -50,7 +64,7 @@ pub enum Engine {
         leaves: bool,
     },
     /// By the report descriptor.
-    Digitiser(Box<Descriptor>),
+    Digitiser(Box<Descriptor>, FirmwareRules),
 }
 
 impl Engine {
@@ -74,6 +88,11 @@ impl Engine {
                 range_bit,
                 no_tilt: quirk(Quirk::NoTilt),
                 untilted,
+                bits: UcLogicBits::of(
+                    &described,
+                    id.vid == XP_PEN,
+                    id.vid == HUION || packing == Packing::Huion && id.vid != XP_PEN,
+                ),
             };
             Engine::UcLogic(traits, uclogic::UcLogicMemory::default())
         };
@@ -133,7 +152,14 @@ impl Engine {
             Family::RobotPen => vendor(vendors::robot_pen, true),
             Family::WoodPad => vendor(vendors::wood_pad, true),
             Family::Signature => vendor(vendors::signature, true),
-            Family::Digitiser => Engine::Digitiser(Box::new(described)),
+            Family::Digitiser => {
+                let rules = FirmwareRules {
+                    third_is_both: described.pens.iter().any(sends_third_as_both),
+                    second_is_tip_and_first: id.vid == WALTOP,
+                    ..FirmwareRules::default()
+                };
+                Engine::Digitiser(Box::new(described), rules)
+            }
         }
     }
 
@@ -171,7 +197,23 @@ impl Engine {
             Engine::Bluetooth(kind, memory) => wacom_bluetooth::parse(b, *kind, memory, out),
             Engine::UcLogic(traits, memory) => out.push(uclogic::parse(b, traits, memory)),
             Engine::Vendor { parse, .. } => out.push(parse(b)),
-            Engine::Digitiser(d) => digitiser::parse(b, d, out),
+            Engine::Digitiser(d, _) => digitiser::parse(b, d, out),
+        }
+    }
+
+    /// What the firmware of this family's pens does wrong.
+    pub fn firmware_rules(&self) -> FirmwareRules {
+        let none = FirmwareRules::default();
+        match self {
+            Engine::Pro(wacom_pro::ProKind::V2 | wacom_pro::ProKind::One)
+            | Engine::Bluetooth(..) => FirmwareRules { third_is_both: true, ..none },
+            Engine::UcLogic(traits, _) => FirmwareRules {
+                third_is_invert: traits.bits.third_is_invert,
+                second_bounces: traits.bits.second_bounces,
+                ..none
+            },
+            Engine::Digitiser(_, rules) => *rules,
+            _ => none,
         }
     }
 
@@ -203,7 +245,7 @@ impl Engine {
             Engine::BambooPad => true,
             Engine::PenPartner { leaves } | Engine::Vendor { leaves, .. } => !leaves,
             Engine::UcLogic(_, memory) => memory.is_mute(),
-            Engine::Digitiser(d) => d.pens.iter().any(|p| p.in_range.is_none()),
+            Engine::Digitiser(d, _) => d.pens.iter().any(|p| p.in_range.is_none()),
         };
         mute.then_some(SILENCE_US)
     }

@@ -10,10 +10,12 @@
 //! of a model and a [`crate::pen_state::PenState`]; live devices, recordings and tests all use it.
 
 pub mod bus;
+pub mod crosscheck;
 pub mod decoder;
 pub mod digitiser;
 pub mod family;
 pub mod pad_state;
+pub mod pen_firmware;
 pub mod reader;
 pub mod tap;
 pub mod transport;

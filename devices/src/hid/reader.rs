@@ -18,6 +18,8 @@ use crate::sample::{DeviceId, Sample};
 /// How long one read waits, in ms. After each wait silence is checked and kept samples are sent
 /// again.
 const READ_MS: i32 = 10;
+/// The same in microseconds.
+const READ_US: u64 = READ_MS as u64 * 1000;
 /// Longest report; hidraw's own limit is 4096.
 const MAX_REPORT: usize = 4096;
 
@@ -80,7 +82,8 @@ pub fn start(
     let thread = device_thread::spawn("hid-pen", move |stop| {
         let mut sender = sender;
         sender.stop_when(stop.flag());
-        HidReader { transport, decoder, clock, sender, shared: theirs }.run(&stop);
+        let listening = Listening::default();
+        HidReader { transport, decoder, clock, sender, shared: theirs, listening }.run(&stop);
     })?;
     Ok(ReaderHandle { shared, _thread: thread })
 }
@@ -91,6 +94,33 @@ struct HidReader {
     clock: Clock,
     sender: Sender,
     shared: Arc<Mutex<ReaderShared>>,
+    listening: Listening,
+}
+
+/// How long the thread listened since the pen's last report. A thread that the system held up hears
+/// of reports late, and that is no silence of the pen.
+#[derive(Debug, Default)]
+struct Listening {
+    /// When the last read returned, microseconds.
+    read_us: Option<u64>,
+    /// When silence would end the visit; it changes with each report of the pen.
+    due_us: Option<u64>,
+    /// Time since the pen's last report in which the thread did not listen, microseconds.
+    held_up_us: u64,
+}
+
+impl Listening {
+    /// A read returned. Returns the time up to which silence is proved.
+    fn heard_until(&mut self, now_us: u64, due_us: Option<u64>) -> u64 {
+        if due_us != self.due_us {
+            (self.due_us, self.held_up_us) = (due_us, 0);
+        }
+        let took = now_us.saturating_sub(self.read_us.replace(now_us).unwrap_or(now_us));
+        if took > 2 * READ_US {
+            self.held_up_us += took - READ_US;
+        }
+        now_us.saturating_sub(self.held_up_us)
+    }
 }
 
 impl HidReader {
@@ -99,12 +129,13 @@ impl HidReader {
         let mut error = None;
         self.ask_tool(&mut buffer, &mut out);
         while !stop.stopped() && error.is_none() {
-            match self.transport.read(&mut buffer, READ_MS) {
-                Ok(0) => {
-                    self.decoder.tick(self.clock.now_us(), &mut |s| out.push(s));
-                    self.sender.flush();
-                }
-                Ok(n) => self.decoder.feed(&buffer[..n], self.clock.now_us(), &mut |s| out.push(s)),
+            let read = self.transport.read(&mut buffer, READ_MS);
+            let now_us = self.clock.now_us();
+            let heard_us = self.listening.heard_until(now_us, self.decoder.due_us());
+            self.decoder.tick(heard_us, &mut |s| out.push(s));
+            match read {
+                Ok(0) => drop(self.sender.flush()),
+                Ok(n) => self.decoder.feed(&buffer[..n], now_us, &mut |s| out.push(s)),
                 Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
                 Err(e) => error = Some(e.to_string()),
             }
@@ -144,5 +175,26 @@ impl HidReader {
         (status.reports, status.broken, status.ignored) =
             (counts.reports, counts.broken, counts.ignored);
         status.samples += n;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_that_was_held_up_proves_no_silence() {
+        let mut listening = Listening::default();
+        let due = Some(50_000);
+        assert_eq!(listening.heard_until(0, due), 0);
+        // Five reads in vain.
+        for i in 1..=5 {
+            assert_eq!(listening.heard_until(i * READ_US, due), i * READ_US);
+        }
+        // The system held the thread up for 400 ms: only one read of that is silence.
+        assert_eq!(listening.heard_until(450_000, due), 60_000);
+        assert_eq!(listening.heard_until(460_000, due), 70_000);
+        // The next report of the pen begins anew.
+        assert_eq!(listening.heard_until(461_000, Some(511_000)), 461_000);
     }
 }

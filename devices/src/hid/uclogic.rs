@@ -15,6 +15,7 @@
 //! mean "in range". Sources: Linux `hid-uclogic-params.c`, OpenTabletDriver, and the real
 //! recordings of all of these.
 
+use crate::descriptor::{Bits, Descriptor};
 use crate::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
 use crate::sample::Tool;
 
@@ -45,6 +46,67 @@ pub struct UcLogicTraits {
     pub no_tilt: bool,
     /// Report ids, one a bit, that the descriptor describes without tilt.
     pub untilted: u32,
+    /// Where the described report keeps its buttons.
+    pub bits: UcLogicBits,
+}
+
+/// Which bits of byte 1 are what, in the report that the descriptor describes. Masks; 0 where the
+/// bit is not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct UcLogicBits {
+    /// Id of the described report; 0 where none is.
+    id: u8,
+    /// The second barrel button, where it is not bit 2.
+    second: u8,
+    /// The eraser touches.
+    eraser: u8,
+    /// The eraser is the end that is near.
+    invert: u8,
+    /// The descriptor calls the second button an eraser, and no button by its name; pressing it
+    /// makes the pen seem to leave.
+    pub second_bounces: bool,
+    /// The third button shares the invert bit.
+    pub third_is_invert: bool,
+    /// Reports 08 are Huion's: bit 3 is the third button, bit 5 the eraser.
+    pub huion: bool,
+}
+
+impl UcLogicBits {
+    /// Reads them from the pen's own report. In the vendor's protocol bits 1 and 2 are the buttons,
+    /// whatever the descriptor says; what its usages mean is decided by what the tablets send
+    /// (Linux, HID-BPF programs `XPPen__Artist24`, `XPPen__ArtistPro16Gen2`,
+    /// `Huion__Kamvas-Pro-19`):
+    ///
+    /// | usages | bit 2 is | invert is |
+    /// |---|---|---|
+    /// | Eraser alone | the second button | |
+    /// | Eraser, Invert | the second button | the eraser; it touches with the tip's bit |
+    /// | Eraser, Tablet Pick, Invert | the eraser's touch | the eraser |
+    /// | Secondary Tip, Invert, Eraser | the second button | the third button, or the eraser |
+    ///
+    /// `bounces`: the vendor is one whose second button, called an eraser, makes the pen seem to
+    /// leave.
+    pub fn of(d: &Descriptor, bounces: bool, huion: bool) -> UcLogicBits {
+        let Some(pen) = d.pens.iter().find(|p| !p.as_mouse && p.report_id.is_some()) else {
+            return UcLogicBits { huion, ..UcLogicBits::default() };
+        };
+        let mask = |bits: &Option<Bits>| {
+            let bit = bits.as_ref().and_then(|b| b.start.checked_sub(8)).filter(|b| *b < 8);
+            bit.map_or(0, |b| 1u8 << b)
+        };
+        let (named, eraser) = (mask(&pen.barrel[1]), mask(&pen.eraser));
+        let (secondary, invert) = (mask(&pen.secondary_tip), mask(&pen.invert));
+        let own_eraser = (secondary == 4 || named & !4 != 0) && invert != 0;
+        UcLogicBits {
+            id: pen.report_id.unwrap_or(0),
+            second: if own_eraser { named } else { 0 },
+            eraser: if own_eraser { eraser } else { 0 },
+            invert,
+            second_bounces: bounces && invert == 0 && eraser == 4 && named == 0 && secondary == 0,
+            third_is_invert: secondary == 4 && invert != 0,
+            huion,
+        }
+    }
 }
 
 /// What the reports so far have shown.
@@ -177,14 +239,33 @@ fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
     if traits.no_tilt || traits.untilted >> (b[0] & 31) & 1 == 1 {
         tilt = None;
     }
+    let (eraser, tip, buttons) = switches(b[0], flags, &traits.bits);
     PenReport {
-        tool: Some(if flags & 8 != 0 { Tool::Eraser } else { Tool::Pen }),
-        tip: Some(flags & 1 != 0),
+        tool: Some(if eraser { Tool::Eraser } else { Tool::Pen }),
+        tip: Some(tip),
         pos: Some([x as i32, y as i32]),
         pressure: Some(p),
         tilt,
-        buttons: Some(u32::from(flags >> 1 & 3)),
+        buttons: Some(buttons),
         ..PenReport::default()
+    }
+}
+
+/// Whether the eraser is near, whether either end touches, and the barrel buttons.
+fn switches(id: u8, flags: u8, bits: &UcLogicBits) -> (bool, bool, u32) {
+    let first = u32::from(flags >> 1 & 1);
+    let set = |mask: u8| u32::from(flags & mask != 0);
+    match id {
+        // Huion's own protocol: bit 3 is the third button of its newer pens, bit 5 the eraser.
+        0x08 if bits.huion => {
+            (flags & 0x20 != 0, flags & 1 != 0, first | set(4) << 1 | set(8) << 2)
+        }
+        _ if id == bits.id && bits.invert != 0 => {
+            let eraser = flags & (bits.invert | bits.eraser) != 0;
+            let second = if bits.second != 0 { bits.second } else { 4 };
+            (eraser, flags & (1 | bits.eraser) != 0, first | set(second) << 1)
+        }
+        _ => (flags & 8 != 0, flags & 1 != 0, first | set(4) << 1),
     }
 }
 

@@ -48,6 +48,12 @@ pub(super) fn ring_place(v: u8) -> Option<f32> {
     (v & 0x80 != 0).then_some(place as f32 / 72.0)
 }
 
+/// Bit 3: the eraser touches. Bit 4: the eraser is the end that is near (usages Eraser and Invert
+/// of these tablets' descriptors).
+fn end_of_pen(flags: u8) -> Tool {
+    if flags & 0x18 != 0 { Tool::Eraser } else { Tool::Pen }
+}
+
 fn v2(b: &[u8]) -> Parsed {
     let f = b[1];
     if f & 0x60 == 0 {
@@ -58,8 +64,8 @@ fn v2(b: &[u8]) -> Parsed {
         return Parsed::Nothing;
     }
     Parsed::Pen(PenReport {
-        tool: Some(if f & 0x10 != 0 { Tool::Eraser } else { Tool::Pen }),
-        tip: Some(f & 1 != 0),
+        tool: Some(end_of_pen(f)),
+        tip: Some(f & 9 != 0),
         pos: Some([u24_at(b, 2) as i32, u24_at(b, 5) as i32]),
         pressure: Some(u16_at(b, 8)),
         tilt: Some([s8_at(b, 10), s8_at(b, 11)]),
@@ -97,8 +103,8 @@ fn one(b: &[u8]) -> Parsed {
         return Parsed::Away;
     }
     Parsed::Pen(PenReport {
-        tool: Some(if f & 0x10 != 0 { Tool::Eraser } else { Tool::Pen }),
-        tip: Some(f & 1 != 0),
+        tool: Some(end_of_pen(f)),
+        tip: Some(f & 9 != 0),
         pos: Some([u16_at(b, 3) as i32, u16_at(b, 5) as i32]),
         pressure: Some(u16_at(b, 7)),
         tilt: (b.len() > 12).then(|| [s16_at(b, 9) / 100.0, s16_at(b, 11) / 100.0]),
@@ -111,6 +117,34 @@ fn one(b: &[u8]) -> Parsed {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_eraser_of_each_layout_hovers_and_touches() {
+        // Report, offset of the flags, bits: in range, invert, eraser.
+        let layouts = [
+            (ProKind::V2, 0x10, 1, [0x60, 0x10, 0x08]),
+            (ProKind::V3, 0x1e, 2, [0xc0, 0x20, 0x10]),
+            (ProKind::One, 0x1f, 2, [0x60, 0x10, 0x08]),
+        ];
+        for (kind, id, at, [range, invert, eraser]) in layouts {
+            let read = |flags: u8| {
+                let mut b = [0u8; 27];
+                (b[0], b[1], b[at]) = (id, if at == 2 { 1 } else { 0 }, flags);
+                let mut out = Batch::default();
+                parse(&b, kind, &mut out);
+                match out.as_slice() {
+                    [Parsed::Pen(p)] => (p.tool, p.tip),
+                    other => panic!("{kind:?}: {other:?}"),
+                }
+            };
+            assert_eq!(read(range), (Some(Tool::Pen), Some(false)));
+            assert_eq!(read(range | 1), (Some(Tool::Pen), Some(true)));
+            assert_eq!(read(range | invert), (Some(Tool::Eraser), Some(false)), "{kind:?}");
+            let touching = (Some(Tool::Eraser), Some(true));
+            assert_eq!(read(range | invert | eraser), touching, "{kind:?}");
+            assert_eq!(read(range | eraser), touching, "{kind:?}");
+        }
+    }
 
     #[test]
     fn a_v2_pen_is_sensed_then_placed_then_gone() {

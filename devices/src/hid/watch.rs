@@ -18,6 +18,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::bus::{Bus, HidApiBus, Node, read_more};
+use super::crosscheck::note_undecided;
 use super::reader;
 use crate::calibration::{self, Calibration, Calibrations};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
@@ -286,6 +287,13 @@ impl Watcher {
                 }
                 Err(refusal) => {
                     let mut status = NodeStatus::of(node);
+                    // What it is read as is known without opening it, where its descriptor is.
+                    let known = Some(node).filter(|n| !n.who.descriptor.is_empty());
+                    if let Some(Ok((found, candidates))) =
+                        known.map(|n| choose(n, &n.who, &self.config, &self.catalogue))
+                    {
+                        status.found(&found, candidates);
+                    }
                     status.reason = Some(match refusal {
                         Refusal::Final(why) => why,
                         Refusal::Later(why) => {
@@ -320,8 +328,9 @@ impl Watcher {
         let mut device = self.bus.open(node).map_err(|e| Refusal::Later(in_words(&e)))?;
         let mut who = node.who.clone();
         read_more(&mut who, device.as_mut());
-        let (found, candidates) =
+        let (mut found, candidates) =
             choose(node, &who, &self.config, &self.catalogue).map_err(Refusal::Final)?;
+        note_undecided(&mut found, &who.descriptor);
         let id = found.id();
         for report in id.init_feature.iter().filter_map(|h| hex_bytes(h)) {
             note_failure(node, device.send_feature(&report));
@@ -433,9 +442,7 @@ fn key(node: &Node, serial: bool) -> String {
 fn in_words(e: &io::Error) -> String {
     match e.kind() {
         io::ErrorKind::PermissionDenied => {
-            "permission denied: install the udev rule (config/70-sculptd.rules) and plug it in \
-             again"
-                .to_owned()
+            "permission denied: `sculptd doctor` prints the line that gives you access".to_owned()
         }
         _ => e.to_string(),
     }

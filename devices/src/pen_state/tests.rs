@@ -12,6 +12,7 @@ const CFG: PenConfig = PenConfig {
         max_distance: 60,
     },
     silence_us: None,
+    contact_silence_us: CONTACT_SILENCE_US,
     tilts: false,
 };
 
@@ -86,6 +87,7 @@ fn silence_ends_a_visit_of_a_pen_that_never_says_so() {
     );
     // A late report finds the visit ended before it begins the next.
     state.report(&pen(500, Some(true)), 70_000, &mut |s| out.push(s));
+    state.tick(200_000, &mut |s| out.push(s));
     state.report(&pen(500, Some(true)), 200_000, &mut |s| out.push(s));
     let times: Vec<_> = out.iter().map(|s| s.t_us).collect();
     assert_eq!(times, [1000, 51_000, 70_000, 120_000, 200_000]);
@@ -161,4 +163,79 @@ fn angles_are_wrapped_and_finite() {
     assert!((got[0].twist.unwrap() - (7.0 - std::f32::consts::TAU)).abs() < 1e-5);
     assert_eq!(got[0].tilt, Some(Vec2::new(90f32.to_radians(), -45f32.to_radians())));
     assert_eq!(got[1].twist, got[0].twist, "no number, no news");
+}
+
+#[test]
+fn a_pen_in_contact_that_is_silent_was_pulled_away_in_every_family() {
+    let mut state = PenState::new(CFG);
+    let mut out = Vec::new();
+    state.report(&pen(0, Some(false)), 0, &mut |s| out.push(s));
+    assert_eq!(state.due_us(), None, "in the air the family's own report is awaited");
+    state.report(&pen(500, Some(true)), 10_000, &mut |s| out.push(s));
+    assert_eq!(state.due_us(), Some(60_000));
+    // Back at once in contact, 20 s later: another visit, so that no line joins the two.
+    state.tick(20_000_000, &mut |s| out.push(s));
+    state.report(&pen(500, Some(true)), 20_000_000, &mut |s| out.push(s));
+    let seen: Vec<_> = out
+        .iter()
+        .map(|s| if let Body::Pen(p) = s.body { (s.t_us, p.in_range, p.tip) } else { panic!() })
+        .collect();
+    let expected = [(0, true, false), (10_000, true, true), (60_000, false, false)];
+    assert_eq!(seen[..3], expected);
+    assert_eq!(seen[3], (20_000_000, true, true));
+}
+
+#[test]
+fn a_pen_that_rests_on_a_tablet_that_sends_changes_alone_is_not_pulled_away() {
+    let at = |x: i32, pressure| PenReport { pos: Some([x, 5000]), ..pen(pressure, Some(true)) };
+    let due_after = |reports: &[PenReport]| {
+        let mut state = PenState::new(CFG);
+        for (i, r) in reports.iter().enumerate() {
+            state.report(r, i as u64 * 5000, &mut |_| {});
+        }
+        state.due_us().unwrap() - (reports.len() as u64 - 1) * 5000
+    };
+    // 0.1 mm each 5 ms, under full pressure.
+    assert_eq!(due_after(&[at(0, 1000), at(10, 1000), at(20, 1000)]), RESTING_SILENCE_US);
+    assert_eq!(due_after(&[at(0, 1000), at(50, 1000), at(100, 1000)]), CONTACT_SILENCE_US, "moves");
+    let repeated = [at(0, 1000), at(10, 1000), at(10, 1000), at(20, 1000)];
+    assert_eq!(due_after(&repeated), CONTACT_SILENCE_US, "this tablet repeats itself");
+    assert_eq!(due_after(&[at(0, 600), at(10, 600), at(20, 600)]), CONTACT_SILENCE_US);
+}
+
+#[test]
+fn a_pressure_that_is_always_0_is_none() {
+    let got = run(CFG, &[pen(0, Some(true)); 8]);
+    let none = got.iter().filter(|p| p.tip && p.pressure.is_none()).count();
+    assert_eq!(none, 8 - NO_PRESSURE as usize + 1);
+    // A pen that had pressure once has it; a report without any is a light touch.
+    let mut reports = vec![pen(300, Some(true))];
+    reports.extend([pen(0, Some(true)); 8]);
+    assert!(run(CFG, &reports).iter().all(|p| p.pressure.is_some()));
+    // The next visit knows it at once, and the first pressure takes it back.
+    let mut state = PenState::new(CFG);
+    let mut out = Vec::new();
+    for i in 0..5 {
+        state.report(&pen(0, Some(true)), i * 5000, &mut |s| out.push(s));
+    }
+    state.leave(30_000, &mut |s| out.push(s));
+    state.report(&pen(0, Some(true)), 40_000, &mut |s| out.push(s));
+    state.report(&pen(40, Some(true)), 45_000, &mut |s| out.push(s));
+    let last: Vec<_> = out[6..]
+        .iter()
+        .map(|s| if let Body::Pen(p) = s.body { p.pressure } else { panic!() })
+        .collect();
+    assert_eq!(last, [None, Some(0.04)]);
+}
+
+#[test]
+fn a_button_that_hides_the_tip_is_judged_by_the_resting_pressure() {
+    // A selector names one control: none, tip, barrel button. In the air this pen reads 80.
+    let hidden = |p| PenReport { buttons: Some(1), ..pen(p, None) };
+    let air = pen(80, Some(false));
+    let got = run(CFG, &[air, pen(600, Some(true)), hidden(80), air, hidden(80), hidden(85)]);
+    assert_eq!(tips(&got), [false, true, false, false, false, false, false]);
+    // Pressed during a stroke, the button does not cut it.
+    let got = run(CFG, &[air, pen(600, Some(true)), hidden(610), hidden(590), hidden(82)]);
+    assert_eq!(tips(&got), [false, true, true, true, false, false]);
 }

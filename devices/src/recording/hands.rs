@@ -13,6 +13,9 @@ pub(super) struct HandRecording {
     pub frames: Vec<(u64, Option<u64>, Hands)>,
     /// Number of the last line, from 1, where it was cut off and therefore left out.
     pub cut_at: Option<usize>,
+    /// Lines before it that cannot be read and are left out, as a live connection leaves them out;
+    /// and the number of the first, from 1.
+    pub skipped: Option<(usize, usize)>,
 }
 
 /// A file that starts like one: gzipped, or with a JSON object.
@@ -27,8 +30,8 @@ pub(super) fn open(path: &Path) -> Result<HandRecording, RecordingError> {
     let file = FrameFile::open(path)
         .map_err(|error| RecordingError::Io { path: path.to_owned(), error })?;
     let mut out = HandRecording::default();
-    let mut lines = file.enumerate();
-    while let Some((i, line)) = lines.next() {
+    let (mut bad, mut first_why, mut last) = (Vec::new(), None, 0);
+    for (i, line) in file.enumerate() {
         let message = match line {
             Ok((t_us, text)) => parse_message(&text).map(|m| (t_us, m)).map_err(|e| e.to_string()),
             // A gzipped file that was cut off ends in this error, again and again.
@@ -41,13 +44,22 @@ pub(super) fn open(path: &Path) -> Result<HandRecording, RecordingError> {
         match message {
             Ok((t_us, Message::Frame(f))) => out.frames.push((t_us, f.device_t_us, f.hands)),
             Ok(_) => {}
-            Err(_) if !out.frames.is_empty() && lines.next().is_none() => {
-                out.cut_at = Some(i + 1);
-                break;
+            Err(why) => {
+                bad.push(i + 1);
+                first_why.get_or_insert((i + 1, why));
             }
-            Err(why) => return Err(broken(i + 1, why)),
         }
+        last = i + 1;
     }
+    // A file that is no recording has more lines that cannot be read than frames.
+    if let Some((line, why)) = first_why.filter(|_| bad.len() > out.frames.len()) {
+        return Err(broken(line, why));
+    }
+    if bad.last() == Some(&last) && !out.frames.is_empty() {
+        bad.pop();
+        out.cut_at = out.cut_at.or(Some(last));
+    }
+    out.skipped = bad.first().map(|first| (bad.len(), *first));
     if out.frames.is_empty() {
         return Err(broken(1, "no frame: not a tracker's recording".to_owned()));
     }

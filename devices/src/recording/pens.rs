@@ -5,6 +5,7 @@ use std::path::Path;
 use super::device_info::{DeviceInfo, DeviceKind};
 use super::{HidRecording, RecordingError};
 use crate::catalogue::{Catalogue, Found, Identification, Identity};
+use crate::hid::crosscheck::note_undecided;
 use crate::hid::decoder::Decoder;
 use crate::pressure_use::PressureUse;
 use crate::sample::{Body, DeviceId, Sample};
@@ -55,6 +56,7 @@ impl PenPlayer {
             if let Some(known) = known.as_ref().filter(|k| found.described && same_device(k, who)) {
                 found.sized_like(known);
             }
+            note_undecided(&mut found, &who.descriptor);
             notes.push(format!("{}: {}", label(who, i), found.in_words()));
             decoders.push(Some(Decoder::new(&found, &who.descriptor, device)));
             let spoke = recording.reports.iter().any(|r| r.interface == i);
@@ -167,11 +169,12 @@ fn choose<'a>(
 ) -> Found {
     let count = many.len();
     many.sort_by(|a, b| area(a).cmp(&area(b)).then_with(|| a.tablet.name.cmp(&b.tablet.name)));
-    let mut reach = [0i32; 2];
+    let (mut reach, mut sent) = ([0i32; 2], false);
     let mut decoder = Decoder::new(&many[count - 1], descriptor, DeviceId(0));
     for (i, report) in reports.enumerate() {
         decoder.feed(report, i as u64, &mut |s| {
             if let Body::Pen(p) = s.body {
+                sent = true;
                 reach = [reach[0].max(p.raw[0]), reach[1].max(p.raw[1])];
             }
         });
@@ -179,8 +182,15 @@ fn choose<'a>(
     let holds = |f: &Found| f.tablet.area.max_x >= reach[0] && f.tablet.area.max_y >= reach[1];
     let at = many.iter().position(holds).unwrap_or(count - 1);
     let mut chosen = many.swap_remove(at);
-    chosen.note =
-        Some(format!("one of {count} models alike, chosen by the range of what was sent"));
+    chosen.note = Some(match sent {
+        true => format!(
+            "one of {count} models alike: the smallest that holds every position that was sent"
+        ),
+        false => format!(
+            "one of {count} models alike, and nothing was sent that tells them apart: name yours \
+             in the configuration under `[tablets.models]`"
+        ),
+    });
     chosen
 }
 

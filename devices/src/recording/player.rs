@@ -42,7 +42,12 @@ impl Player {
                 kind: DeviceKind::Hand,
                 area_mm: glam::Vec2::ZERO,
                 device,
-                notes: recording.cut_at.map(|line| cut_warning(path, line)).into_iter().collect(),
+                notes: recording
+                    .skipped
+                    .map(|(n, first)| skip_warning(path, n, first))
+                    .into_iter()
+                    .chain(recording.cut_at.map(|line| cut_warning(path, line)))
+                    .collect(),
             };
             return Ok(Player::with(info, Source::Hands(recording)));
         }
@@ -133,6 +138,15 @@ impl Player {
 /// Warns of a recording whose last line was cut off, and gives the warning for people.
 fn cut_warning(path: &Path, line: usize) -> String {
     let what = format!("line {line} was cut off and is left out");
+    tracing::warn!("{}: {what}", path.display());
+    what
+}
+
+/// Warns of lines that cannot be read, and gives the warning for people.
+fn skip_warning(path: &Path, count: usize, first: usize) -> String {
+    let lines = if count == 1 { "line" } else { "lines" };
+    let what =
+        format!("{count} {lines} cannot be read and are left out, the first is line {first}");
     tracing::warn!("{}: {what}", path.display());
     what
 }

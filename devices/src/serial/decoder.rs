@@ -56,6 +56,7 @@ impl SerialDecoder {
                 max_distance: 0,
             },
             silence_us: Some(SILENCE_US),
+            contact_silence_us: SILENCE_US,
             tilts: facts.layout.tilts(),
         });
         SerialDecoder {
@@ -126,7 +127,10 @@ impl SerialDecoder {
         let Some((length, t_us)) = self.held.take() else { return };
         self.counts.packets += 1;
         match self.layout.parse(&self.packet[..length]) {
-            Parsed::Pen(r) => self.pen.report(&r, t_us, emit),
+            Parsed::Pen(r) => {
+                self.pen.tick(t_us, emit);
+                self.pen.report(&r, t_us, emit);
+            }
             Parsed::Away => self.pen.leave(t_us, emit),
             Parsed::Broken => self.counts.broken += 1,
             Parsed::Nothing | Parsed::Pad(_) => {}

@@ -306,3 +306,27 @@ fn models_that_were_declined_are_known() {
         assert_eq!(identified(&who).id().parser.name(), "kye-plain", "0458:{pid:04x}");
     }
 }
+
+/// A vendor's pen of 2047 counts under ids of a model that has 8191.
+#[test]
+fn a_descriptor_outweighs_a_product_id() {
+    let pen = "05 0d 09 02 a1 01 85 07 09 20 a1 00 \
+               09 42 09 44 09 45 15 00 25 01 75 01 95 03 81 02 95 \
+    02 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 0d 46 \
+    40 1f 26 40 1f 81 02 09 31 46 88 13 26 88 13 81 02 b4 09 30 45 00 26 ff 07 81 02 c0 c0";
+    let descriptor: Vec<u8> =
+        pen.split_whitespace().map(|b| u8::from_str_radix(b, 16).unwrap()).collect();
+    let who = Identity {
+        vid: 0x28bd,
+        pid: 0x0071,
+        name: "UGEE TABLET EX07".to_owned(),
+        descriptor,
+        seen_lengths: vec![8, 10],
+        ..Identity::default()
+    };
+    let Identification::Identified(found) = Catalogue::builtin().unwrap().identify(&who) else {
+        panic!("unknown")
+    };
+    assert_eq!(found.tablet.pen.max_pressure, 2047, "{}", found.in_words());
+    assert!(!found.tablet.name.contains("Star 05"), "{}", found.in_words());
+}

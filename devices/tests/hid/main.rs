@@ -7,8 +7,10 @@ use std::path::PathBuf;
 
 mod catalogue;
 mod corpus;
+mod crosscheck;
 mod facts;
 mod oracle;
+mod pens;
 mod plausible;
 
 /// The folder of real recordings, where the environment names one.

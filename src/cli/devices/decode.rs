@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::Player;
-use sculptd_devices::{Body, DeviceId, Hand, Hands, Pen, Sample, Tool};
+use sculptd_devices::{Body, DeviceId, Hand, Hands, Pad, Pen, Sample, Tool};
 use serde::Serialize;
 
 use super::super::{Outcome, answer};
@@ -16,8 +16,8 @@ use super::{recording_fail, write_text};
 struct DecodedRow {
     t_us: u64,
     device: u16,
-    /// `pen`, `eraser`, `mouse`, `touch`; `hands` for a tracker's frame, whose position is its
-    /// first palm's x and y and whose buttons count hands.
+    /// `pen`, `eraser`, `mouse`, `touch`; `pad` for a tablet's keys and wheels; `hands` for a
+    /// tracker's frame, whose position is its first palm's x and y and whose buttons count hands.
     tool: &'static str,
     in_range: bool,
     tip: bool,
@@ -32,6 +32,12 @@ struct DecodedRow {
     buttons: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     hands: Option<Vec<Hand>>,
+    /// Of a pad: steps turned since the recording began, one count a wheel or dial.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wheels: Option<[i32; 2]>,
+    /// Of a pad: where each ring or strip is touched, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    strips: Option<[Option<f32>; 2]>,
 }
 
 const HEADER: &str =
@@ -53,7 +59,7 @@ pub(super) fn decode(
 ) -> Outcome {
     let mut player = Player::open(path, DeviceId(0), catalogue).map_err(recording_fail)?;
     let mut rows = Vec::new();
-    player.advance(u64::MAX / 4, &mut |sample| rows.extend(row(&sample)));
+    player.advance(u64::MAX / 4, &mut |sample| rows.push(row(&sample)));
     let used = player.pressure_use().in_words();
     let info = player.device();
     let notes: Vec<String> = info.notes.iter().cloned().chain(used).collect();
@@ -84,15 +90,15 @@ pub(super) fn decode(
     Ok(())
 }
 
-fn row(s: &Sample) -> Option<DecodedRow> {
+fn row(s: &Sample) -> DecodedRow {
     let p = match &s.body {
         Body::Pen(p) => p,
-        Body::Hands(h) => return Some(hands_row(s, h)),
-        Body::Pad(_) => return None,
+        Body::Hands(h) => return hands_row(s, h),
+        Body::Pad(pad) => return pad_row(s, pad),
     };
     // A thousandth of a degree: radians and back leaves dust that no device means.
     let degrees = |r: f32| (f64::from(r).to_degrees() * 1000.0).round() / 1000.0;
-    Some(DecodedRow {
+    DecodedRow {
         t_us: s.t_us,
         device: s.device.0,
         tool: tool(p),
@@ -108,7 +114,9 @@ fn row(s: &Sample) -> Option<DecodedRow> {
         distance: p.distance,
         buttons: p.buttons,
         hands: None,
-    })
+        wheels: None,
+        strips: None,
+    }
 }
 
 fn hands_row(s: &Sample, h: &Hands) -> DecodedRow {
@@ -129,6 +137,31 @@ fn hands_row(s: &Sample, h: &Hands) -> DecodedRow {
         distance: None,
         buttons: u32::from(h.count),
         hands: Some(h.as_slice().to_vec()),
+        wheels: None,
+        strips: None,
+    }
+}
+
+/// Keys are the buttons, steps of the two wheels the raw axes.
+fn pad_row(s: &Sample, pad: &Pad) -> DecodedRow {
+    DecodedRow {
+        t_us: s.t_us,
+        device: s.device.0,
+        tool: "pad",
+        in_range: false,
+        tip: false,
+        pressure: None,
+        x_mm: 0.0,
+        y_mm: 0.0,
+        x_raw: pad.wheels[0],
+        y_raw: pad.wheels[1],
+        tilt_x: None,
+        tilt_y: None,
+        distance: None,
+        buttons: pad.keys,
+        hands: None,
+        wheels: Some(pad.wheels),
+        strips: Some(pad.strips),
     }
 }
 

@@ -88,7 +88,15 @@ pub(super) fn watch(config: &DevicesConfig, limit_s: Option<f64>, json: bool) ->
     }
     let mut table = Table::new(factory.stats());
     follow(&clock, &mut rx, &mut table, limit_s, json, |_| true);
+    let standing = running.describe();
     drop(running);
+    if table.is_empty() {
+        eprintln!("nothing was sent");
+        match standing[..] {
+            [] => eprintln!("no pen tablet is plugged in, and no serial pen or tracker is set up"),
+            _ => standing.iter().for_each(|line| eprintln!("{line}")),
+        }
+    }
     finish(&table, json);
     Ok(())
 }

@@ -51,6 +51,11 @@ impl Table {
         Table { stats, lines: BTreeMap::new() }
     }
 
+    /// Whether no device has sent anything.
+    pub(super) fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
     pub(super) fn take(&mut self, sample: &Sample) {
         let line = self.lines.entry(sample.device).or_default();
         line.samples += 1;

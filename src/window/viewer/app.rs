@@ -121,7 +121,6 @@ impl ApplicationHandler<AccessibilityEvent> for App {
                 open.mods = m.state();
                 open.lend_to_pens(wiring);
             }
-            WindowEvent::Focused(focused) => open.tablets.unfocused = !focused,
             WindowEvent::CursorMoved { position, .. } => {
                 open.moved(Vec2::new(position.x as f32, position.y as f32), wiring);
             }

@@ -28,7 +28,8 @@ impl WindowState {
     fn sample(&mut self, tip: bool, wiring: &mut Wiring) {
         let t_us = self.pointer.t_us.unwrap_or_else(|| wiring.clock.now_us());
         let by_speed = self.pointer.speed.pressure(t_us, self.pointer.at / self.view_rect().1.y);
-        let pressure = match self.pointer.force {
+        let felt = self.pen_at_pointer(wiring);
+        let pressure = match self.pointer.force.or(felt.map(|pen| pen.pressure)) {
             Some(force) => force,
             None if self.ui_state.prefs.speed_is_pressure => by_speed,
             None => PLAIN,
@@ -45,6 +46,7 @@ impl WindowState {
             area_mm: size,
             raw: self.pointer.at.as_ivec2().to_array(),
             pressure: Some(if tip { pressure.clamp(0.01, 1.0) } else { 0.0 }),
+            tilt: felt.and_then(|pen| pen.tilt),
             ..Default::default()
         };
         let sample =

@@ -27,6 +27,7 @@ mod latest_wins;
 mod look_choice;
 pub mod look_files;
 mod look_follow;
+mod map_fit;
 mod mirrors;
 pub mod objects;
 mod over_clay;

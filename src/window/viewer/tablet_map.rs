@@ -6,11 +6,13 @@
 //! some milliseconds later, which matters the more the faster the pen is, and a mouse may have
 //! moved the pointer. The delay is found by trying several; pairs far from the map are left out of
 //! a second fit (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, reweighting).
+//! A map is believed only where the motion tells it from a delay: [`super::map_fit`].
 
 use std::collections::VecDeque;
 
-use glam::{DMat3, DVec2, DVec3, Vec2};
+use glam::{DVec2, Vec2};
 
+use super::map_fit::{self, DELAYS_US, LEAST, MapFit, ScreenMap};
 use sculptd_devices::DeviceId;
 use sculptd_devices::prediction::PenPredictor;
 use sculptd_engine::desktop_layout::DesktopLayout;
@@ -21,26 +23,20 @@ const PAIRS: usize = 1024;
 const APART_US: u64 = 6_000;
 /// A new fit is made after so large a part of the pairs has come anew, and never after fewer than
 /// half of [`LEAST`].
-const FRESH: usize = 16;
-/// Pairs with which a first map is tried.
-const LEAST: usize = 12;
+const FRESH: usize = 8;
+/// The same once a map is known.
+const KNOWN_FRESH: usize = 2;
 /// Places of the pen that are remembered, for looking back by the delay: half a minute at 250 Hz.
 const TRAIL: usize = 8192;
-/// Delays of the pointer behind the pen that are tried: so many, by this step in microseconds. A
-/// pen at a thousand pixels a second is two pixels on in half a step.
-const DELAYS: (u64, u64) = (31, 4_000);
+/// Delays at which a known map is compared with the newest pairs, microseconds apart. A pen at a
+/// thousand pixels a second is two pixels on in half a step.
+const STEP_US: u64 = 4_000;
+/// Of more pairs, as many are looked at as say enough.
+const LOOKED_AT: usize = 96;
 /// A map is believed while its pairs lie within so many pixels of it, in the median.
 const BELIEVED: f64 = 3.0;
 /// No map fits: the pointer does not follow the pen.
 const WILD: f64 = 24.0;
-/// Pairs beyond so many medians are not the pen's.
-const OUTLIER: f64 = 4.0;
-/// Pairs that are left for the second fit at least.
-const FEWEST: usize = 8;
-/// How far the pairs must lie apart, in shares of the tablet: their standard deviation in the
-/// direction in which it is least. Over less, or along a line, the map beside them would be
-/// guessed.
-const LEAST_SPREAD: f64 = 6e-3;
 /// A pen's pointer may be this far from where the map puts it, pixels: beyond, it is a mouse's.
 const NEAR: f64 = 32.0;
 /// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
@@ -73,24 +69,6 @@ const BETTER: f64 = 3.0;
 const DOUBTED: (usize, u64) = (LEAST / 2, 300_000);
 /// A pen that moves by less than this share of its tablet rests in the hand.
 const RESTS: f64 = 4e-3;
-
-/// From shares of a tablet's area to pixels of the whole desktop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScreenMap {
-    /// Where the area's top left corner lies.
-    pub origin: DVec2,
-    /// The area's upper edge, from left to right.
-    pub across: DVec2,
-    /// The area's left edge, from top to bottom.
-    pub down: DVec2,
-}
-
-impl ScreenMap {
-    /// Where a share of the area lies, pixels.
-    pub fn at(&self, share: DVec2) -> DVec2 {
-        self.origin + self.across * share.x + self.down * share.y
-    }
-}
 
 #[derive(Debug, Clone, Copy)]
 struct Pair {
@@ -146,8 +124,6 @@ pub(super) struct Tablets {
     /// Where the pointer was when it was last paired with the pens.
     pub(super) paired: Option<Vec2>,
     pub(super) sent: DesktopLayout,
-    /// Another window has the keyboard.
-    pub(super) unfocused: bool,
     /// When every event that waited was last taken, microseconds.
     pub(super) taken_us: u64,
     /// When a key of a pad was pressed that no press of the pointer has followed yet, microseconds.
@@ -202,7 +178,8 @@ impl TabletMap {
         }
         self.fresh += 1;
         self.look_for_another(t_us);
-        let enough = (self.pairs.len() / FRESH).max(LEAST / 2);
+        let part = if self.map().is_some() { KNOWN_FRESH } else { FRESH };
+        let enough = (self.pairs.len() / part).max(LEAST / 2);
         if self.fresh >= enough && self.pairs.len() >= LEAST {
             self.fresh = 0;
             self.learn(t_us);
@@ -299,7 +276,8 @@ impl TabletMap {
         let oldest = self.trail.front().map_or(0, |p| p.t_us);
         self.pairs.retain(|p| p.t_us >= oldest);
         let all = self.pairs.len();
-        let Some((delay, map, error)) = self.best_map(all) else { return };
+        let Some(fit) = self.best_map(all) else { return };
+        let (map, error) = (fit.map, fit.off);
         // Where the newest pairs contradict the map that was known, they may do so because it was
         // guessed from few; or else the pairs are of two maps, the older ones the more.
         let newest = self.contradicting();
@@ -309,7 +287,9 @@ impl TabletMap {
             return;
         }
         if error <= BELIEVED {
-            self.believe(now_us, delay, map, error);
+            if fit.certain {
+                self.believe(now_us, &fit);
+            }
         } else if all >= 2 * LEAST && error > WILD {
             // A mouse moves the pointer: the map that was known goes only when it is contradicted
             // for long.
@@ -321,20 +301,18 @@ impl TabletMap {
         }
     }
 
-    fn believe(&mut self, now_us: u64, delay: u64, map: ScreenMap, error: f64) {
+    fn believe(&mut self, now_us: u64, fit: &MapFit) {
         if self.map().is_none() {
             self.since_us = now_us;
         }
-        (self.map, self.fit, self.apart, self.doubts) = (Some(map), (delay, error), false, 0);
+        (self.map, self.fit) = (Some(fit.map), (fit.delay_us, fit.off));
+        (self.apart, self.doubts) = (false, 0);
         self.contradicted_us = None;
     }
 
-    /// The map of the newest pairs with the delay that fits best, that delay, and the median
-    /// distance of the pairs.
-    fn best_map(&self, newest: usize) -> Option<(u64, ScreenMap, f64)> {
-        let all = (0..DELAYS.0).filter_map(|i| self.try_delay(newest, i * DELAYS.1));
-        let best = all.min_by(|a, b| a.3.total_cmp(&b.3))?;
-        Some((best.0, best.1, best.2))
+    /// The map of the newest pairs with the delay that fits best.
+    fn best_map(&self, newest: usize) -> Option<MapFit> {
+        map_fit::best_fit(&|delay_us| self.samples(newest, delay_us))
     }
 
     /// Where the newest pairs contradict the map and agree on another one, the desktop has another
@@ -355,14 +333,14 @@ impl TabletMap {
         self.contradicted_us.get_or_insert(now_us);
         let newest = self.contradicting();
         let off = self.least_quantile(&known, newest, 0.5).filter(|off| *off > CONTRADICTED);
-        let best = self.best_map(newest).zip(off).filter(|((_, map, _), off)| {
-            let fits = self.least_quantile(map, newest, FITTED);
-            fits.is_some_and(|fits| fits <= BELIEVED && fits * BETTER < *off)
+        let best = self.best_map(newest).zip(off).filter(|(fit, off)| {
+            let fits = self.least_quantile(&fit.map, newest, FITTED);
+            fit.alone && fits.is_some_and(|fits| fits <= BELIEVED && fits * BETTER < *off)
         });
-        if let Some(((delay, map, error), _)) = best {
+        if let Some((fit, _)) = best {
             self.pairs.drain(..self.pairs.len() - newest);
             self.fresh = 0;
-            return self.believe(now_us, delay, map, error);
+            return self.believe(now_us, &fit);
         }
         let early = now_us.saturating_sub(DOUBTED.1);
         let lately = self.pairs.iter().rev().position(|p| p.t_us < early).map_or(0, |i| i + 1);
@@ -397,15 +375,18 @@ impl TabletMap {
     /// Within which distance of a map this part of the newest pairs lies, with the delay that suits
     /// it best.
     fn least_quantile(&self, map: &ScreenMap, newest: usize, part: f64) -> Option<f64> {
-        let samples = (0..DELAYS.0).map(|i| self.samples(newest, i * DELAYS.1));
-        let all = samples.filter_map(|samples| quantile(distances(map, &samples), part));
+        let delays = (0..=DELAYS_US.0 / STEP_US).map(|i| self.samples(newest, i * STEP_US));
+        let all =
+            delays.filter_map(|samples| map_fit::quantile(map_fit::distances(map, &samples), part));
         all.min_by(f64::total_cmp)
     }
 
     fn samples(&self, newest: usize, delay_us: u64) -> Vec<(DVec2, DVec2, f64)> {
+        let newest = newest.min(self.pairs.len());
         self.pairs
             .iter()
-            .skip(self.pairs.len().saturating_sub(newest))
+            .skip(self.pairs.len() - newest)
+            .step_by(newest.div_ceil(LOOKED_AT).max(1))
             .filter_map(|p| {
                 let t = p.t_us.checked_sub(delay_us)?;
                 let share = self.share_at(t)?;
@@ -423,87 +404,6 @@ impl TabletMap {
             })
             .collect()
     }
-
-    /// The map with this delay, and the median and the mean distance of the pairs from it. The mean
-    /// tells delays apart: while the pen rests all of them fit.
-    fn try_delay(&self, newest: usize, delay_us: u64) -> Option<(u64, ScreenMap, f64, f64)> {
-        let all = self.samples(newest, delay_us);
-        let first = least_squares(&all).filter(|_| all.len() >= LEAST)?;
-        let middle = median(distances(&first, &all))?;
-        let limit = (middle * OUTLIER).max(1.0);
-        let kept: Vec<_> =
-            all.iter().filter(|s| first.at(s.0).distance(s.1) <= limit).copied().collect();
-        let map = least_squares(&kept)?;
-        // Of all pairs, so that no delay is the better for what it leaves out.
-        let (mut sum, mut worth) = (0.0, 0.0);
-        for (off, weight) in distances(&map, &all) {
-            (sum, worth) = (sum + off.min(WILD) * weight, worth + weight);
-        }
-        let mean = sum / worth;
-        Some((delay_us, map, median(distances(&map, &kept))?, mean))
-    }
-}
-
-/// How far each pair lies from the map, pixels, and what the pair is worth.
-fn distances(map: &ScreenMap, pairs: &[(DVec2, DVec2, f64)]) -> Vec<(f64, f64)> {
-    pairs
-        .iter()
-        .map(|(share, pointer, weight)| (map.at(*share).distance(*pointer), *weight))
-        .collect()
-}
-
-/// The weighted median: pairs of a quick pen say little of a map where the pointer's delay varies,
-/// and a few of a pen that rests say much.
-fn median(all: Vec<(f64, f64)>) -> Option<f64> {
-    quantile(all, 0.5)
-}
-
-fn quantile(mut all: Vec<(f64, f64)>, part: f64) -> Option<f64> {
-    all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let least = all.iter().map(|p| p.1).sum::<f64>() * part;
-    let mut seen = 0.0;
-    let reached = |p: &&(f64, f64)| {
-        seen += p.1;
-        seen >= least
-    };
-    all.iter().find(reached).map(|p| p.0)
-}
-
-/// The affine map with the least sum of weighted squares; `None` where the places span too little.
-fn least_squares(all: &[(DVec2, DVec2, f64)]) -> Option<ScreenMap> {
-    if all.len() < FEWEST {
-        return None;
-    }
-    let middle = all.iter().map(|s| s.0).sum::<DVec2>() / all.len() as f64;
-    // A few that lie far from the others say nothing of how far they lie apart.
-    let mut off: Vec<DVec2> = all.iter().map(|s| s.0 - middle).collect();
-    off.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
-    off.truncate(all.len() - all.len() / 6);
-    let mean = off.iter().sum::<DVec2>() / off.len() as f64;
-    let (mut xx, mut xy, mut yy) = (0.0f64, 0.0f64, 0.0f64);
-    for off in off.iter().map(|off| *off - mean) {
-        (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
-    }
-    // The smaller one of the covariance's two eigenvalues.
-    let least = 0.5 * (xx + yy - (xx - yy).hypot(2.0 * xy)) / off.len() as f64;
-    if least < LEAST_SPREAD * LEAST_SPREAD {
-        return None;
-    }
-    let (mut normal, mut x, mut y) = (DMat3::ZERO, DVec3::ZERO, DVec3::ZERO);
-    for (share, pointer, weight) in all {
-        let row = (*share - middle).extend(1.0);
-        normal += DMat3::from_cols(row * row.x, row * row.y, row * row.z) * *weight;
-        x += row * (pointer.x * weight);
-        y += row * (pointer.y * weight);
-    }
-    let inverse = normal.inverse();
-    if !inverse.is_finite() {
-        return None;
-    }
-    let (x, y) = (inverse * x, inverse * y);
-    let (across, down) = (DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
-    let origin = DVec2::new(x.z, y.z) - across * middle.x - down * middle.y;
-    Some(ScreenMap { origin, across, down })
 }
 
 #[cfg(test)]

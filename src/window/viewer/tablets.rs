@@ -3,7 +3,9 @@
 //! Laws kept here:
 //! * A pointer that follows a tablet's pen is not a second pen: the tablet's own samples sculpt, at
 //!   the place where the desktop has the pointer, and with their pressure and tilt.
-//! * Over a panel, behind another window, and until the map is known, the pen is the pointer alone.
+//! * Over a panel, behind another window, and until the map is known, the pen is the pointer alone;
+//!   until the map is known the pointer presses and leans as the pen does.
+//! * Which window has the keyboard says nothing of where the pen is.
 //! * A mouse that is used meanwhile is a pen of its own.
 //! * A click that the desktop makes of a pad's key does nothing over the view: the key has its own
 //!   action.
@@ -24,6 +26,7 @@ use sculptd_daemon::adaptors::TABLET_IDS;
 use sculptd_devices::DeviceId;
 use sculptd_engine::command::Command;
 use sculptd_engine::desktop_layout::{DesktopLayout, MAX_COVERS, MAX_TABLETS, PenPlace};
+use sculptd_engine::stroke::PenPoint;
 
 /// A map is sent again when it has moved by this share of the view: a third of a pixel.
 const MOVED: f32 = 2e-4;
@@ -91,6 +94,16 @@ impl WindowState {
     pub(super) fn press_is_a_keys(&mut self) -> bool {
         let key_us = self.tablets.key_us.take();
         key_us.is_some_and(|key_us| key_us + LATE_US >= self.tablets.taken_us)
+    }
+
+    /// The pen whose pointer sculpts in its place, because the desktop's map is not known yet: its
+    /// pressure and its tilt are the pointer's.
+    pub(super) fn pen_at_pointer(&self, wiring: &Wiring) -> Option<PenPoint> {
+        let undecided = |id: DeviceId| {
+            self.tablets.known.iter().any(|(known, map)| *known == id && map.is_undecided())
+        };
+        let state = wiring.published.load();
+        state.pens.iter().flatten().find(|(id, _)| undecided(*id)).map(|(_, pen)| *pen)
     }
 
     /// Takes where the pens were since the last call.
@@ -188,7 +201,9 @@ impl WindowState {
             }
         }
         if wiring.kiosk.is_none() && follows {
-            desktop.away = self.tablets.unfocused || !self.pointer.inside;
+            // A window without the keyboard is drawn on as any other: the desktop says whether the
+            // pointer is in it, and would not where another window lay before it.
+            desktop.away = !self.pointer.inside;
             for (slot, cover) in desktop.covers.iter_mut().zip(self.covers()) {
                 *slot = Some(cover.map(|at| (at - corner) / size));
             }

@@ -56,6 +56,14 @@ impl PoseCounts {
         u8::from(self.tip) | (self.buttons as u8) << 1
     }
 
+    /// Tip, buttons, eraser touch (bit 3) and invert (bit 4), as Wacom's newer tablets send them.
+    fn ends(&self) -> u8 {
+        if !self.eraser {
+            return self.flags();
+        }
+        0x10 | bit(self.tip, 8) | (self.buttons as u8) << 1
+    }
+
     fn tilt8(&self) -> [u8; 2] {
         self.tilt.map(|t| t as i8 as u8)
     }
@@ -226,7 +234,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
             vec![0x11, b1, p[0], x[0], x[1], y[0], y[1], 0]
         }
         Family::WacomIntuosV2 => {
-            let mut b = vec![0x10, 0x60 | bit(c.eraser, 0x10) | f];
+            let mut b = vec![0x10, 0x60 | c.ends()];
             b.extend(x.into_iter().chain(y).chain(p).chain(t));
             b.resize(27, 0);
             b[16] = c.height as u8;
@@ -235,7 +243,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
         // One frame of those that fit.
         Family::WacomProBluetooth | Family::WacomIntuosBluetooth => {
             let pro = family == Family::WacomProBluetooth;
-            let mut b = vec![0x80, 0xe0 | bit(c.eraser, 0x10) | f];
+            let mut b = vec![0x80, 0xe0 | c.ends()];
             b.extend(le(c.x).into_iter().chain(le(c.y)).chain(p));
             if pro {
                 b.extend(t);
@@ -255,17 +263,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
             b
         }
         Family::WacomOne => {
-            let mut b = vec![
-                0x1f,
-                0x01,
-                0x60 | bit(c.eraser, 0x10) | f,
-                x[0],
-                x[1],
-                y[0],
-                y[1],
-                p[0],
-                p[1],
-            ];
+            let mut b = vec![0x1f, 0x01, 0x60 | c.ends(), x[0], x[1], y[0], y[1], p[0], p[1]];
             b.extend(c.tilt16(100));
             b.push(c.height as u8);
             b
@@ -279,7 +277,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
         Family::Huion => {
             let mut b = vec![
                 0x08,
-                0x80 | bit(c.eraser, 8) | f,
+                0x80 | bit(c.eraser, 0x20) | f,
                 x[0],
                 x[1],
                 y[0],

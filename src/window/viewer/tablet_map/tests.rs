@@ -1,5 +1,7 @@
 use super::*;
 
+mod hovers;
+
 /// The greatest distance between the corners of two maps, pixels.
 fn differs(a: &ScreenMap, b: &ScreenMap) -> f64 {
     let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
@@ -140,7 +142,7 @@ fn a_pen_that_rests_now_and_then_teaches_the_map_though_the_delay_varies() {
         stops[i % 3].lerp(stops[(i + 1) % 3], (part / 0.5).min(1.0))
     };
     let mut map = TabletMap::default();
-    for i in 0..1000u64 {
+    for i in 0..2000u64 {
         let t_us = 1_000_000 + i * 8_000;
         map.pen(t_us, Some(place(t_us)), false);
         if i % 23 == 22 {
@@ -170,7 +172,7 @@ fn another_map_of_the_desktop_is_learned_within_a_second_of_hovering() {
         let t_us = i * 8_000;
         map.pen(t_us, Some(place(t_us)), false);
         let truth = if i < 1075 { &before } else { &after };
-        map.pointer(t_us, truth.at(place(t_us - 16_000)).round());
+        map.pointer(t_us, truth.at(place(t_us.saturating_sub(16_000))).round());
     }
     let off = differs(map.map().expect("a map"), &after);
     assert!(off < 3.0, "{off} pixels at the corners after a second");
