@@ -25,11 +25,9 @@ const UP: f32 = 0.01;
 const MOST_OFFSET: f32 = 0.5;
 
 /// A pen in contact that is silent for so long, in microseconds, was pulled away. The figure is
-/// libinput's.
+/// libinput's. A pen that rested before the silence, on a tablet that was never seen to repeat a
+/// report, may rest on: recordings of such tablets have pens that press for seconds in silence.
 pub const CONTACT_SILENCE_US: u64 = 50_000;
-/// The same for a pen that rests under full pressure on a tablet that sends changes alone: in
-/// recordings of such tablets a resting pen is silent for up to 183 ms.
-const RESTING_SILENCE_US: u64 = 250_000;
 /// A pen slower than this rests, mm/s. Those recordings have up to 22 mm/s before a silence.
 const RESTING_SPEED: f32 = 24.0;
 /// Reports in contact without pressure that prove a pen to have none, if it never had any.
@@ -164,8 +162,8 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        let resting = if self.rests && !self.repeats { RESTING_SILENCE_US } else { 0 };
-        let contact = self.pen.tip.then_some(self.cfg.contact_silence_us.max(resting));
+        let may_rest = self.rests && !self.repeats;
+        let contact = (self.pen.tip && !may_rest).then_some(self.cfg.contact_silence_us);
         let silence = [self.cfg.silence_us, contact].into_iter().flatten().min()?;
         self.pen.in_range.then(|| self.last_us.saturating_add(silence))
     }
@@ -237,9 +235,7 @@ impl PenState {
         let both = before.tip && self.pen.tip;
         self.repeats |= both && took_us > 0 && *before == self.pen;
         let moved = self.pen.pos_mm.distance(before.pos_mm);
-        // A lighter hand trembles, and the pressure with it.
-        let full = self.pen.pressure == Some(1.0);
-        self.rests = both && full && moved <= RESTING_SPEED * took_us as f32 * 1e-6;
+        self.rests = both && moved <= RESTING_SPEED * took_us as f32 * 1e-6;
     }
 
     fn count_outside(&mut self, r: &PenReport) {

@@ -337,7 +337,7 @@ fn idle_and_flooding_clients_give_way() {
     let idle: Vec<Client> = (0..100).map(|_| Client::new(&path)).collect();
     until("an idle client has given way", is_served);
     // Now each newcomer finds one that is silent for long.
-    for round in 0..50 {
+    for round in 0..20 {
         until(&format!("the owner is served in round {round}"), is_served);
     }
     drop(idle);
@@ -357,7 +357,7 @@ fn idle_and_flooding_clients_give_way() {
             })
         })
         .collect();
-    for round in 0..20 {
+    for round in 0..5 {
         until(&format!("the owner is served in round {round}"), is_served);
     }
     stop.store(true, std::sync::atomic::Ordering::Relaxed);

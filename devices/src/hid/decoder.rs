@@ -161,7 +161,7 @@ impl Decoder {
             }
             let left = (frames - frame) as u64;
             let at_us = t_us - since * left / frames.max(1) as u64;
-            match &self.firmware.mend(*parsed) {
+            match &self.firmware.repair(*parsed) {
                 Parsed::Nothing => {}
                 Parsed::Broken => self.counts.broken += 1,
                 Parsed::Pen(r) => self.pen.report(r, at_us, emit),

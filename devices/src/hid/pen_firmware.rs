@@ -54,7 +54,7 @@ impl PenFirmware {
     }
 
     /// Returns what the pen did; [`Parsed::Nothing`] where the report is the firmware's own noise.
-    pub fn mend(&mut self, parsed: Parsed) -> Parsed {
+    pub fn repair(&mut self, parsed: Parsed) -> Parsed {
         match parsed {
             Parsed::Pen(report) => self.pen(report).map_or(Parsed::Nothing, Parsed::Pen),
             Parsed::Away => self.away(),
@@ -135,7 +135,7 @@ mod tests {
         let mut firmware = PenFirmware::new(rules);
         let mut out = Vec::new();
         for parsed in all {
-            match firmware.mend(*parsed) {
+            match firmware.repair(*parsed) {
                 Parsed::Pen(p) => {
                     out.push(Some((p.tool.unwrap(), p.tip.unwrap(), p.buttons.unwrap())));
                 }

@@ -215,13 +215,14 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
         place.set_busy(true);
         place.set_flooding(asked > MAX_RATE);
         let (response, subscribes) = answer(host, line.trim_ascii(), asked > MAX_RATE);
+        // Who does not read its replies keeps nobody out.
+        place.set_busy(false);
         // Taken before the client is told: nothing after its answer is missed.
         let before =
             (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
         if response.is_some_and(|r| !write_line(&locked(&out), &r)) {
             return;
         }
-        place.set_busy(false);
         if let Some(before) = before {
             place.set_subscribed();
             let _ = events::start(host, before, out.clone(), gone.clone());

@@ -9,7 +9,7 @@ use sculptd_devices::catalogue::{Catalogue, Identification, Identity};
 const NAME: &str = "pen tablets";
 
 /// One `hidraw` node.
-struct Node {
+struct HidNode {
     path: PathBuf,
     /// The kernel's name of the device, `0003:056A:0357.0001`; empty where sysfs does not say.
     kernel: String,
@@ -17,15 +17,15 @@ struct Node {
     open: Result<(), std::io::Error>,
 }
 
-impl Node {
+impl HidNode {
     /// `class`: `/sys/class/hidraw`.
-    fn read(path: PathBuf, class: &Path) -> Node {
+    fn read(path: PathBuf, class: &Path) -> HidNode {
         let name = path.file_name().unwrap_or_default().to_owned();
         let device = class.join(&name).join("device");
         let kernel = std::fs::canonicalize(&device).ok();
         let kernel = kernel.and_then(|d| Some(d.file_name()?.to_string_lossy().into_owned()));
         let open = std::fs::File::open(&path).map(drop);
-        Node { path, kernel: kernel.unwrap_or_default(), who: identity(&device), open }
+        HidNode { path, kernel: kernel.unwrap_or_default(), who: identity(&device), open }
     }
 
     fn is_denied(&self) -> bool {
@@ -60,7 +60,7 @@ enum Kind {
     Unknown,
 }
 
-fn kind(node: &Node, catalogue: &Catalogue) -> Kind {
+fn kind(node: &HidNode, catalogue: &Catalogue) -> Kind {
     let Some(who) = &node.who else { return Kind::Unknown };
     match catalogue.identify(who) {
         Identification::Identified(found) => Kind::Tablet(found.tablet.name.clone()),
@@ -83,7 +83,7 @@ pub(super) fn check(dev: &Path, class: &Path, catalogue: &Catalogue) -> Check {
             format!("no {}: nothing is plugged in", dev.join("hidraw*").display()),
         );
     }
-    let nodes: Vec<Node> = paths.into_iter().map(|path| Node::read(path, class)).collect();
+    let nodes: Vec<HidNode> = paths.into_iter().map(|path| HidNode::read(path, class)).collect();
     let (mut good, mut closed, mut others) = (Vec::new(), Vec::new(), 0);
     for node in &nodes {
         let name = match kind(node, catalogue) {
@@ -117,7 +117,7 @@ pub(super) fn check(dev: &Path, class: &Path, catalogue: &Catalogue) -> Check {
 
 /// A line that gives the person who pastes it access now, and whenever the tablet is plugged in. It
 /// names the devices themselves and needs no file of this program.
-fn repair<'a>(nodes: impl Iterator<Item = &'a Node> + Clone, first: &Node) -> String {
+fn repair<'a>(nodes: impl Iterator<Item = &'a HidNode> + Clone, first: &HidNode) -> String {
     let paths: Vec<String> = nodes.clone().map(|n| format!("'{}'", n.path.display())).collect();
     let now = format!("sudo chown \"$(id -un)\" {}", paths.join(" "));
     // `0003:056A:0357.0001` without the number that it has at this plug.
@@ -219,7 +219,7 @@ mod tests {
         let machine = Machine::with(&[(TABLET, VENDOR, true), (GAMEPAD, STICK, false)]);
         let found = machine.check();
         assert_eq!(found.verdict, Verdict::Pass, "{}", found.cause);
-        assert!(found.cause.contains("Intuos Pro M"), "{}", found.cause);
+        assert!(found.cause.contains("PTH-660"), "{}", found.cause);
         let alone = Machine::with(&[(GAMEPAD, STICK, false)]).check();
         assert_eq!(alone.verdict, Verdict::Skip, "{}", alone.cause);
     }
@@ -228,7 +228,7 @@ mod tests {
     fn the_repair_names_each_model_once_and_is_one_line_of_shell() {
         let machine = Machine::with(&[(TABLET, VENDOR, false), (TABLET, VENDOR, false)]);
         let class = machine.0.path().join("class");
-        let node = |i: u32| Node::read(machine.0.path().join(format!("dev/hidraw{i}")), &class);
+        let node = |i: u32| HidNode::read(machine.0.path().join(format!("dev/hidraw{i}")), &class);
         let nodes = [node(0), node(1)];
         let line = repair(nodes.iter(), &nodes[0]);
         assert_eq!(line.matches("056A:0357").count(), 1, "{line}");

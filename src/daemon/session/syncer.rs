@@ -51,9 +51,11 @@ impl Syncer {
         let committed = Arc::new(Mutex::new((first.tick, first.chain)));
         let trouble = Arc::new(Mutex::new(None));
         let (last, said, clock) = (committed.clone(), trouble.clone(), Clock::monotonic());
+        // Opened now: later the file may have another name.
+        let mut own: Option<Connection> = None;
+        let _ = take_over(&mut own, &database.get());
         let thread = std::thread::Builder::new().name("sculptd-sync".into()).spawn(move || {
             let mut log: Option<File> = None;
-            let mut own: Option<Connection> = None;
             // When the database is to take over the log next; none: it has all of it.
             let mut due_us: Option<u64> = None;
             loop {

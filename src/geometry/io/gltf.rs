@@ -9,6 +9,7 @@
 
 mod morph;
 
+use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use glam::{DMat4, DQuat, DVec3};
@@ -370,7 +371,7 @@ impl GltfFile<'_> {
         for i in 0..place.count {
             let mut v = [0.0; 3];
             for (c, v) in v.iter_mut().enumerate() {
-                *v = place.get(i, c);
+                *v = place.value(i, c);
             }
             points.push(DVec3::from(v));
         }
@@ -440,17 +441,45 @@ impl GltfFile<'_> {
         let a = self.root.accessors.get(n).ok_or_else(|| {
             wrong("an accessor", format!("number {n} of {}", self.root.accessors.len()))
         })?;
-        if a.sparse.is_some() {
-            return Err(wrong("a plain accessor", "a sparse one".into()));
-        }
         let (Checked::Valid(kind), Checked::Valid(shape)) = (a.component_type, a.type_) else {
             return Err(wrong("a known type", "another".into()));
         };
-        let view = a.buffer_view.ok_or_else(|| wrong("a buffer view", "none".into()))?.value();
         let parts =
             parts_of(shape).ok_or_else(|| wrong("numbers or vectors", "matrices".into()))?;
-        let offset = a.byte_offset.map_or(0, |o| o.0) as usize;
-        self.values((view, offset), a.count.0 as usize, (kind.0, parts), what)
+        let (kind, count) = (kind.0, a.count.0 as usize);
+        let mut all = match a.buffer_view {
+            Some(view) => {
+                let offset = a.byte_offset.map_or(0, |o| o.0) as usize;
+                self.values((view.value(), offset), count, (kind, parts), what)?
+            }
+            // Without a view all are zero, but for the sparse ones.
+            None if a.sparse.is_some() && count <= MAX_INSTANCED => AccessorValues::zeros(count),
+            None => return Err(wrong("a buffer view", "none".into())),
+        };
+        (all.kind, all.parts, all.normalized) = (kind, parts, a.normalized);
+        if let Some(sparse) = &a.sparse {
+            let Checked::Valid(index) = sparse.indices.component_type else {
+                return Err(wrong("a known type of sparse indices", "another".into()));
+            };
+            let number = sparse.count.0 as usize;
+            let from = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0 as usize);
+            let places = self.values(from, number, (index.0, 1), what)?;
+            let from = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0 as usize);
+            let values = self.values(from, number, (kind, parts), what)?;
+            for i in 0..number {
+                let at = places.get(i, 0);
+                if !(at >= 0.0 && at < count as f64) {
+                    let found = format!("{at} of {count}");
+                    return Err(wrong("sparse indices within the count", found));
+                }
+                let mut row = [0.0; 4];
+                for (part, value) in row.iter_mut().enumerate().take(parts) {
+                    *value = values.get(i, part);
+                }
+                all.sparse.insert(at as usize, row);
+            }
+        }
+        Ok(all)
     }
 
     /// So many values of a kind and so many parts in a buffer view, from a byte of it on.
@@ -495,7 +524,8 @@ impl GltfFile<'_> {
                 format!("a count of {count} in {} bytes", bytes.len()),
             ));
         }
-        Ok(AccessorValues { bytes, stride, count, parts, kind, size })
+        let (normalized, sparse) = (false, BTreeMap::new());
+        Ok(AccessorValues { bytes, stride, count, parts, kind, size, normalized, sparse })
     }
 }
 
@@ -518,12 +548,26 @@ struct AccessorValues<'a> {
     parts: usize,
     kind: ComponentType,
     size: usize,
+    /// Whole numbers stand for parts of 1.
+    normalized: bool,
+    /// Values that stand in the place of those in `bytes`.
+    sparse: BTreeMap<usize, [f64; 4]>,
 }
 
 impl AccessorValues<'_> {
+    fn zeros(count: usize) -> Self {
+        let (kind, sparse) = (ComponentType::F32, BTreeMap::new());
+        let (stride, parts, size, normalized) = (0, 1, 0, false);
+        AccessorValues { bytes: &[], stride, count, parts, kind, size, normalized, sparse }
+    }
+
     fn get(&self, i: usize, part: usize) -> f64 {
-        let b = &self.bytes[i * self.stride + part * self.size..][..self.size];
-        match (self.kind, b) {
+        if let Some(row) = self.sparse.get(&i) {
+            return row[part.min(3)];
+        }
+        let b = &self.bytes[i * self.stride + (part * self.size).min(self.bytes.len())..];
+        match (self.kind, &b[..self.size]) {
+            (_, &[]) => 0.0,
             (ComponentType::I8, &[a]) => a as i8 as f64,
             (ComponentType::U8, &[a]) => a as f64,
             (ComponentType::I16, &[a, b]) => i16::from_le_bytes([a, b]) as f64,
@@ -531,6 +575,20 @@ impl AccessorValues<'_> {
             (ComponentType::U32, &[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]) as f64,
             (ComponentType::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]) as f64,
             _ => f64::NAN,
+        }
+    }
+
+    /// The value that a whole number stands for where the accessor is normalized (glTF 2.0, 3.11):
+    /// a signed one's least is -1 too.
+    fn value(&self, i: usize, part: usize) -> f64 {
+        let raw = self.get(i, part);
+        match self.kind {
+            _ if !self.normalized => raw,
+            ComponentType::I8 => (raw / 127.0).max(-1.0),
+            ComponentType::U8 => raw / 255.0,
+            ComponentType::I16 => (raw / 32767.0).max(-1.0),
+            ComponentType::U16 => raw / 65535.0,
+            ComponentType::U32 | ComponentType::F32 => raw,
         }
     }
 }

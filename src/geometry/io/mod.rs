@@ -19,10 +19,13 @@ mod regular;
 mod stl;
 mod text;
 mod threemf;
+#[cfg(test)]
+mod variants;
 mod write;
 mod write_packed;
 mod write_scene;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 pub use beside::write_beside;
@@ -88,13 +91,15 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
     }
     let mut warnings = Vec::new();
     let mut targets = Vec::new();
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let unmarked = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let is = |e: &str| extension == e;
-    let (mesh, format) = if bytes.starts_with(b"ply")
-        && bytes.get(3).is_some_and(u8::is_ascii_whitespace)
+    let plain = as_text(unmarked);
+    let text = &*plain;
+    let (mesh, format) = if unmarked.starts_with(b"ply")
+        && unmarked.get(3).is_some_and(u8::is_ascii_whitespace)
         || is("ply")
     {
-        ply::parse(bytes, &mut warnings, job)?
+        ply::parse(unmarked, &mut warnings, job)?
     } else if bytes.starts_with(b"glTF") || is("glb") {
         if !bytes.starts_with(b"glTF") {
             return Err(
@@ -127,6 +132,19 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
     };
     job.progress(1.0);
     Ok(LoadedMesh { mesh, format, warnings, targets })
+}
+
+/// Text as this program reads it: what old systems put behind the end (zeros, Ctrl-Z) is left out,
+/// and where lines end with a carriage return alone, they end with a line feed.
+fn as_text(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let end = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a)).map_or(0, |at| at + 1);
+    let text = &bytes[..end];
+    let head = &text[..text.len().min(1 << 16)];
+    // A file of several lines has an end of line near its beginning; packed numbers have zeros.
+    if head.contains(&b'\r') && memchr::memchr2(b'\n', 0, text).is_none() {
+        return text.iter().map(|b| if *b == b'\r' { b'\n' } else { *b }).collect();
+    }
+    Cow::Borrowed(text)
 }
 
 fn extension(name: &Path) -> String {

@@ -29,15 +29,17 @@ pub(super) fn binary_exact(bytes: &[u8]) -> bool {
     binary_count(bytes).is_some_and(|n| HEAD as u64 + n * RECORD as u64 == bytes.len() as u64)
 }
 
-/// Whether this is text: "solid", and then a facet or the end, soon.
+/// Returns whether this is text: "solid", and after its line a facet or the end. The name on the
+/// first line may be of any length, and end with zeros.
 pub(super) fn looks_ascii(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(4096)];
-    let start = head.trim_ascii_start();
-    let lower = start.to_ascii_lowercase();
-    lower.starts_with(b"solid")
-        && !head.contains(&0)
-        && (memchr::memmem::find(&lower, b"facet").is_some()
-            || memchr::memmem::find(&lower, b"endsolid").is_some())
+    let start = bytes.trim_ascii_start();
+    if !start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
+        return false;
+    }
+    let line = memchr::memchr(b'\n', start).map_or(0, |at| at + 1);
+    let lower = start[line..start.len().min(line + 4096)].to_ascii_lowercase();
+    let has = |word: &[u8]| memchr::memmem::find(&lower, word).is_some();
+    !lower.contains(&0) && (has(b"facet") || has(b"endsolid"))
 }
 
 pub(super) fn parse_binary(

@@ -196,9 +196,8 @@ fn model(
                 get(&e, "path").map_or(path.to_string(), |p| p.trim_start_matches('/').to_string());
             let transform = match get(&e, "transform") {
                 None => DMat4::IDENTITY,
-                Some(t) => {
-                    transform(&t).ok_or_else(|| wrong("twelve numbers as \"transform\"", t))?
-                }
+                Some(t) => transform(&t)
+                    .ok_or_else(|| wrong("twelve numbers of an invertible \"transform\"", t))?,
             };
             Ok(((place, index("objectid")?), transform))
         };
@@ -261,14 +260,17 @@ fn model(
     Ok(())
 }
 
-/// Twelve numbers, a row vector's matrix by rows.
+/// Twelve numbers, a row vector's matrix by rows; `None` of one without an inverse.
 fn transform(text: &str) -> Option<DMat4> {
     let v: Vec<f64> = text
         .split_ascii_whitespace()
         .map(|w| float(w.as_bytes()).filter(|v| v.is_finite()))
         .collect::<Option<_>>()?;
     let row = |i: usize, w: f64| DVec4::new(v[i], v[i + 1], v[i + 2], w);
-    (v.len() == 12).then(|| DMat4::from_cols(row(0, 0.0), row(3, 0.0), row(6, 0.0), row(9, 1.0)))
+    let matrix = (v.len() == 12)
+        .then(|| DMat4::from_cols(row(0, 0.0), row(3, 0.0), row(6, 0.0), row(9, 1.0)));
+    // A part that is pressed flat has no volume (3MF core specification, 3.3).
+    matrix.filter(|m| m.determinant() != 0.0)
 }
 
 /// Objects may hold objects; deeper than this is a circle.

@@ -31,7 +31,7 @@ impl ScreenMap {
 }
 
 /// A place of the pen in shares of its area, the pointer's pixel, and what the pair is worth.
-pub(super) type Pair = (DVec2, DVec2, f64);
+pub(super) type PlacePair = (DVec2, DVec2, f64);
 
 /// Pairs with which a first map is tried.
 pub(super) const LEAST: usize = 12;
@@ -110,7 +110,7 @@ struct Trial {
 ///
 /// Where the delay is the same for all pairs, those of a quick pen say as much as the others: then
 /// pairs of equal worth may be certain sooner.
-pub(super) fn best_fit(samples: &dyn Fn(u64) -> Vec<Pair>) -> Option<MapFit> {
+pub(super) fn best_fit(samples: &dyn Fn(u64) -> Vec<PlacePair>) -> Option<MapFit> {
     let by_worth = fit(samples);
     if by_worth.is_some_and(|f| f.certain) {
         return by_worth;
@@ -120,7 +120,7 @@ pub(super) fn best_fit(samples: &dyn Fn(u64) -> Vec<Pair>) -> Option<MapFit> {
     fit(&equal).filter(|f| f.certain).or(by_worth)
 }
 
-fn fit(samples: &dyn Fn(u64) -> Vec<Pair>) -> Option<MapFit> {
+fn fit(samples: &dyn Fn(u64) -> Vec<PlacePair>) -> Option<MapFit> {
     let right = search(samples, &[Kind::Straight, Kind::Crossed]);
     let fits = |trials: &[Trial]| trials.iter().any(|t| t.square <= FITS * FITS);
     let trials = match right {
@@ -143,8 +143,8 @@ fn fit(samples: &dyn Fn(u64) -> Vec<Pair>) -> Option<MapFit> {
 }
 
 /// Every delay and kind of map that is locally the best, and its neighbours.
-fn search(samples: &dyn Fn(u64) -> Vec<Pair>, kinds: &[Kind]) -> Option<Vec<Trial>> {
-    let grid: Vec<Vec<Pair>> =
+fn search(samples: &dyn Fn(u64) -> Vec<PlacePair>, kinds: &[Kind]) -> Option<Vec<Trial>> {
+    let grid: Vec<Vec<PlacePair>> =
         (0..=DELAYS_US.0 / DELAYS_US.1).map(|i| samples(i * DELAYS_US.1)).collect();
     let most = grid.iter().map(Vec::len).max()?;
     // A first look says how far a pair of the pen's may be off.
@@ -152,7 +152,7 @@ fn search(samples: &dyn Fn(u64) -> Vec<Pair>, kinds: &[Kind]) -> Option<Vec<Tria
     let cap = (first.min_by(f64::total_cmp)? * OUTLIER).max(2.0);
     let mut trials = Vec::new();
     for kind in kinds {
-        let square = |delay_us: u64, pairs: &[Pair]| {
+        let square = |delay_us: u64, pairs: &[PlacePair]| {
             // A delay that reaches back before the pairs began explains too few of them.
             let enough = pairs.len() >= LEAST && pairs.len() * 4 >= most * 3;
             trial(*kind, delay_us, pairs, cap).filter(|_| enough)
@@ -198,27 +198,27 @@ fn refined(mut best: Trial, at: &dyn Fn(u64) -> Option<Trial>) -> Trial {
 }
 
 /// The median distance of the pairs from the map that fits them.
-fn typical(kind: Kind, pairs: &[Pair]) -> Option<f64> {
+fn typical(kind: Kind, pairs: &[PlacePair]) -> Option<f64> {
     (pairs.len() >= LEAST).then_some(())?;
     robust(kind, pairs).map(|(_, off)| off)
 }
 
 /// A fit of all pairs, and one of those near it; with the median distance.
-fn robust(kind: Kind, pairs: &[Pair]) -> Option<(ScreenMap, f64)> {
+fn robust(kind: Kind, pairs: &[PlacePair]) -> Option<(ScreenMap, f64)> {
     let mut map = least_squares(kind, pairs)?;
     let mut off = 0.0;
     for _ in 0..2 {
         let middle = median(distances(&map, pairs))?;
         let limit = (middle * OUTLIER).max(1.0);
-        let near = |p: &&Pair| map.at(p.0).distance(p.1) <= limit;
-        let kept: Vec<Pair> = pairs.iter().filter(near).copied().collect();
+        let near = |p: &&PlacePair| map.at(p.0).distance(p.1) <= limit;
+        let kept: Vec<PlacePair> = pairs.iter().filter(near).copied().collect();
         map = least_squares(kind, &kept)?;
         off = median(distances(&map, &kept))?;
     }
     Some((map, off))
 }
 
-fn trial(kind: Kind, delay_us: u64, pairs: &[Pair], cap: f64) -> Option<Trial> {
+fn trial(kind: Kind, delay_us: u64, pairs: &[PlacePair], cap: f64) -> Option<Trial> {
     let (map, off) = robust(kind, pairs)?;
     let (mut sum, mut worth, mut worth2) = (0.0, 0.0, 0.0);
     for (far, weight) in distances(&map, pairs) {
@@ -231,7 +231,7 @@ fn trial(kind: Kind, delay_us: u64, pairs: &[Pair], cap: f64) -> Option<Trial> {
 }
 
 /// The corners of the part of the area that a map is asked for.
-fn asked_for(pairs: &[Pair]) -> [DVec2; 4] {
+fn asked_for(pairs: &[PlacePair]) -> [DVec2; 4] {
     let least = pairs.iter().map(|p| p.0).fold(DVec2::MAX, DVec2::min);
     let most = pairs.iter().map(|p| p.0).fold(DVec2::MIN, DVec2::max);
     let (middle, half) = ((least + most) * 0.5, (most - least) * 0.5 * EXTENT);
@@ -246,7 +246,7 @@ fn apart(corners: &[DVec2; 4], a: &ScreenMap, b: &ScreenMap) -> f64 {
 
 /// The standard deviation of the worst corner, pixels, where a pair of weight 1 has this variance
 /// on each axis.
-fn corner_deviation(kind: Kind, pairs: &[Pair], variance: f64, count: f64) -> f64 {
+fn corner_deviation(kind: Kind, pairs: &[PlacePair], variance: f64, count: f64) -> f64 {
     let worth: f64 = pairs.iter().map(|p| p.2).sum();
     let middle = pairs.iter().map(|p| p.0 * p.2).sum::<DVec2>() / worth;
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -273,7 +273,7 @@ fn corner_deviation(kind: Kind, pairs: &[Pair], variance: f64, count: f64) -> f6
 }
 
 /// How far each pair lies from the map, pixels, and what the pair is worth.
-pub(super) fn distances(map: &ScreenMap, pairs: &[Pair]) -> Vec<(f64, f64)> {
+pub(super) fn distances(map: &ScreenMap, pairs: &[PlacePair]) -> Vec<(f64, f64)> {
     pairs
         .iter()
         .map(|(share, pointer, weight)| (map.at(*share).distance(*pointer), *weight))
@@ -300,7 +300,7 @@ pub(super) fn quantile(mut all: Vec<(f64, f64)>, part: f64) -> Option<f64> {
 
 /// The map of a kind with the least sum of weighted squares; `None` where the places span too
 /// little.
-fn least_squares(kind: Kind, all: &[Pair]) -> Option<ScreenMap> {
+fn least_squares(kind: Kind, all: &[PlacePair]) -> Option<ScreenMap> {
     if all.len() < FEWEST || !spans_enough(all) {
         return None;
     }
@@ -309,7 +309,8 @@ fn least_squares(kind: Kind, all: &[Pair]) -> Option<ScreenMap> {
     }
     let line = |from: fn(DVec2) -> f64, to: fn(DVec2) -> f64| {
         let worth: f64 = all.iter().map(|p| p.2).sum();
-        let mean = |of: &dyn Fn(&Pair) -> f64| all.iter().map(|p| of(p) * p.2).sum::<f64>() / worth;
+        let mean =
+            |of: &dyn Fn(&PlacePair) -> f64| all.iter().map(|p| of(p) * p.2).sum::<f64>() / worth;
         let (u, x) = (mean(&|p| from(p.0)), mean(&|p| to(p.1)));
         let uu = mean(&|p| (from(p.0) - u).powi(2));
         let ux = mean(&|p| (from(p.0) - u) * (to(p.1) - x));
@@ -328,7 +329,7 @@ fn least_squares(kind: Kind, all: &[Pair]) -> Option<ScreenMap> {
 }
 
 /// Whether the places of the pen lie apart in every direction.
-fn spans_enough(all: &[Pair]) -> bool {
+fn spans_enough(all: &[PlacePair]) -> bool {
     let middle = all.iter().map(|s| s.0).sum::<DVec2>() / all.len() as f64;
     // A few that lie far from the others say nothing of how far they lie apart.
     let mut off: Vec<DVec2> = all.iter().map(|s| s.0 - middle).collect();
@@ -344,7 +345,7 @@ fn spans_enough(all: &[Pair]) -> bool {
     least >= LEAST_SPREAD * LEAST_SPREAD
 }
 
-fn any_least_squares(all: &[Pair]) -> Option<ScreenMap> {
+fn any_least_squares(all: &[PlacePair]) -> Option<ScreenMap> {
     let middle = all.iter().map(|s| s.0).sum::<DVec2>() / all.len() as f64;
     let (mut normal, mut x, mut y) = (DMat3::ZERO, DVec3::ZERO, DVec3::ZERO);
     for (share, pointer, weight) in all {

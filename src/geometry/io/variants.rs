@@ -1,0 +1,106 @@
+//! Files that are valid or common and not what most programs write.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::write_packed::base64;
+use super::{LoadedMesh, parse};
+use crate::job::Job;
+
+fn read(name: &str, bytes: &[u8]) -> LoadedMesh {
+    parse(bytes, Path::new(name), &Job::default()).unwrap_or_else(|e| panic!("{name}: {e:?}"))
+}
+
+const STL: &str = "solid a part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
+    vertex 0 1 0\nendloop\nendfacet\nendsolid a part\n";
+const OBJ: &str = "# a triangle\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+    property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const OFF: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn ends_of_lines_and_of_files_of_old_systems_are_read() {
+    for (name, text) in [("a.stl", STL), ("a.obj", OBJ), ("a.off", OFF), ("a.ply", PLY)] {
+        let marked = format!("\u{feff}{text}");
+        assert_eq!(read(name, marked.as_bytes()).mesh.face_count(), 1, "{name} with a mark");
+        if name == "a.ply" {
+            continue;
+        }
+        for variant in [
+            text.replace('\n', "\r"),
+            text.replace('\n', "\r\n"),
+            format!("{text}\u{1a}"),
+            format!("{text}\0\0\0"),
+        ] {
+            assert_eq!(read(name, variant.as_bytes()).mesh.face_count(), 1, "{name}: {variant:?}");
+        }
+    }
+    for long in [80, 4090, 100_000] {
+        for end in ["", "\0\0"] {
+            let name = "x".repeat(long) + end;
+            let text = STL.replacen("a part", &name, 1);
+            assert_eq!(read("a.stl", text.as_bytes()).mesh.face_count(), 1, "{long} {end:?}");
+        }
+    }
+}
+
+/// A triangle with corners at 0 and `size` times the numbers of `corners`.
+fn gltf(kind: u32, normalized: bool, corners: &[u8], sparse: &str, view: &str) -> Vec<u8> {
+    let data = base64(corners);
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
+        "nodes":[{{"mesh":0,"scale":[10,10,10]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{{view}"componentType":{kind},"normalized":{normalized},"count":3,
+            "type":"VEC3"{sparse}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{length}}},
+            {{"buffer":0,"byteLength":2}},{{"buffer":0,"byteOffset":4,"byteLength":24}}],
+        "buffers":[{{"byteLength":{length},
+            "uri":"data:application/octet-stream;base64,{data}"}}]}}"#,
+        length = corners.len()
+    )
+    .into_bytes()
+}
+
+#[test]
+fn normalized_whole_numbers_stand_for_parts_of_one() {
+    let view = r#""bufferView":0,"#;
+    for (kind, top) in [(5120u32, 127i32), (5121, 255), (5122, 32767), (5123, 65535)] {
+        let mut bytes = Vec::new();
+        for n in [0, 0, 0, top, 0, 0, 0, top, 0] {
+            match kind {
+                5120 | 5121 => bytes.push(n as u8),
+                _ => bytes.extend_from_slice(&(n as u16).to_le_bytes()),
+            }
+        }
+        bytes.resize(bytes.len().next_multiple_of(32), 0);
+        let extent = |normalized: bool| {
+            let mesh = read("a.gltf", &gltf(kind, normalized, &bytes, "", view)).mesh;
+            mesh.positions.iter().fold(DVec3::ZERO, |most, p| most.max(*p))
+        };
+        assert_eq!(extent(true), DVec3::new(10.0, 10.0, 0.0), "{kind}");
+        let whole = 10.0 * f64::from(top);
+        assert_eq!(extent(false), DVec3::new(whole, whole, 0.0), "{kind}");
+    }
+}
+
+#[test]
+fn sparse_positions_take_the_place_of_those_in_the_view_or_of_zeros() {
+    // Two indices, and two points.
+    let mut bytes = vec![1u8, 2, 0, 0];
+    for value in [1.0f32, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
+    bytes.resize(64, 0);
+    let sparse = r#","sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},
+        "values":{"bufferView":2}}"#;
+    let mesh = read("a.gltf", &gltf(5126, false, &bytes, sparse, "")).mesh;
+    let mut places = mesh.positions.clone();
+    places.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.y.total_cmp(&a.y)));
+    assert_eq!(places, [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::ZERO]);
+    let outside = sparse.replace("5121", "5125");
+    let bytes = gltf(5126, false, &bytes, &outside, "");
+    assert!(parse(&bytes, Path::new("a.gltf"), &Job::default()).is_err());
+}
