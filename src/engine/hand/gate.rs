@@ -10,7 +10,6 @@
 //!   a finger that did not stretch or bend.
 
 use glam::{Quat, Vec3};
-use serde::{Deserialize, Serialize};
 
 use super::pose::straightness;
 use sculptd_devices::sample::MAX_HANDS;
@@ -52,7 +51,7 @@ const SAME_SHAPE: (f32, f32) = (0.06, 6.0);
 const HELD_US: u64 = 100_000;
 
 /// One hand as it was believed last.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy)]
 struct Known {
     /// The number that it keeps here, whatever its tracker calls it.
     id: i32,
@@ -69,7 +68,7 @@ struct Known {
 }
 
 /// A hand at a place that no known hand can have reached.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy)]
 struct Doubted {
     palm: Vec3,
     since_us: u64,
@@ -85,7 +84,7 @@ impl Doubted {
 }
 
 /// What is known of the hands of one tracker.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default)]
 pub struct HandGate {
     known: Vec<Known>,
     doubted: Vec<Doubted>,
@@ -98,9 +97,9 @@ impl HandGate {
         self.known.push(Known::new(id, &hand, seen_us));
     }
 
-    /// Returns whether nothing is known that a later frame would be compared with.
+    /// Whether no hand is known.
     pub fn is_empty(&self) -> bool {
-        self.known.is_empty() && self.doubted.is_empty()
+        self.known.is_empty()
     }
 
     /// Returns the hands of a frame that can be true, each under the number that it keeps.

@@ -110,13 +110,10 @@ pub struct HandTools {
     now_us: u64,
     /// One for each tracker.
     steady: Vec<(DeviceId, HandsFilter)>,
-    /// One for each tracker. A saved world has them behind its other parts, see [`Gates`].
+    /// One for each tracker; after its state was read back, made anew of the hands that are held.
     #[serde(skip)]
-    gates: Gates,
+    gates: Vec<(DeviceId, HandGate)>,
 }
-
-/// What is known of the hands of each tracker.
-pub(crate) type Gates = Vec<(DeviceId, HandGate)>;
 
 impl HandTools {
     /// No hands yet.
@@ -171,16 +168,6 @@ impl HandTools {
             self.volume.turn = (turn * self.volume.turn).normalize();
             self.yaw = yaw;
         }
-    }
-
-    /// Returns what is known of the hands of each tracker; `None`: of no hand anything.
-    pub(crate) fn gates(&self) -> Option<&Gates> {
-        self.gates.iter().any(|(_, gate)| !gate.is_empty()).then_some(&self.gates)
-    }
-
-    /// Takes up what was known when the world was saved.
-    pub(crate) fn set_gates(&mut self, gates: Gates) {
-        self.gates = gates;
     }
 
     /// The hands of a frame that can be true.

@@ -17,7 +17,7 @@ use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
 use crate::command::Jump;
 use crate::desktop_layout::DesktopLayout;
-use crate::hand::{Gates, HandTools, HeldObject, Similarity};
+use crate::hand::{HandTools, HeldObject, Similarity};
 use crate::old_layout::{FieldCounts, take_from_bytes};
 use crate::payload::Payload;
 use crate::scene::{Object, ObjectId, ObjectSettings, Scene, SceneError, SceneEvent, SceneView};
@@ -139,25 +139,6 @@ pub struct SavedObject {
     pub rest: ObjectState,
 }
 
-/// What stands behind the list of objects, each part only where a later one or it has anything.
-#[derive(Default)]
-struct SavedRest {
-    people: People,
-    holding: SavedHolding,
-    /// `None`: a state from before they were written, or nothing was known of any hand.
-    gates: Option<Gates>,
-}
-
-/// Returns the next part; `None`: there are no more.
-fn next_part<T: serde::de::DeserializeOwned>(bytes: &mut &[u8]) -> Result<Option<T>, BadState> {
-    if bytes.is_empty() {
-        return Ok(None);
-    }
-    let (part, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
-    *bytes = rest;
-    Ok(Some(part))
-}
-
 impl SavedScene {
     fn of(scene: &Scene) -> SavedScene {
         let of = |o: &Object| SavedObject {
@@ -175,15 +156,20 @@ impl SavedScene {
     }
 
     /// What stands behind the rest of a state; `None` where nothing does.
-    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, SavedRest)>, BadState> {
+    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People, SavedHolding)>, BadState> {
         if bytes.is_empty() {
             return Ok(None);
         }
-        let (scene, mut bytes) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
-        let people = next_part(&mut bytes)?.unwrap_or_default();
-        let holding = next_part(&mut bytes)?.unwrap_or_default();
-        let gates = next_part(&mut bytes)?;
-        Ok(Some((scene, SavedRest { people, holding, gates })))
+        let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
+        if rest.is_empty() {
+            return Ok(Some((scene, People::default(), SavedHolding::default())));
+        }
+        let (people, rest) = postcard::take_from_bytes(rest).map_err(|_| BadState)?;
+        let holding = match rest {
+            [] => SavedHolding::default(),
+            rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
+        };
+        Ok(Some((scene, people, holding)))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -205,7 +191,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        Ok(SavedScene::read(rest)?.map(|(scene, _)| scene))
+        Ok(SavedScene::read(rest)?.map(|(scene, ..)| scene))
     }
 }
 
@@ -364,20 +350,15 @@ impl World {
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
         let (alone, holding) = (self.people.is_nobody(), self.in_hand.saved());
-        let gates = self.hands.gates();
-        let holds = holding.picking || gates.is_some();
-        if !self.scene.is_plain() || !alone || holds {
+        if !self.scene.is_plain() || !alone || holding.picking {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
         }
-        if !alone || holds {
+        if !alone || holding.picking {
             // Behind the list of objects; a world of one person has nothing there.
             core = postcard::to_extend(&self.people, core).ok()?;
         }
-        if holds {
+        if holding.picking {
             core = postcard::to_extend(&holding, core).ok()?;
-        }
-        if let Some(gates) = gates {
-            core = postcard::to_extend(gates, core).ok()?;
         }
         Some(Saved {
             tick: self.tick,
@@ -408,8 +389,8 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let (list, rest) = match SavedScene::read(rest)? {
-            Some((list, rest)) => (Some(list), rest),
+        let (list, people, holding) = match SavedScene::read(rest)? {
+            Some((list, people, holding)) => (Some(list), people, holding),
             None => Default::default(),
         };
         let mut clays = clays.into_iter();
@@ -432,15 +413,14 @@ impl World {
         world.pens = core.pens;
         world.strokes = core.strokes;
         world.hands = core.hands;
-        rest.gates.into_iter().for_each(|gates| world.hands.set_gates(gates));
         world.last_hands = core.last_hands;
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
-        world.in_hand = ObjectsInHand::restored(rest.holding);
+        world.in_hand = ObjectsInHand::restored(holding);
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         world.desktop = core.desktop;
         world.kept_brushes = Arc::new(core.kept_brushes);
-        world.people = rest.people;
+        world.people = people;
         Ok(world)
     }
 }
