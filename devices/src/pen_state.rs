@@ -25,11 +25,11 @@ const UP: f32 = 0.01;
 const MOST_OFFSET: f32 = 0.5;
 
 /// A pen in contact that is silent for so long, in microseconds, was pulled away. The figure is
-/// libinput's. A pen that rested before the silence, on a tablet that was never seen to repeat a
-/// report, may rest on: recordings of such tablets have pens that press for seconds in silence.
+/// libinput's. It holds for tablets that repeat the reports of a pen that rests. On others a pen may
+/// rest on in silence: recordings of such tablets have pens that press for seconds without a report.
 pub const CONTACT_SILENCE_US: u64 = 50_000;
-/// A pen slower than this rests, mm/s. Those recordings have up to 22 mm/s before a silence.
-const RESTING_SPEED: f32 = 24.0;
+/// Repeated reports that prove a tablet to repeat them; a chance one proves nothing.
+const REPEATS: u32 = 8;
 /// Reports in contact without pressure that prove a pen to have none, if it never had any.
 const NO_PRESSURE: u32 = 4;
 
@@ -86,11 +86,8 @@ pub struct PenState {
     /// Pressure while the tip switch last said that nothing touches, as a share. A report that
     /// hides the switch behind a button is judged by what is above it.
     resting: f32,
-    /// The tablet repeats equal reports of a pen that rests: its silence is never rest.
-    repeats: bool,
-    /// The last two reports of a contact have full pressure, and are less apart than
-    /// [`RESTING_SPEED`].
-    rests: bool,
+    /// Reports in contact that were equal to the one before.
+    repeats: u32,
     /// Reports in contact without pressure, while the pen never had any.
     unpressed: u32,
     /// The pen has had pressure.
@@ -118,8 +115,7 @@ impl PenState {
             offset: 0.0,
             switch: None,
             resting: 0.0,
-            repeats: false,
-            rests: false,
+            repeats: 0,
             unpressed: 0,
             pressed: false,
             over: (0, 0),
@@ -162,8 +158,8 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        let may_rest = self.rests && !self.repeats;
-        let contact = (self.pen.tip && !may_rest).then_some(self.cfg.contact_silence_us);
+        let ends = self.pen.tip && self.repeats >= REPEATS;
+        let contact = ends.then_some(self.cfg.contact_silence_us);
         let silence = [self.cfg.silence_us, contact].into_iter().flatten().min()?;
         self.pen.in_range.then(|| self.last_us.saturating_add(silence))
     }
@@ -233,9 +229,7 @@ impl PenState {
     /// What the last two reports say of a silence that may follow.
     fn rest_since(&mut self, before: &Pen, took_us: u64) {
         let both = before.tip && self.pen.tip;
-        self.repeats |= both && took_us > 0 && *before == self.pen;
-        let moved = self.pen.pos_mm.distance(before.pos_mm);
-        self.rests = both && moved <= RESTING_SPEED * took_us as f32 * 1e-6;
+        self.repeats += u32::from(both && took_us > 0 && *before == self.pen);
     }
 
     fn count_outside(&mut self, r: &PenReport) {

@@ -166,13 +166,18 @@ fn angles_are_wrapped_and_finite() {
 }
 
 #[test]
-fn a_pen_in_contact_that_is_silent_was_pulled_away_in_every_family() {
+fn a_silent_pen_in_contact_was_pulled_away_from_a_tablet_that_repeats() {
     let mut state = PenState::new(CFG);
     let mut out = Vec::new();
     state.report(&pen(0, Some(false)), 0, &mut |s| out.push(s));
     assert_eq!(state.due_us(), None, "in the air the family's own report is awaited");
-    state.report(&pen(500, Some(true)), 10_000, &mut |s| out.push(s));
-    assert_eq!(state.due_us(), Some(60_000));
+    // Reports of a pen that rests, each like the one before.
+    for k in 0..=u64::from(REPEATS) {
+        state.report(&pen(500, Some(true)), 1_000 + k * 1_000, &mut |s| out.push(s));
+    }
+    let last = 1_000 + u64::from(REPEATS) * 1_000;
+    assert_eq!(state.due_us(), Some(last + CONTACT_SILENCE_US));
+    out.drain(2..);
     // Back at once in contact, 20 s later: another visit, so that no line joins the two.
     state.tick(20_000_000, &mut |s| out.push(s));
     state.report(&pen(500, Some(true)), 20_000_000, &mut |s| out.push(s));
@@ -180,7 +185,8 @@ fn a_pen_in_contact_that_is_silent_was_pulled_away_in_every_family() {
         .iter()
         .map(|s| if let Body::Pen(p) = s.body { (s.t_us, p.in_range, p.tip) } else { panic!() })
         .collect();
-    let expected = [(0, true, false), (10_000, true, true), (60_000, false, false)];
+    let left = (last + CONTACT_SILENCE_US, false, false);
+    let expected = [(0, true, false), (1_000, true, true), left];
     assert_eq!(seen[..3], expected);
     assert_eq!(seen[3], (20_000_000, true, true));
 }
@@ -195,13 +201,13 @@ fn a_pen_that_rests_on_a_tablet_that_sends_changes_alone_is_not_pulled_away() {
         }
         state.due_us().map(|due| due - (reports.len() as u64 - 1) * 5000)
     };
-    // 0.1 mm each 5 ms, under any pressure.
-    assert_eq!(due_after(&[at(0, 1000), at(10, 1000), at(20, 1000)]), None);
-    assert_eq!(due_after(&[at(0, 60), at(10, 60), at(20, 60)]), None);
-    let pulled_away = Some(CONTACT_SILENCE_US);
-    assert_eq!(due_after(&[at(0, 1000), at(50, 1000), at(100, 1000)]), pulled_away, "moves");
-    let repeated = [at(0, 1000), at(10, 1000), at(10, 1000), at(20, 1000)];
-    assert_eq!(due_after(&repeated), pulled_away, "this tablet repeats itself");
+    let moving: Vec<PenReport> = (0..20).map(|i| at(10 * i, 600)).collect();
+    assert_eq!(due_after(&moving), None, "it may be one that sends changes alone");
+    let mut resting = moving;
+    resting.push(at(190, 600));
+    assert_eq!(due_after(&resting), None, "one equal report is chance");
+    resting.extend([at(190, 600); 8]);
+    assert_eq!(due_after(&resting), Some(CONTACT_SILENCE_US), "this tablet repeats itself");
 }
 
 #[test]

@@ -101,15 +101,6 @@ impl Track {
         false
     }
 
-    /// The fingers of a pinch parted while the hand was not seen: what the hand does is judged
-    /// anew.
-    pub fn open_unseen(&mut self, t_us: u64) {
-        if self.pose == Pose::Pinch {
-            (self.pose, self.pose_us) = (Pose::Neutral, t_us);
-            (self.candidate, self.candidate_us) = (Pose::Neutral, t_us);
-        }
-    }
-
     /// Whether this may be the same hand that another track lost: near enough for the time gone by,
     /// same side.
     pub fn may_continue(&self, t_us: u64, hand: &Hand, s: &HandSettings) -> bool {

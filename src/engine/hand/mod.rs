@@ -8,13 +8,11 @@
 //!   [`Volume::edge_fade`]).
 //! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has
 //!   let go.
-//! * What a tracker cannot have seen is left out before anything acts by it ([`gate`]).
 //! * Every joint is steadied before anything looks at it, the same in a replay as live.
 //! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
 pub mod acts;
 pub mod comfort;
-pub mod gate;
 pub mod held_object;
 pub mod machine;
 pub mod menu;
@@ -25,7 +23,6 @@ mod volume;
 
 pub use acts::{Act, Drag, PalmPress, Push};
 pub use comfort::{Calibrated, Fatigue, ReachCalibration};
-pub use gate::HandGate;
 pub use held_object::{HeldObject, Similarity};
 pub use machine::Track;
 pub use menu::{Menu, MenuItem};
@@ -39,7 +36,6 @@ use std::collections::VecDeque;
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use self::pose::Features;
 use self::reach_box::BOX_HALF_MM;
 use sculptd_devices::filter::HandsFilter;
 use sculptd_devices::{DeviceId, Hands};
@@ -47,28 +43,8 @@ use sculptd_geometry::portable::turn_about;
 
 /// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
 const MAX_WAITING: usize = 256;
-/// A tracker that sends nothing for longer has missed frames, microseconds: two of a slow one.
-const GAP_US: u64 = 40_000;
-/// Fingers of a pinch that parted by more while the hand was not seen may have let go, mm.
-const PARTED_MM: f32 = 3.0;
-/// The fingers of a pinch close for so long after it was recognised, microseconds.
-const CLOSES_US: u64 = 250_000;
-/// What was missed is made up for in steps of so many microseconds.
-const STEP_US: u64 = 10_000;
 /// Hands followed at a time, over all trackers.
 const MAX_TRACKS: usize = 16;
-
-/// In how many frames a hand moves that was seen so long ago, at this time between frames, in
-/// microseconds: more than one where it was missed.
-fn frames_in(unseen_us: u64, frame_us: u64) -> u64 {
-    if unseen_us * 2 >= frame_us * 3 && frame_us > 0 {
-        ((unseen_us + frame_us / 2) / frame_us).clamp(1, 32)
-    } else if unseen_us > GAP_US {
-        unseen_us.div_ceil(STEP_US).min(32)
-    } else {
-        1
-    }
-}
 
 /// A hand as it was one frame ago, in the world.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -110,9 +86,6 @@ pub struct HandTools {
     now_us: u64,
     /// One for each tracker.
     steady: Vec<(DeviceId, HandsFilter)>,
-    /// One for each tracker; after its state was read back, made anew of the hands that are held.
-    #[serde(skip)]
-    gates: Vec<(DeviceId, HandGate)>,
 }
 
 impl HandTools {
@@ -134,7 +107,6 @@ impl HandTools {
             sculpted_us: None,
             now_us: 0,
             steady: Vec::new(),
-            gates: Vec::new(),
         }
     }
 
@@ -170,20 +142,6 @@ impl HandTools {
         }
     }
 
-    /// The hands of a frame that can be true.
-    fn plausible(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
-        let at = self.gates.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
-            let mut gate = HandGate::default();
-            for held in self.held.iter().filter(|h| h.track.device == device) {
-                let track = &held.track;
-                gate.follow(track.id, track.left, track.palm, track.seen_us);
-            }
-            self.gates.push((device, gate));
-            self.gates.len() - 1
-        });
-        self.gates[at].1.pass(t_us, hands)
-    }
-
     /// A frame with the tremble taken out of it.
     fn steadied(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
         let at = self.steady.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
@@ -200,9 +158,7 @@ impl HandTools {
     /// Takes one frame of one tracker.
     pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands) {
         let s = self.settings;
-        let frame_us = t_us.saturating_sub(self.now_us);
-        let hands = self.plausible(device, t_us, hands);
-        let hands = &self.steadied(device, t_us, &hands);
+        let hands = &self.steadied(device, t_us, hands);
         self.now_us = t_us;
         self.forget(t_us);
         self.fatigue.take(t_us, hands.as_slice());
@@ -213,8 +169,6 @@ impl HandTools {
                 Calibrated::Done(found) => (self.settings.reach, self.reach) = (found, None),
             }
         }
-        // In how many frames each hand would have moved to where it is seen now.
-        let mut frames = [1; MAX_TRACKS];
         for hand in hands.as_slice() {
             let known = self
                 .held
@@ -232,13 +186,6 @@ impl HandTools {
             match known {
                 Some(i) => {
                     let held = &mut self.held[i];
-                    frames[i] = frames_in(t_us.saturating_sub(held.track.seen_us), frame_us);
-                    let gaps = held.track.pinch_mm.zip(Features::of(hand).pinch_mm);
-                    if frames[i] > 1 && gaps.is_some_and(|(was, now)| now > was + PARTED_MM) {
-                        // Where the fingers parted nobody saw: the clay stays where it was.
-                        held.track.open_unseen(t_us);
-                        (held.tool, held.grip) = (None, None);
-                    }
                     let changed = held.track.take(t_us, hand, &s);
                     if changed {
                         (held.tool, held.turn, held.grip) = (None, None, None);
@@ -262,7 +209,7 @@ impl HandTools {
         if let Some(choice) = self.menu.take(tip, t_us, self.carrying, &s) {
             self.chosen = Some(choice);
         }
-        self.act(t_us, &frames);
+        self.act(t_us);
     }
 
     /// What was chosen from the menu since the last call.
@@ -298,17 +245,7 @@ impl HandTools {
         self.held.retain(|h| t_us.saturating_sub(h.track.seen_us) <= bridge_us);
     }
 
-    /// Whether two hands act together and one of them was not seen in this frame: they go on when
-    /// it is.
-    fn waits_for_second(&self, t_us: u64) -> bool {
-        let together = self.pair.is_some() || self.apart_mm.is_some();
-        together && self.held.len() > 1 && self.held.iter().any(|h| h.track.seen_us != t_us)
-    }
-
-    fn act(&mut self, t_us: u64, frames: &[u64; MAX_TRACKS]) {
-        if self.waits_for_second(t_us) {
-            return;
-        }
+    fn act(&mut self, t_us: u64) {
         let mut posed = self.held.iter().filter(|h| h.track.seen_us == t_us);
         let two = posed.next().zip(posed.next()).map(|(a, b)| [a.track, b.track]);
         let both = |pose: Pose| two.filter(|p| p.iter().all(|t| t.pose == pose));
@@ -324,7 +261,7 @@ impl HandTools {
         self.apart_mm = None;
         for i in 0..self.held.len() {
             if self.held[i].track.seen_us == t_us {
-                self.one_hand(i, t_us, frames[i]);
+                self.one_hand(i, t_us);
             }
         }
     }
@@ -378,21 +315,6 @@ impl HandTools {
         Some(track.palm + turn * grip)
     }
 
-    /// While the fingers still close, the place that is held follows them: neither the moment at
-    /// which the pinch was recognised nor the way of the fingers is the clay's.
-    fn close_grip(&mut self, i: usize, t_us: u64) {
-        let scale = self.volume;
-        let held = &mut self.held[i];
-        let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
-        let Some((was, point)) = held.grip.zip(track.pinch_point) else { return };
-        if t_us.saturating_sub(track.pose_us) < CLOSES_US {
-            let now = turn.inverse() * (point - track.palm);
-            held.grip = Some(now);
-            let by = scale.to_world(turn * (now - was)) - scale.to_world(Vec3::ZERO);
-            held.tool = held.tool.map(|tool| tool + by);
-        }
-    }
-
     fn zoom_between(&mut self, a: Track, b: Track, t_us: u64) {
         let apart = (a.palm - b.palm).length();
         if let Some(before) = self.apart_mm
@@ -415,14 +337,14 @@ impl HandTools {
         self.volume.scale * (self.settings.reach.half_mm / BOX_HALF_MM)
     }
 
-    fn one_hand(&mut self, i: usize, t_us: u64, frames: u64) {
+    fn one_hand(&mut self, i: usize, t_us: u64) {
         let s = self.settings;
-        let TrackedHand { track, turn, .. } = self.held[i];
+        let TrackedHand { track, tool, turn, .. } = self.held[i];
         let v = self.volume;
         if self.carrying && track.pose == Pose::Pinch {
             let now = track.orientation.map(|q| (v.turn * q).normalize());
             let to = self.grip_mm(i).map(|p| v.to_world(p));
-            if let Some((from, to)) = self.held[i].tool.zip(to) {
+            if let Some((from, to)) = tool.zip(to) {
                 let turned =
                     turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
                 self.wait(Act::Carry(Similarity::carried(from, to, turned)));
@@ -434,43 +356,34 @@ impl HandTools {
         let at_mm = match track.pose {
             Pose::Point => track.index_tip,
             Pose::Pinch if track.lets_go(&s) => None,
-            // What a pinch holds goes with the palm: fingers that close or open carry nothing.
-            Pose::Pinch => {
-                self.close_grip(i, t_us);
-                self.grip_mm(i)
-            }
+            Pose::Pinch => track.pinch_point,
             Pose::Flat => Some(track.palm),
             Pose::Neutral | Pose::Grab | Pose::Open => None,
         };
         if let Some(mm) = at_mm {
             let tool_scale = self.tool_scale();
             let to = v.to_world(mm);
-            let strength = strength * Volume::edge_fade(mm, &s.reach);
-            if let Some(start) = self.held[i].tool.filter(|_| strength > 0.0) {
-                // What was missed is made up for step by step, as it would have been seen.
-                for k in 0..frames {
-                    let part = |k: u64| start.lerp(to, k as f32 / frames as f32);
-                    let (from, to) = if frames == 1 { (start, to) } else { (part(k), part(k + 1)) };
-                    match track.pose {
-                        Pose::Point => self.wait(Act::Push(Push {
+            let strength = strength * Volume::edge_fade(mm);
+            if let Some(from) = tool.filter(|_| strength > 0.0) {
+                match track.pose {
+                    Pose::Point => self.wait(Act::Push(Push {
+                        from,
+                        to,
+                        radius: s.tip_radius_mm * tool_scale,
+                        strength,
+                    })),
+                    Pose::Pinch => {
+                        self.wait(Act::Drag(Drag {
                             from,
                             to,
-                            radius: s.tip_radius_mm * tool_scale,
+                            radius: s.pinch_radius_mm * tool_scale,
                             strength,
-                        })),
-                        Pose::Pinch => {
-                            self.wait(Act::Drag(Drag {
-                                from,
-                                to,
-                                radius: s.pinch_radius_mm * tool_scale,
-                                strength,
-                            }));
-                        }
-                        _ => {
-                            let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
-                            let radius = s.palm_radius_mm * tool_scale;
-                            self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
-                        }
+                        }));
+                    }
+                    _ => {
+                        let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
+                        let radius = s.palm_radius_mm * tool_scale;
+                        self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
                     }
                 }
             }

@@ -51,17 +51,6 @@ pub struct Features {
 /// Where the tracker states no width: an adult's palm, mm.
 const PALM_WIDTH_MM: f32 = 85.0;
 
-/// A finger less straight than this is bent, whatever its flag says. In recordings of real hands
-/// stretched fingers are straighter, but for one in a hundred while a fist closes.
-const BENT: f32 = 0.75;
-/// A finger straighter than this, and farther out than [`STRETCHED_REACH`], is stretched.
-const STRAIGHT: f32 = 0.985;
-/// Tip to palm over the palm's width; bent fingers of real hands are nearer, up to 1.2, or less
-/// straight.
-const STRETCHED_REACH: f32 = 1.3;
-/// The same of a finger that cannot be stretched; real stretched ones are at 0.85 and more.
-const CURLED_REACH: f32 = 0.7;
-
 impl Features {
     /// Measures one frame.
     pub fn of(hand: &Hand) -> Self {
@@ -131,24 +120,7 @@ impl Features {
     }
 }
 
-/// The tracker's word, unless the bones contradict it: its flag may be stuck. Without a word, by
-/// how far the tip is from the palm.
+/// The tracker's word, else by how far the tip is from the palm.
 fn is_extended(finger: &Finger, palm: Vec3, width: f32) -> bool {
-    let reach = (finger.tip - palm).length() / width;
-    let Some(word) = finger.extended else { return reach > 0.95 };
-    match (word, straightness(finger)) {
-        (true, Some(straight)) => straight >= BENT,
-        (true, None) => reach >= CURLED_REACH,
-        (false, Some(straight)) => straight > STRAIGHT && reach > STRETCHED_REACH,
-        (false, None) => false,
-    }
-}
-
-/// From the knuckle to the tip, as a share of the bones between them; `None` where joints are
-/// missing.
-pub(super) fn straightness(finger: &Finger) -> Option<f32> {
-    let [_, knuckle, first, second, _] = finger.joints;
-    let (knuckle, first, second) = (knuckle?, first?, second?);
-    let bones = knuckle.distance(first) + first.distance(second) + second.distance(finger.tip);
-    (bones > 1.0).then(|| knuckle.distance(finger.tip) / bones)
+    finger.extended.unwrap_or_else(|| (finger.tip - palm).length() > width * 0.95)
 }
