@@ -97,7 +97,7 @@ fn sparse_positions_take_the_place_of_those_in_the_view_or_of_zeros() {
     let sparse = r#","sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},
         "values":{"bufferView":2}}"#;
     let mesh = read("a.gltf", &gltf(5126, false, &bytes, sparse, "")).mesh;
-    let mut places = mesh.positions.clone();
+    let mut places = mesh.positions;
     places.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.y.total_cmp(&a.y)));
     assert_eq!(places, [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::ZERO]);
     let outside = sparse.replace("5121", "5125");

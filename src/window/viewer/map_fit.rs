@@ -317,7 +317,8 @@ fn least_squares(kind: Kind, all: &[PlacePair]) -> Option<ScreenMap> {
         let slope = ux / uu;
         slope.is_finite().then_some((slope, x - slope * u))
     };
-    let (x_of, y_of): (fn(DVec2) -> f64, fn(DVec2) -> f64) = (|v| v.x, |v| v.y);
+    let x_of: fn(DVec2) -> f64 = |v| v.x;
+    let y_of: fn(DVec2) -> f64 = |v| v.y;
     if kind == Kind::Straight {
         let ((a, x), (d, y)) = (line(x_of, x_of)?, line(y_of, y_of)?);
         let (across, down) = (DVec2::new(a, 0.0), DVec2::new(0.0, d));
