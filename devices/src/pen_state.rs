@@ -25,8 +25,9 @@ const UP: f32 = 0.01;
 const MOST_OFFSET: f32 = 0.5;
 
 /// A pen in contact that is silent for so long, in microseconds, was pulled away. The figure is
-/// libinput's. It holds for tablets that repeat the reports of a pen that rests. On others a pen may
-/// rest on in silence: recordings of such tablets have pens that press for seconds without a report.
+/// libinput's. It holds for tablets that repeat the reports of a pen that rests. On others a pen
+/// may rest on in silence: recordings of such tablets have pens that press for seconds without a
+/// report.
 pub const CONTACT_SILENCE_US: u64 = 50_000;
 /// Repeated reports that prove a tablet to repeat them; a chance one proves nothing.
 const REPEATS: u32 = 8;

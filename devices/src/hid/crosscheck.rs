@@ -1,7 +1,7 @@
 //! The report descriptor as a second witness of a family's parser.
 //!
 //! A descriptor that states a tip, an eraser, buttons, axes and a pressure says what the bits of a
-//! report mean. [`contradictions`] writes one report for each statement, reads it with the parser
+//! report mean. `contradictions` writes one report for each statement, reads it with the parser
 //! that the catalogue has chosen, and returns every statement that is read as something else.
 //! Descriptors lie, too; which of the two is right is decided once for each class, in the tests
 //! over the public descriptors.

@@ -2,7 +2,7 @@
 //!
 //! Definition (*ray*): at a point of a facet, the length of the ray opposite the facet's normal to
 //! the first facet that faces it. The least wall is the least of these over all points of all
-//! facets. [`FacetShaft`] gives it exactly for a pair of facets, and a walk over the tree finds the
+//! facets. `FacetShaft` gives it exactly for a pair of facets, and a walk over the tree finds the
 //! pairs; what is deeper than the least wall found so far is not looked at. So the result depends
 //! neither on where samples lie, nor on the triangles that a flat facet is cut into.
 //!
