@@ -5,8 +5,8 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
-use super::footprint::Footprint;
 use super::dab::{Dab, Grip};
+use super::footprint::Footprint;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 

@@ -6,14 +6,14 @@
 
 use glam::Vec3;
 
-use super::clay::{coat, coat_block};
 use super::brush_trait::{BlockContext, Brush, VertexChange, VertexContext};
+use super::clay::{coat, coat_block};
 use super::dab::Dab;
 use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
 use super::triples::Triples;
-use crate::brush::surface_query::{Plane, SurfaceQuery};
 use crate::Reach;
+use crate::brush::surface_query::{Plane, SurfaceQuery};
 
 /// One dab of clay strips.
 #[derive(Debug, Clone, Copy)]

@@ -7,8 +7,8 @@
 use glam::Vec3;
 
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
-use super::footprint::Footprint;
 use super::dab::Dab;
+use super::footprint::Footprint;
 use super::weights::{Weights, exp};
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};

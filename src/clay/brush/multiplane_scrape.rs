@@ -85,8 +85,8 @@ impl Brush for MultiplaneScrapeBrush {
         // How far it is from the circle that the ridge follows, towards its middle: one over `bend`
         // less the distance from that, free of cancellation where the ridge is straight.
         let (turned, off) = (self.bend * x, 1.0 - self.bend * y);
-        let aside = (2.0 * y - self.bend * (x * x + y * y))
-            / (1.0 + (turned * turned + off * off).sqrt());
+        let aside =
+            (2.0 * y - self.bend * (x * x + y * y)) / (1.0 + (turned * turned + off * off).sqrt());
         // The roof is a hyperbola between its two sides, `slope * (far - ridge)` below the plane.
         let far2 = aside * aside + self.ridge * self.ridge;
         let far = far2.sqrt();

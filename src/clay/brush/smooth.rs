@@ -16,10 +16,10 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{Vec3, Vec4};
 
-use super::cotangent::{LANES, closed};
 use super::brush_trait::{Brush, RunKernel, VertexChange, VertexContext};
-use super::footprint::Footprint;
+use super::cotangent::{LANES, closed};
 use super::dab::Dab;
+use super::footprint::Footprint;
 use super::weights::Weights;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{Kernel, PageIn, PageOut};
@@ -137,11 +137,8 @@ impl SmoothBrush {
             page.cotangents_of(&who[..regular], &mut sums[..regular]);
             for (i, &v) in who[..count].iter().enumerate() {
                 let (v, p) = (v as usize, page.point(v));
-                let (sum, all) = if i < regular {
-                    (sums[i].truncate(), sums[i].w)
-                } else {
-                    around(page, v, p)
-                };
+                let (sum, all) =
+                    if i < regular { (sums[i].truncate(), sums[i].w) } else { around(page, v, p) };
                 if all > 0.0 {
                     out.set(v, p + sum * (weights[v] / all));
                 }
