@@ -24,11 +24,16 @@ const UP: f32 = 0.01;
 /// A rest pressure above this is a hand pressing, not a worn pen.
 const MOST_OFFSET: f32 = 0.5;
 
-/// A pen in contact that is silent for so long, in microseconds, was pulled away. The figure is
-/// libinput's. It holds for tablets that repeat the reports of a pen that rests. On others a pen
-/// may rest on in silence: recordings of such tablets have pens that press for seconds without a
-/// report.
+/// Microseconds of silence after which a pen in contact was pulled away. The figure is libinput's.
+/// The rule applies where the pen cannot be resting: on tablets that repeat the reports of a
+/// resting pen, and after a movement faster than [`TOO_FAST_TO_REST`]. Other tablets send only
+/// changes, and recordings of them have pens that press for seconds without a report.
 pub const CONTACT_SILENCE_US: u64 = 50_000;
+/// No pen stops from this speed without slower reports in between, mm/s. In recordings of tablets
+/// that send only changes, pens that came to rest had at most 22 mm/s in the last report.
+const TOO_FAST_TO_REST: f32 = 60.0;
+/// Interval of the fastest common tablets, about 500 reports a second, in microseconds.
+const LEAST_INTERVAL_US: u64 = 2_000;
 /// Repeated reports that prove a tablet to repeat them; a chance one proves nothing.
 const REPEATS: u32 = 8;
 /// Reports in contact without pressure that prove a pen to have none, if it never had any.
@@ -89,6 +94,8 @@ pub struct PenState {
     resting: f32,
     /// Reports in contact that were equal to the one before.
     repeats: u32,
+    /// The last report in contact moved the pen faster than [`TOO_FAST_TO_REST`].
+    fast: bool,
     /// Reports in contact without pressure, while the pen never had any.
     unpressed: u32,
     /// The pen has had pressure.
@@ -117,6 +124,7 @@ impl PenState {
             switch: None,
             resting: 0.0,
             repeats: 0,
+            fast: false,
             unpressed: 0,
             pressed: false,
             over: (0, 0),
@@ -159,7 +167,7 @@ impl PenState {
 
     /// When silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
-        let ends = self.pen.tip && self.repeats >= REPEATS;
+        let ends = self.pen.tip && (self.fast || self.repeats >= REPEATS);
         let contact = ends.then_some(self.cfg.contact_silence_us);
         let silence = [self.cfg.silence_us, contact].into_iter().flatten().min()?;
         self.pen.in_range.then(|| self.last_us.saturating_add(silence))
@@ -227,10 +235,14 @@ impl PenState {
         self.emit(t_us, emit);
     }
 
-    /// What the last two reports say of a silence that may follow.
+    /// Records whether silence after this report can mean that the pen rests.
     fn rest_since(&mut self, before: &Pen, took_us: u64) {
         let both = before.tip && self.pen.tip;
         self.repeats += u32::from(both && took_us > 0 && *before == self.pen);
+        let moved_mm = self.pen.pos_mm.distance(before.pos_mm);
+        // Reports that were read together seem to lie less than their interval apart.
+        let took_us = took_us.max(LEAST_INTERVAL_US);
+        self.fast = both && moved_mm > TOO_FAST_TO_REST * took_us as f32 * 1e-6;
     }
 
     fn count_outside(&mut self, r: &PenReport) {

@@ -203,6 +203,8 @@ fn a_pen_that_rests_on_a_tablet_that_sends_changes_alone_is_not_pulled_away() {
     };
     let moving: Vec<PenReport> = (0..20).map(|i| at(10 * i, 600)).collect();
     assert_eq!(due_after(&moving), None, "it may be one that sends changes alone");
+    let fast: Vec<PenReport> = (0..20).map(|i| at(40 * i, 600)).collect();
+    assert_eq!(due_after(&fast), Some(CONTACT_SILENCE_US), "no pen stops from 80 mm/s at once");
     let mut resting = moving;
     resting.push(at(190, 600));
     assert_eq!(due_after(&resting), None, "one equal report is chance");

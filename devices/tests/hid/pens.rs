@@ -282,15 +282,26 @@ fn the_third_button_of_a_pro_pen_3d_is_one_button() {
 
 #[test]
 fn a_pen_pulled_away_in_contact_ends_its_stroke_50_ms_later() {
-    let at = |i: u64| huion(0x81, i as u8, 4000);
-    let mut reports: Vec<_> = (0..80).map(|i| (i * 4000, at(i))).collect();
-    // Back in contact after 20 s, and no report in between.
-    reports.extend((0..5).map(|i| (20_320_000 + i * 4000, at(i))));
-    reports.push((20_340_000, huion(0, 0, 0)));
-    let pens = play(kamvas_gen_3("HUION_M22d_241101", 0x2009), &reports);
-    assert_eq!(strokes(&pens), 2);
-    let left = pens.iter().find(|p| !p.1.in_range).unwrap();
-    assert_eq!(left.0, 79 * 4000 + 50_000);
+    let who = || kamvas_gen_3("HUION_M22d_241101", 0x2009);
+    let at = |x: u16| {
+        let mut report = huion(0x81, 0, 4000);
+        report[2..4].copy_from_slice(&x.to_le_bytes());
+        report
+    };
+    // Counts of 5 um every 4 ms: a pen at 100 mm/s, and one that rests and is reported again.
+    let fast: fn(u16) -> u16 = |i| 10_000 + 80 * i;
+    let rests: fn(u16) -> u16 = |i| 10_000 + i.min(60);
+    for x in [fast, rests] {
+        let mut reports: Vec<_> = (0..80).map(|i| (u64::from(i) * 4000, at(x(i)))).collect();
+        // Back in contact after 20 s, and no report in between.
+        let back = (0..5).map(|i| (20_320_000 + u64::from(i) * 4000, at(20_000 + i)));
+        reports.extend(back);
+        reports.push((20_340_000, huion(0, 0, 0)));
+        let pens = play(who(), &reports);
+        assert_eq!(strokes(&pens), 2);
+        let left = pens.iter().find(|p| !p.1.in_range).unwrap();
+        assert_eq!(left.0, 79 * 4000 + 50_000);
+    }
 }
 
 /// Tip, barrel, invert, eraser, padding, in range; axes and pressure.
