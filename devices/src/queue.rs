@@ -375,6 +375,11 @@ impl Receiver {
         Some(sample)
     }
 
+    /// Adds the arrival of a sample to what `select` waits for.
+    pub fn add_to<'a>(&'a self, select: &mut cc::Select<'a>) {
+        select.recv(&self.rx);
+    }
+
     /// Samples in the channel now.
     pub fn waiting(&self) -> usize {
         self.rx.len()

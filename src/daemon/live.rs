@@ -1,13 +1,15 @@
 //! The loop on the wall's clock: a thread of its own, fed by the adaptors' threads, read by the
 //! viewer.
 //!
-//! Law kept here: the tick thread never waits for anybody. It takes what the channel holds, steps,
-//! publishes, sleeps.
+//! Laws kept here: the tick thread never waits for anybody. It takes what the channel holds, steps,
+//! publishes, sleeps. While nothing is under way it sleeps until input comes: idle means idle. It
+//! leaves out the same ticks as a replay does, so both give the same bits.
 
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
@@ -41,6 +43,10 @@ pub const COMMANDS: usize = 1024;
 const COMMANDS_PER_TICK: usize = PayloadStore::CAPACITY;
 /// Ticks after the stop for what the adaptors sent before it.
 const LAST_TICKS: u32 = 8;
+/// Ticks without input or work before the loop sleeps.
+const QUIET_TICKS: u32 = 8;
+/// Longest sleep: so often an idle loop ticks for those who watch over it.
+const LONGEST_SLEEP: Duration = Duration::from_millis(250);
 
 /// A running loop.
 #[derive(Debug)]
@@ -49,7 +55,8 @@ pub struct Live {
     pub published: Arc<ArcSwap<Published>>,
     /// Where the pens of tablets were, for the window.
     pub pen_trail: PenTrail,
-    stop: Arc<AtomicBool>,
+    /// The loop stops when this is dropped.
+    running: cc::Sender<Infallible>,
     thread: JoinHandle<Ended>,
 }
 
@@ -119,7 +126,7 @@ impl Live {
         world.set_page_supply(pages.clone());
         let publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
         let published = publisher.reader();
-        let stop = Arc::new(AtomicBool::new(false));
+        let (running, stopped) = cc::bounded(0);
         let (trail, pen_trail) = pen_trail();
         let ticking = Ticking {
             world,
@@ -127,7 +134,7 @@ impl Live {
             clock,
             inbox,
             publisher,
-            stop: stop.clone(),
+            stopped,
             rate_hz: config.rate_hz,
             drain_per_tick,
             actions,
@@ -144,7 +151,7 @@ impl Live {
             .name("sculptd-tick".into())
             .spawn(move || ticking.run())
             .map_err(LiveError::Start)?;
-        Ok(Live { commands, published, pen_trail, stop, thread })
+        Ok(Live { commands, published, pen_trail, running, thread })
     }
 
     pub fn is_running(&self) -> bool {
@@ -153,7 +160,7 @@ impl Live {
 
     /// Stops after the tick under way and gives everything back.
     pub fn stop(self) -> Result<Ended, LiveError> {
-        self.stop.store(true, Relaxed);
+        drop(self.running);
         self.thread.join().map_err(|_| LiveError::Panicked)
     }
 }
@@ -164,7 +171,8 @@ struct Ticking {
     clock: Clock,
     inbox: cc::Receiver<QueuedCommand>,
     publisher: Publisher,
-    stop: Arc<AtomicBool>,
+    /// Disconnected once the loop is to stop.
+    stopped: cc::Receiver<Infallible>,
     rate_hz: u32,
     drain_per_tick: usize,
     actions: Option<TabletActions>,
@@ -226,9 +234,15 @@ impl Ticking {
         };
         let mut tick = self.world.tick();
         let mut last = LAST_TICKS;
-        while !self.stop.load(Relaxed) || (last > 0 && self.receiver.waiting() > 0) {
-            if self.stop.load(Relaxed) {
+        let mut quiet = 0;
+        while !self.is_stopped() || (last > 0 && self.receiver.waiting() > 0) {
+            if self.is_stopped() {
                 last -= 1;
+            }
+            if quiet >= QUIET_TICKS {
+                let slept = self.sleep_until_input(&mut pacer);
+                tick += slept;
+                now.figures.ticks += slept;
             }
             pacer.wait(&self.clock, &sleeper);
             now.samples.clear();
@@ -274,6 +288,7 @@ impl Ticking {
                     now.held.extend(now.commands.drain(first..).map(QueuedCommand::from));
                 }
             }
+            let has_input = !now.samples.is_empty() || !now.commands.is_empty();
             match self.shared.take() {
                 None => {
                     tick += 1;
@@ -310,9 +325,39 @@ impl Ticking {
             }
             pacer.done(self.clock.now_us());
             now.figures.overruns = pacer.overruns;
+            quiet = if has_input || self.has_work(&now) { 0 } else { quiet + 1 };
         }
         let Ticking { world, receiver, writing, .. } = self;
         Ended { world, figures: now.figures, receiver, writing }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stopped.try_recv() == Err(cc::TryRecvError::Disconnected)
+    }
+
+    /// Returns true while ticks without input change something, or something waits for a tick.
+    fn has_work(&self, now: &TickBuffers) -> bool {
+        let report = self.world.report();
+        let waits = now.late.is_some() || !now.held.is_empty() || !now.answers.is_empty();
+        self.shared.is_some()
+            || matches!(self.clock, Clock::Manual(_))
+            || waits
+            || report.paused
+            || report.resting
+            || !self.world.is_at_rest()
+            || self.journal.as_ref().is_some_and(|j| j.has_waiting())
+    }
+
+    /// Sleeps until a sample or a command comes, the loop is to stop, or [`LONGEST_SLEEP`] is over.
+    /// Returns the slots that passed: the number of the tick counts them.
+    fn sleep_until_input(&self, pacer: &mut Pacer) -> u64 {
+        let mut wakers = cc::Select::new();
+        self.receiver.add_to(&mut wakers);
+        wakers.recv(&self.inbox);
+        wakers.recv(&self.stopped);
+        // Either way the next tick sees what came.
+        let _ = wakers.ready_timeout(LONGEST_SLEEP);
+        pacer.skip_slept(self.clock.now_us())
     }
 
     /// One tick with the input in `now`. `asks`: what the step asks for is started.

@@ -24,7 +24,7 @@ use sculptd_engine::scene::{ObjectId, Operand, SceneCommand};
 use sculptd_geometry::job::Job;
 
 /// Between two looks.
-const EVERY: Duration = Duration::from_millis(50);
+const EVERY: Duration = Duration::from_millis(100);
 
 /// What was seen of stale results, and what was tried.
 #[derive(Debug, Default)]

@@ -59,6 +59,15 @@ impl Pacer {
         missed
     }
 
+    /// Leaves out the slots that passed while the loop slept on purpose; they are no overruns.
+    /// Returns how many.
+    pub fn skip_slept(&mut self, now_us: u64) -> u64 {
+        let slot_now = (now_us.saturating_sub(self.start_us) as f64 / self.period_us) as u64;
+        let slept = (slot_now + 1).saturating_sub(self.slot);
+        self.slot += slept;
+        slept
+    }
+
     /// Waits until the next tick is due; a manual clock is never waited for.
     pub fn wait(&self, clock: &Clock, sleeper: &spin_sleep::SpinSleeper) -> u64 {
         loop {
@@ -87,6 +96,17 @@ mod tests {
         assert_eq!(pacer.done(34_500), 2);
         assert_eq!(pacer.overruns, 1);
         assert_eq!(pacer.due(34_500), Due::In(Duration::from_micros(5_500)));
+    }
+
+    #[test]
+    fn slots_that_were_slept_through_are_left_out_and_no_overruns() {
+        let mut pacer = Pacer::new(100, 0);
+        pacer.done(1_000);
+        // Slots 1 to 3 pass in sleep; the next tick is the one of slot 4.
+        assert_eq!(pacer.skip_slept(34_500), 3);
+        assert_eq!(pacer.due(34_500), Due::In(Duration::from_micros(5_500)));
+        assert_eq!(pacer.skip_slept(34_600), 0);
+        assert_eq!(pacer.overruns, 0);
     }
 
     #[test]

@@ -11,6 +11,11 @@ use sculptd_engine::world::World;
 pub trait Journal: Send {
     /// Called on the tick thread after every tick that had input; must not wait.
     fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World);
+
+    /// Returns true while input waits for room: the loop ticks on until it has been handed over.
+    fn has_waiting(&self) -> bool {
+        false
+    }
 }
 
 /// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion

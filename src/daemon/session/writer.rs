@@ -270,6 +270,10 @@ impl Journal for SessionWriter {
             }
         }
     }
+
+    fn has_waiting(&self) -> bool {
+        !self.carry.is_empty()
+    }
 }
 
 impl SessionWriter {
