@@ -46,7 +46,7 @@ const LAST_TICKS: u32 = 8;
 /// Ticks without input or work before the loop sleeps.
 const QUIET_TICKS: u32 = 8;
 /// Longest sleep: so often an idle loop ticks for those who watch over it.
-const LONGEST_SLEEP: Duration = Duration::from_millis(250);
+const LONGEST_SLEEP: Duration = Duration::from_secs(1);
 
 /// A running loop.
 #[derive(Debug)]

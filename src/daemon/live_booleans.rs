@@ -24,7 +24,9 @@ use sculptd_engine::scene::{ObjectId, Operand, SceneCommand};
 use sculptd_geometry::job::Job;
 
 /// Between two looks.
-const EVERY: Duration = Duration::from_millis(100);
+const EVERY: Duration = Duration::from_millis(50);
+/// The same while no object is live.
+const EVERY_WITHOUT: Duration = Duration::from_millis(250);
 
 /// What was seen of stale results, and what was tried.
 #[derive(Debug, Default)]
@@ -79,16 +81,16 @@ pub fn start(
     std::thread::Builder::new().name("sculptd-follow".into()).spawn(move || {
         let (mut follower, quiet) = (Follower::default(), cc::never::<()>());
         while !stop.load(Relaxed) {
-            let _ = quiet.recv_timeout(EVERY);
             let shown = published.load_full();
-            if !shown.scene.objects.iter().any(|o| o.settings.live.is_some()) {
-                continue;
-            }
-            for command in follower.look(&shown, &Job::default()) {
+            let any = shown.scene.objects.iter().any(|o| o.settings.live.is_some());
+            let commands_now = if any { follower.look(&shown, &Job::default()) } else { vec![] };
+            for command in commands_now {
                 if commands.try_send(command).is_err() {
                     follower.tried.clear();
                 }
             }
+            drop(shown);
+            let _ = quiet.recv_timeout(if any { EVERY } else { EVERY_WITHOUT });
         }
     })?;
     Ok(())

@@ -138,7 +138,7 @@ impl FinishedRun {
 }
 
 /// How often a run looks whether it should end: a signal's handler may only raise a flag.
-const LOOK: Duration = Duration::from_millis(100);
+const LOOK: Duration = Duration::from_millis(200);
 /// How often recordings are looked at.
 const PLAY: Duration = Duration::from_millis(2);
 

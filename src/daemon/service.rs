@@ -16,7 +16,7 @@ use sculptd_devices::Clock;
 use sculptd_engine::command::Command;
 
 /// How often it looks.
-const LOOK: Duration = Duration::from_millis(100);
+const LOOK: Duration = Duration::from_millis(250);
 
 /// Settings that can be read again while the loop runs.
 #[derive(Debug)]
