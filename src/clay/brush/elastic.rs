@@ -35,7 +35,7 @@ pub struct ElasticBrush {
     weights: [f32; 3],
     /// `b / a`.
     b: f32,
-    /// What the three sum to at the middle.
+    /// The sum of the three at the middle.
     middle: f32,
     by: Vec3,
 }

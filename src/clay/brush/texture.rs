@@ -53,7 +53,7 @@ impl Brush for TextureBrush {
         dab.ball(wide(dab))
     }
 
-    /// All that the dab may have to do with; what it does there is told by the coordinates.
+    /// Returns the area that the dab may change; the coordinates decide the change there.
     fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
         let ball = Footprint::ball(dab);
         let radius = if self.newest > 0 { dab.radius * wide(dab) } else { f32::MIN_POSITIVE };
@@ -82,8 +82,8 @@ impl Brush for TextureBrush {
     }
 }
 
-/// How far a dab reaches, in radii: it does again what lies between the last two samples of the
-/// stroke, and where a dab is measured on the surface as it is, that may have been raised since.
+/// Returns the reach of a dab, in radii. It recomputes the stretch between the last two samples of
+/// the stroke, which may have been raised since if the dab is measured on the current surface.
 fn wide(dab: &Dab<'_>) -> f32 {
     let raised = if dab.found { 0.0 } else { dab.strength };
     1.05 + 1.1 * dab.settings.spacing.max(0.2) + raised
