@@ -119,7 +119,7 @@ fn table_of(settings: &BrushSettings) -> Result<toml::Table, String> {
     text.parse().map_err(|e: toml::de::Error| e.to_string())
 }
 
-/// Returns the offset at which the last key of a path of tables is set, or the last key that
+/// Returns the line, from 1, that sets the last key of a path of tables, or the last key that
 /// exists.
 fn line_of(text: &str, path: &[&str]) -> usize {
     let Ok(whole) = DeTable::parse(text) else { return 1 };

@@ -70,8 +70,8 @@ pub struct BrushSettings {
     pub falloff: Falloff,
     /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
     pub curve: [f32; CURVE],
-    /// The greatest distance that a stroke may move a vertex, in heights of one full dab (`strength
-    /// * radius`). 0: no bound; else 1 to 1000. Other programs call 1 "accumulate off".
+    /// The greatest distance that a stroke may move a vertex, in heights of one full dab: multiples
+    /// of `strength * radius`. 0: no bound; else 1 to 1000. Other programs call 1 "accumulate off".
     pub saturation: f32,
     /// The share of the radius over which brushes that need a plane average the surface; 0.05 to 2.
     pub normal_radius: f32,

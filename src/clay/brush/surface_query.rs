@@ -78,7 +78,7 @@ pub struct SurfaceQuery<'a> {
     pub workers: &'a Workers,
     /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
-    /// The index of the image, among those that act together.
+    /// The index of this image in its group of images that act together.
     pub image: usize,
 }
 

@@ -75,7 +75,7 @@ impl Brush for TextureBrush {
         let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / width);
         let t = if (0.0..=1.0).contains(&t) { t } else { t - t.floor() };
         let (alpha, picture) = (dab.settings.alpha, spot.scratch.picture());
-        // Where the picture is transparent the surface stays, whatever the floor.
+        // Transparent parts of the picture leave the surface as it is, whatever the floor.
         let relief = alpha.at(s, t, picture) - dab.extra(1) * alpha.cover(s, t, picture);
         let h = dab.whole_height() * relief * dab.fade(far * far) * spot.weight;
         VertexChange::held(spot.page.normal_before(spot.v) * h)

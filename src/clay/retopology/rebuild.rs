@@ -222,7 +222,8 @@ impl PageRebuild {
         self.items = items;
     }
 
-    /// Which page is home to which triangle: new ones, and those of vertices that moved house.
+    /// Assigns a home page to each new triangle, and to each triangle of a vertex that moved to
+    /// another page.
     fn share_out(&mut self, edit: &mut Edit, pages: &[Arc<Page>], next_triangle: &mut u32) {
         let mut created = std::mem::take(&mut edit.created);
         created.retain(|&t| edit.has_triangle(t));
