@@ -9,7 +9,8 @@ use super::BooleanSolid;
 use super::emit::FaceOrigin;
 use crate::{FaceAttributes, GroupName, PolyMesh, triangulate};
 
-/// What the groups are called, B's counted on from A's; `None` where no operand names any.
+/// Returns the names of the groups, with B's numbers after A's; `None` if neither operand names
+/// any.
 fn names(operands: [&PolyMesh; 2], first: u32) -> Option<Arc<FaceAttributes>> {
     let own = operands.map(|m| m.attributes.as_deref().filter(|a| !a.groups.is_empty()));
     if own.iter().all(|a| a.is_none()) {

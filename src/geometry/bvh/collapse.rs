@@ -13,7 +13,7 @@ use obvhs::bvh2::Bvh2;
 const WIDTH: usize = 8;
 const LEAF_MAX: u32 = 4;
 
-/// What is best done with a binary node.
+/// The cheapest way to collapse a binary node.
 #[derive(Debug, Clone, Copy, Default)]
 struct CollapseChoice {
     /// The least cost with at most 1 to 7 roots.

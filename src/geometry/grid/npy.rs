@@ -28,7 +28,7 @@ pub enum NpyError {
     Format {
         /// The file.
         path: String,
-        /// What was expected.
+        /// The expected format.
         expected: &'static str,
     },
 }

@@ -89,7 +89,7 @@ pub(super) fn number_chains(s: &mut EditSurface) -> Vec<Vec<[u32; 2]>> {
             }
         }
     }
-    // What is left are loops without a pinned vertex.
+    // The remaining lines are loops without a pinned vertex.
     for v in 0..s.positions.len() as u32 {
         if let [first, _] = s.lines[v as usize][..]
             && !s.pinned[v as usize]

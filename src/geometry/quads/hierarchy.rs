@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::surface::EditSurface;
 
-/// Where a field is given. A level's fields are arrays beside it.
+/// The vertices on which a field is given. A level's fields are separate arrays.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FieldLevel {
     pub positions: Vec<DVec3>,
