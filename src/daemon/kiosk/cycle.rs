@@ -7,7 +7,7 @@ const LOCKED_S: f64 = 60.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Nobody is there: recordings play.
+    /// No visitor: recordings play.
     Attract,
     Working,
     /// Nobody has touched anything for a while; any touch goes back to `Working`.
