@@ -11,7 +11,7 @@ use crate::self_intersection;
 /// The facts of a mesh, as `sculptd info --json` prints them. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshReport {
-    /// All vertices, including those that no face uses.
+    /// All vertices, including any that no face uses.
     pub vertices: usize,
     /// Polygons, including those without area.
     pub faces: usize,

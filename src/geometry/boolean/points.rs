@@ -39,7 +39,7 @@ impl Hasher for Mix {
 /// A hash map with a fixed hash.
 pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
 
-/// All points, and a grid of those that may be found again.
+/// All points, and a grid of the points that may be found again.
 #[derive(Debug, Default)]
 pub struct PointSet {
     /// The position of each point.

@@ -38,7 +38,7 @@ struct ObjPiece {
     names: Vec<(u32, u8, String)>,
     libraries: Vec<String>,
     short_faces: u64,
-    /// Texture coordinates with a third number other than 0, and those that are not numbers.
+    /// Texture coordinates with a third number other than 0, and ones that are not numbers.
     deep_uvs: u64,
     bad_uvs: u64,
     free_form: u64,

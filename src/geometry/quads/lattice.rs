@@ -20,7 +20,7 @@ const ROUNDS: usize = 6;
 fn offset(a: &LatticeFrame, b: &LatticeFrame, step: f64) -> [f64; 2] {
     let (i, j) = closest_points(a, b, step);
     let (p, q) = closest_pair(a.along, a.normal, b.along, b.normal);
-    // How often the cross of `b` is turned to `a`'s.
+    // The rotation from the cross of `b` to `a`'s.
     let own = [a.along, a.normal.cross(a.along)];
     let other = [b.along, b.normal.cross(b.along)];
     let mut turned = [0.0; 2];
@@ -36,7 +36,7 @@ fn offset(a: &LatticeFrame, b: &LatticeFrame, step: f64) -> [f64; 2] {
     [i[0] - turned[0], i[1] - turned[1]].map(f64::round)
 }
 
-/// Collapses the fine surface to one vertex a lattice point; vertices lie on the lattice points.
+/// Collapses the fine surface to one vertex per lattice point; vertices end on the lattice points.
 pub(super) fn collapse_to_lattice(
     s: &mut EditSurface,
     frames: &[LatticeFrame],

@@ -67,7 +67,7 @@ impl Marks {
     }
 }
 
-/// Returns what of `old`, from which `solid` was built, the new vertices are nowhere near.
+/// Returns the parts of `old`, from which `solid` was built, that are far from all new vertices.
 pub(super) fn lost_parts(
     old: &TriMesh,
     solid: &DistanceSolid,
