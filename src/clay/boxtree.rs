@@ -156,7 +156,7 @@ impl BoxTree {
         self.nodes.resize(total, Planes::EMPTY);
     }
 
-    /// Makes room for so many leaves; the tree stays as it is.
+    /// Makes room for this many leaves; the tree stays as it is.
     pub(super) fn reserve(&mut self, leaves: usize) {
         // The levels above the lowest are an eighth of it together, and a few.
         let nodes = leaves.div_ceil(8) * 8 / 7 + LEVELS;
@@ -183,7 +183,7 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Planes>()
     }
 
-    /// First node of each level, lowest first, and how many levels there are.
+    /// First node of each level, lowest first, and the number of levels.
     fn levels(&self) -> ([usize; LEVELS], usize) {
         let mut starts = [0; LEVELS];
         let mut at = 0;

@@ -167,7 +167,7 @@ impl Clay {
         self.object_id
     }
 
-    /// Says which object the clay is, see [`Clay::object_id`].
+    /// Sets the identifier of the object, see [`Clay::object_id`].
     pub fn set_object_id(&mut self, object_id: u32) {
         self.object_id = object_id;
     }
@@ -286,7 +286,7 @@ impl Clay {
         self.history.end()
     }
 
-    /// Says who changes the clay from now on, for steps of several people.
+    /// Sets the author of the next changes, for steps of several people.
     pub fn set_author(&mut self, author: Author) {
         self.history.authors.now = author;
     }

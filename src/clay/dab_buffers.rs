@@ -130,7 +130,7 @@ impl DabBuffers {
         (slot, side)
     }
 
-    /// Makes room for so many pages in the clay, and for dabs that write many of them.
+    /// Makes room for this many pages in the clay, and for dabs that write many of them.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.slot_of.reserve(pages.saturating_sub(self.slot_of.len()));
         self.slots.reserve(256);

@@ -34,7 +34,7 @@ pub enum MaskMeasure {
     Occlusion(f32),
 }
 
-/// Why no mask was made.
+/// The reason why no mask was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeasuredMaskError {
     /// Nothing would be protected by half or more.

@@ -32,7 +32,7 @@ pub const MAX_TRIANGLES: u64 = 1 << 26;
 /// to a hundredth.
 const ROUNDS: usize = 24;
 
-/// Why another level cannot be shown.
+/// The reason why another level cannot be shown.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LevelError {
     /// There is no coarser level.

@@ -29,7 +29,7 @@ impl Stale {
         }
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         let (chunks, nodes) = (pages.div_ceil(CHUNK), pages.div_ceil(8));
         self.chunk_is.reserve(chunks.saturating_sub(self.chunk_is.len()));
@@ -105,7 +105,7 @@ impl SpinePool {
         }
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.most = pages.div_ceil(CHUNK);
         // The chunks that readers hold of a few snapshots in a row.

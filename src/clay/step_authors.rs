@@ -6,7 +6,7 @@
 //! closing share no page, and each can be undone without the others. If some of the people
 //! continue, only the steps of the others are closed, and the rest stays open.
 
-/// Who changes the clay from now on.
+/// The author of the next changes to the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Author {
     /// Changes are not attributed: a clay of one person.
@@ -64,7 +64,7 @@ impl StepAuthors {
         self.now != Author::Nobody
     }
 
-    /// Somebody of the step.
+    /// Returns one of the people of the step.
     pub(super) fn first(&self) -> Option<u8> {
         self.people.iter().flatten().copied().next()
     }
@@ -122,7 +122,7 @@ impl StepAuthors {
         self.marks.get(place).copied().unwrap_or(0)
     }
 
-    /// The steps that a step of so many pages is parted into, in the order of their first owners.
+    /// Splits a step of `pages` pages into parts, in the order of their first owners.
     /// `whole`: its pages cannot be parted.
     pub(super) fn parts(&self, pages: usize, whole: bool) -> Vec<StepPart> {
         let owned = |bits: u32| {

@@ -91,7 +91,7 @@ impl History {
         self.authors.clone_from(&other.authors);
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.touched.reserve(pages.saturating_sub(self.touched.len()));
     }

@@ -505,7 +505,8 @@ impl CollapseSurface {
         })
     }
 
-    /// Moves both ends to `to`, the higher into the lower; returns how many triangles went.
+    /// Moves both ends to `to`, merging the higher into the lower; returns the number of triangles
+    /// removed.
     fn collapse(&mut self, a: u32, b: u32, to: DVec3) -> usize {
         let mut gone = 0;
         let moved = std::mem::take(&mut self.around[b as usize]);

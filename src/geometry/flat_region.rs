@@ -184,7 +184,7 @@ fn grow(
             let along = (*p - fit.middle).length();
             fit.height(*p).abs() <= allowed * (1.0 + along / spread)
         });
-        // A sliver has no normal that could be told.
+        // A sliver has no reliable normal.
         let vector = area_vector(c);
         let longest = (0..3).map(|k| c[k].distance(c[(k + 1) % 3])).fold(0.0, f64::max);
         let thick = vector.length() > 16.0 * allowed * longest;

@@ -116,7 +116,7 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     merged
 }
 
-/// Removes vertices that no face uses; the others keep their order. Returns how many went.
+/// Removes vertices that no face uses; the others keep their order. Returns the number removed.
 pub fn drop_unused(mesh: &mut PolyMesh) -> usize {
     let mut new = vec![u32::MAX; mesh.positions.len()];
     for &c in &mesh.corners {
@@ -197,7 +197,7 @@ pub struct OrientedShells {
     pub guessed: usize,
 }
 
-/// As [`orient_shells`]; returns how many faces were turned.
+/// As [`orient_shells`]; returns the number of faces turned.
 pub fn orient(mesh: &mut PolyMesh) -> usize {
     orient_shells(mesh).turned
 }

@@ -359,7 +359,7 @@ fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
     out
 }
 
-/// Corners after so many levels, to be asked before memory is taken for them.
+/// Returns the number of corners after this many levels, to check before memory is allocated.
 pub fn corners_after(mesh: &PolyMesh, levels: u32) -> u64 {
     (mesh.corners.len() as u64 * 3).saturating_mul(4u64.saturating_pow(levels))
 }

@@ -490,7 +490,7 @@ impl Made {
     }
 }
 
-/// Says what was made.
+/// Prints the result.
 fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     warn(&args.out, &out.warnings);
     answer(json, out, |w| {

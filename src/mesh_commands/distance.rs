@@ -128,7 +128,7 @@ pub fn warn(path: &Path, warnings: &[String]) {
     }
 }
 
-/// Runs `work` and says how many seconds it took.
+/// Runs `work` and returns its result and its duration in seconds.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let clock = Clock::monotonic();
     let start = clock.now_us();

@@ -27,7 +27,7 @@ use sculptd_geometry::job::Job;
 /// dab copies little, large enough that its border is not most of it.
 pub const PAGE_VERTICES: usize = 512;
 
-/// Why no clay can be built of a mesh.
+/// The reason why no clay can be built from a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// The mesh has no triangles.

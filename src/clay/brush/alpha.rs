@@ -224,7 +224,7 @@ fn hash(i: i32, j: i32, seed: u32) -> f32 {
     ((x ^ x >> 15) >> 8) as f32 / (1u32 << 24) as f32
 }
 
-/// Smooth noise of so many cells, repeating along `s`.
+/// Smooth noise of this many cells, repeating along `s`.
 fn noise(s: f32, t: f32, cells: i32, seed: u32) -> f32 {
     let (x, y) = (s * cells as f32, t * cells as f32);
     let (i, j) = (x.floor(), y.floor());

@@ -37,7 +37,7 @@ impl Brush for BoundaryBrush {
         None
     }
 
-    /// The walk says how far it is; see `change`.
+    /// `change` measures the distance by the walk.
     #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         let far = dab.radius * FAR;

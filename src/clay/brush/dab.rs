@@ -31,7 +31,7 @@ pub fn part(pace: f32, weight: f32) -> f32 {
 /// The way over which the direction of a stroke is averaged, in radii.
 pub const HEADING: f32 = 0.5;
 
-/// The sharpest bend that [`Dab::bend`] tells, in inverse radii.
+/// The sharpest bend in [`Dab::bend`], in inverse radii.
 pub const SHARPEST: f32 = 0.7;
 
 /// The way a brush follows the pen.

@@ -66,7 +66,7 @@ pub struct Geodesic {
     blocks: Vec<Block>,
     used: usize,
     heap: BinaryHeap<Reverse<(u32, u32, u16)>>,
-    /// Vertices of a border, and how far along it they are.
+    /// The vertices of a border, and their distances along it.
     border: Vec<(Key, f32)>,
 }
 
@@ -147,8 +147,8 @@ impl Geodesic {
         (mark.owner[1] == owner).then_some((mark.place, mark.frame))
     }
 
-    /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
-    /// Says whether it was nearer.
+    /// Sets the distance of a vertex, if that is nearer than before, and continues the walk from
+    /// it. Returns true if it was nearer.
     #[inline(always)]
     pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {
         let mark = self.mark_mut(mesh, key);
@@ -209,7 +209,7 @@ impl Geodesic {
         }
     }
 
-    /// A vertex that has its source's coordinates tells others.
+    /// A vertex that has its source's coordinates passes them to others.
     pub fn tell(&mut self, mesh: &Clay, key: Key, place: [f32; 2]) {
         self.mark_mut(mesh, key).told = place;
     }

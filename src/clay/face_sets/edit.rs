@@ -54,7 +54,7 @@ pub enum PartEdit {
     Isolate,
 }
 
-/// Why an edit of the face sets was not carried out. Nothing was changed.
+/// The reason why an edit of the face sets was rejected. Nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SetsError {
     /// There was nothing to do.

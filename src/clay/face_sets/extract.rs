@@ -18,7 +18,7 @@ pub enum FaceSetPart {
     Set(u16),
 }
 
-/// Why nothing was extracted.
+/// The reason why nothing was extracted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ExtractError {
     /// No triangle belongs to the part.

@@ -145,7 +145,7 @@ pub enum LayerEdit {
     Bake,
 }
 
-/// Why an edit of layers was not carried out. Nothing was changed.
+/// The reason why an edit of layers was rejected. Nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LayerError {
     /// A number that no layer has.

@@ -40,7 +40,7 @@ pub(crate) struct PageRebuild {
 }
 
 impl PageRebuild {
-    /// Makes room for so many pages, and for what writing them usually needs.
+    /// Makes room for this many pages, and for the usual needs of writing them.
     pub(crate) fn reserve(&mut self, pages: usize) {
         let blank = Arc::default();
         self.spare.resize_with(pages, || PageWrite::new(&blank));

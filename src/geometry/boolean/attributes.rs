@@ -87,7 +87,7 @@ fn colour(mesh: &PolyMesh, face: usize, place: DVec3) -> [u8; 4] {
     })
 }
 
-/// Corners of a face, and how much of a place in it is theirs.
+/// The corners of a face, and their weights at a place in it.
 fn shares(mesh: &PolyMesh, face: usize, place: DVec3) -> [(u32, f64); 3] {
     let corners = mesh.face(face);
     let first = corners.first().copied().unwrap_or(0);

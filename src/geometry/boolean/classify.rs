@@ -251,7 +251,7 @@ fn one_side(
     Ok((Classification { part, placements }, doubt))
 }
 
-/// A solid that is asked how often it goes around a point.
+/// A solid that answers queries for its winding number.
 pub(super) struct WindingOracle<'a> {
     surface: SurfaceView<'a>,
     bounds: Span,
@@ -262,7 +262,7 @@ pub(super) struct WindingOracle<'a> {
     /// The tolerance: nearer to the surface than four of it, nothing is inside or outside.
     eps: f64,
     asked: usize,
-    /// Once so many ask that it is worth it.
+    /// Built once there are enough queries to repay it.
     tree: Option<SpanTree>,
 }
 
@@ -393,7 +393,7 @@ fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
 }
 
-/// A point inside the piece and how much room there is.
+/// Returns a point inside the piece and its clearance.
 pub(super) fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     let l = loops[0];
     if l.len() == 3 && loops.len() == 1 {

@@ -181,7 +181,7 @@ pub struct BooleanSolid {
     pub facts: BooleanFacts,
 }
 
-/// Why there is no result.
+/// The reason why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BooleanError {
     /// An operand has edges without a partner.

@@ -111,7 +111,7 @@ impl<'a> CollapsePlan<'a> {
         self.choices[n].leaf
     }
 
-    /// The children of the wide node that `n` becomes, and how many.
+    /// Returns the children of the wide node that `n` becomes, and their number.
     pub fn children(&self, n: usize) -> ([usize; WIDTH], usize) {
         let (mut out, mut count) = ([0; WIDTH], 0);
         if self.is_leaf(n) {

@@ -283,7 +283,7 @@ fn rest_of_line(cursor: &mut TextCursor) -> String {
     String::from_utf8_lossy(&name).trim_end().to_string()
 }
 
-/// A texture coordinate. It moves nothing, so what is wrong with one is counted and told.
+/// A texture coordinate. It moves nothing, so invalid ones are counted and reported.
 fn texture(cursor: &mut TextCursor, out: &mut ObjPiece) {
     let mut values = [0f64; 3];
     let mut good = true;

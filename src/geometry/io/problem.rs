@@ -48,7 +48,7 @@ impl fmt::Display for FileProblem {
     }
 }
 
-/// Why [`super::parse`] stopped.
+/// The reason why [`super::parse`] stopped.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ParseError {
     /// The bytes are not what they claim.
@@ -69,7 +69,7 @@ impl From<crate::job::Cancelled> for ParseError {
     }
 }
 
-/// Why [`super::read_mesh`] gave no mesh. Nothing was changed.
+/// The reason why [`super::read_mesh`] returned no mesh. Nothing was changed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened or read.

@@ -18,7 +18,7 @@ fn excess(s: &QuadSurface, v: u32, faces: usize) -> i64 {
     by * by
 }
 
-/// One pass of every operation; how many were done.
+/// Runs one pass of every operation; returns the number of operations.
 pub(super) fn pass(s: &mut QuadSurface, job: &Job) -> Result<usize, Cancelled> {
     let mut done = 0;
     for v in 0..s.positions.len() as u32 {
@@ -234,7 +234,7 @@ fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
     true
 }
 
-/// Cuts the quads that are reflex or folded into triangles; how many.
+/// Cuts the quads that are reflex or folded into triangles; returns their number.
 pub(super) fn cut_folded(s: &mut QuadSurface) -> usize {
     let mut cut = 0;
     for f in 0..s.faces.len() as u32 {

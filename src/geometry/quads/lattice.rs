@@ -51,7 +51,7 @@ pub(super) fn collapse_to_lattice(
         }
     }
     same.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    // Sum of lattice points and how many, by vertex that stays.
+    // The sum and the number of lattice points, by vertex that stays.
     let mut sums: Vec<(DVec3, f64)> = frames.iter().map(|f| (f.origin, 1.0)).collect();
     let mut home: Vec<u32> = (0..frames.len() as u32).collect();
     for _ in 0..ROUNDS {

@@ -78,7 +78,7 @@ pub struct QuadMesh {
     pub warnings: Vec<String>,
 }
 
-/// Why there is no quad mesh.
+/// The reason why there is no quad mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum QuadError {
     /// The job was cancelled.
@@ -87,7 +87,7 @@ pub enum QuadError {
     /// A coordinate is not a number.
     #[error("expected finite coordinates, found others")]
     NotFinite,
-    /// Nothing with an area.
+    /// The mesh has no area.
     #[error("expected a surface with an area, found none")]
     Empty,
     /// Edges of more than two faces.

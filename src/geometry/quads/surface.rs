@@ -14,7 +14,7 @@ use glam::DVec3;
 
 /// Marks a triangle that is gone.
 pub(super) const GONE: u32 = u32::MAX;
-/// A closed part keeps so many vertices: those of a cube.
+/// The number of vertices that a closed part keeps: those of a cube.
 pub(super) const LEAST_PART: u32 = 8;
 
 /// An editable manifold triangle surface.

@@ -27,7 +27,8 @@ fn facts(mesh: &PolyMesh) -> MeshReport {
     report(mesh, true, &Job::default()).unwrap()
 }
 
-/// Closed, manifold and oriented, with these handles, nearly all quads, and about so many.
+/// Checks for a closed, manifold, oriented mesh with these handles, nearly all quads, and about
+/// this many of them.
 fn sound(mesh: &PolyMesh, metrics: &QuadMetrics, genus: i64, quads: usize) {
     let r = facts(mesh);
     assert!(r.closed && r.manifold && r.oriented && r.unused_vertices == 0, "{r:?}");

@@ -33,7 +33,7 @@ fn ends(e: usize) -> (usize, usize) {
     (from, from | 1 << axis)
 }
 
-/// For one pattern of inside corners: each edge's patch, and how many there are.
+/// For one pattern of inside corners: each edge's patch, and the number of patches.
 #[derive(Clone, Copy)]
 struct CellPattern {
     patch: [u8; 12],

@@ -36,7 +36,7 @@ impl Default for RemeshSettings {
     }
 }
 
-/// Why there is no new mesh.
+/// The reason why there is no new mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RemeshError {
     /// The job was cancelled.

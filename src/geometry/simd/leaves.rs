@@ -29,7 +29,7 @@ impl Leaves {
         Some(Leaves { corners, ends, rows })
     }
 
-    /// Forgets all leaves and makes room for so many leaves and corners.
+    /// Forgets all leaves and makes room for this many leaves and corners.
     pub fn reserve(&mut self, leaves: usize, corners: usize) {
         self.corners.clear();
         self.ends.clear();

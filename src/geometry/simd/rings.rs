@@ -31,7 +31,7 @@ impl Hexes {
         self.rows = 0;
     }
 
-    /// Forgets all rings and makes room for so many.
+    /// Forgets all rings and makes room for this many.
     pub fn reserve(&mut self, count: usize) {
         self.clear();
         self.rings.reserve(count);

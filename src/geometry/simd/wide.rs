@@ -43,7 +43,7 @@ pub struct WideNode {
     pub child: [u32; 8],
 }
 
-/// The bit of [`WideNode::child`] that tells a pack from a node.
+/// The bit of [`WideNode::child`] that separates a pack from a node.
 pub const LEAF: u32 = 1 << 31;
 
 /// A ray made ready for both tests. The fields are private because the tests trust the indices.

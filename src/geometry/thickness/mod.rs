@@ -80,11 +80,11 @@ pub enum EdgePolicy {
     Extrapolate,
     /// The inscribed sphere, which goes to zero there.
     Sphere,
-    /// Nothing, with [`Reason::Edge`].
+    /// No value, with [`Reason::Edge`].
     Neutral,
 }
 
-/// Why a value is what it is.
+/// The reason for a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u8)]
@@ -214,7 +214,7 @@ pub struct Thickness {
     pub errors: Vec<f32>,
     /// One a triangle, with [`MeasuredPlaces::VerticesAndFaces`].
     pub face_values: Vec<f32>,
-    /// Why each of `face_values` is what it is.
+    /// The reason for each of `face_values`.
     pub face_reasons: Vec<Reason>,
     /// Places spread evenly over the area, for statistics that do not depend on how the part is
     /// meshed. Their triangles are those of the walls, where there were any.

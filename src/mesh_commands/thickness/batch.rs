@@ -28,7 +28,7 @@ pub(super) struct Row {
     max: Option<f32>,
     below_percent: Option<f64>,
     pub(super) seconds: f64,
-    /// Why it failed, or could not be read.
+    /// The reason why it failed, or could not be read.
     pub(super) why: Option<String>,
 }
 

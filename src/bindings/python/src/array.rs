@@ -19,7 +19,7 @@ use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Keeps the memory of shared arrays alive and tells NumPy where it is.
+/// Keeps the memory of shared arrays alive and gives NumPy its address.
 #[pyclass(frozen, module = "sculptd._native")]
 struct ArrayOwner {
     _owner: Arc<dyn Any + Send + Sync>,
