@@ -47,7 +47,7 @@ impl MenuItem {
     pub const HOLDING: [MenuItem; 4] =
         [MenuItem::Add, MenuItem::Carve, MenuItem::Keep, MenuItem::PutAway];
 
-    /// Returns the label shown to the person.
+    /// Returns its English name, for logs and widget ids.
     pub fn label(self) -> &'static str {
         match self {
             MenuItem::Add => "add",
