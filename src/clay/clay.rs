@@ -182,7 +182,8 @@ impl Clay {
         self.pages.len()
     }
 
-    /// # Panics Panics if there is no such page.
+    /// # Panics
+    /// Panics if there is no such page.
     pub fn page(&self, index: u32) -> &Arc<Page> {
         &self.pages[index as usize]
     }
@@ -190,7 +191,8 @@ impl Clay {
     /// Returns a page as it was when the open step began. Returns the current page if the step has
     /// not touched it or has changed its topology.
     ///
-    /// # Panics Panics if there is no such page.
+    /// # Panics
+    /// Panics if there is no such page.
     pub fn before(&self, index: u32) -> &Arc<Page> {
         let now = &self.pages[index as usize];
         self.history

@@ -80,7 +80,8 @@ impl Snapshot {
         self.totals.pages
     }
 
-    /// # Panics Panics if there is no such page.
+    /// # Panics
+    /// Panics if there is no such page.
     pub fn page(&self, index: u32) -> &Arc<Page> {
         &self.spine[index as usize / CHUNK].pages[index as usize % CHUNK]
     }

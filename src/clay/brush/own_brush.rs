@@ -81,7 +81,8 @@ const LONGEST: usize = 64;
 /// Checks that a brush may have this name. The name also serves as a file name and must differ from
 /// every built-in brush's.
 ///
-/// # Errors Returns a message that says what is wrong with the name.
+/// # Errors
+/// Returns a message that says what is wrong with the name.
 pub fn check_name(name: &str) -> Result<(), String> {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | ' ');
     if name.is_empty() || name.chars().count() > LONGEST || !name.chars().all(allowed) {

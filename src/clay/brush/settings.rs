@@ -191,7 +191,8 @@ impl BrushSettings {
 
     /// Checks the range of every number.
     ///
-    /// # Errors Returns the key, the value and the range of the first number out of range.
+    /// # Errors
+    /// Returns the key, the value and the range of the first number out of range.
     pub fn check(&self) -> Result<(), String> {
         let mut wrong = None;
         let mut copy = *self;

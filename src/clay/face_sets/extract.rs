@@ -35,7 +35,8 @@ pub enum ExtractError {
 /// every edge of the result has two triangles. Where the part bends more sharply than the thickness
 /// allows, the shell intersects itself.
 ///
-/// # Errors Returns an error if the part is empty, or the thickness is 0 or not finite.
+/// # Errors
+/// Returns an error if the part is empty, or the thickness is 0 or not finite.
 pub fn extract(
     clay: &Snapshot,
     part: FaceSetPart,

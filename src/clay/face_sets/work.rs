@@ -137,7 +137,8 @@ impl Clay {
     /// Begins an edit of the face sets, which [`Clay::run_sets`] then carries out in portions.
     /// Until it is done nothing else may change the clay. Visits each page.
     ///
-    /// # Errors Returns an error if no number is left, or [`SetsError::Changed`].
+    /// # Errors
+    /// Returns an error if no number is left, or [`SetsError::Changed`].
     pub fn begin_sets(&self, task: SetsTask) -> Result<SetsWork, SetsError> {
         let (mut set, mut looking) = (0, false);
         match &task {
@@ -164,7 +165,8 @@ impl Clay {
     /// nothing is left: a vertex costs `cost`. `holds` returns true for the vertices of the part.
     /// Returns `None` if there is more to do, else the set that was made or edited, 0 for none.
     ///
-    /// # Errors Returns an error if there was nothing to do, or no such set. Nothing was changed
+    /// # Errors
+    /// Returns an error if there was nothing to do, or no such set. Nothing was changed
     /// then.
     pub fn run_sets(
         &mut self,
@@ -210,7 +212,8 @@ impl Clay {
     /// Runs an edit of the face sets at once, as a part of the open undo step: it visits every
     /// vertex. Returns the set that was made or edited; 0 for none.
     ///
-    /// # Errors Returns an error if there is nothing to do, no such set, or no number left. Nothing
+    /// # Errors
+    /// Returns an error if there is nothing to do, no such set, or no number left. Nothing
     /// is changed then.
     pub fn edit_sets(&mut self, edit: &SetsEdit) -> Result<u16, SetsError> {
         let mut work = self.begin_sets(SetsTask::Edit(edit.clone()))?;

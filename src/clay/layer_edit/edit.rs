@@ -225,7 +225,8 @@ impl Clay {
     /// Checks that each page changed by layers equals, to the bit, the sum of them. Not valid while
     /// a stroke or an edit is under way.
     ///
-    /// # Errors Returns the condition that does not hold.
+    /// # Errors
+    /// Returns the condition that does not hold.
     pub fn verify_layers(&self) -> Result<(), String> {
         let empty = LayerStack::default();
         let stack = self.layers().map_or(&empty, |s| s);

@@ -31,7 +31,8 @@ const FACES: usize = 300;
 /// Each result is compared with the winding number of `mesh` at 1,000 places and beside 300 faces
 /// before it is returned.
 ///
-/// # Errors Returns [`BooleanError::Inconsistent`] if neither gives a result that passes.
+/// # Errors
+/// Returns [`BooleanError::Inconsistent`] if neither gives a result that passes.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
     let parts = shells(mesh);
     let outwards = |m: &PolyMesh| super::emit::measure(m).0 > 0.0;

@@ -51,7 +51,8 @@ impl SceneMesh {
 /// with its name and its transform, 3MF as a component of one object. Every other format gets one
 /// mesh with the transforms applied, the meshes one after the other; in OBJ each has its name.
 ///
-/// # Errors Returns an error if no format has the extension, or the file cannot be written.
+/// # Errors
+/// Returns an error if no format has the extension, or the file cannot be written.
 pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<Vec<String>, WriteError> {
     let kind = writable_format(path)?;
     encode_scene(path, kind, meshes)?;

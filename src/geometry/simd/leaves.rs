@@ -42,7 +42,8 @@ impl Leaves {
     /// `u16::MAX`; entries of visited vertices change. Returns false if there are more corners than
     /// 16 bits count.
     ///
-    /// # Panics Panics if a corner has no entry in `seen`.
+    /// # Panics
+    /// Panics if a corner has no entry in `seen`.
     #[must_use]
     pub fn refill(&mut self, triangles: &[[u16; 3]], each: usize, seen: &mut [u16]) -> bool {
         self.corners.clear();

@@ -18,7 +18,8 @@ const FACETS: usize = 4000;
 /// Returns the union of the shells of `part`, or `None` if they do not overlap, or the part is
 /// open.
 ///
-/// # Errors Returns an error if they overlap and no union passes the checks of [`solve`].
+/// # Errors
+/// Returns an error if they overlap and no union passes the checks of [`solve`].
 pub fn united(part: &PolyMesh, job: &Job) -> Result<Option<PolyMesh>, BooleanError> {
     let own = CentredMesh::new(part, 1.0).mesh;
     if !boxes_overlap(&own) || !overlaps(part, &own, job)? {
