@@ -1,14 +1,13 @@
-//! The doors that bytes from outside come in by, one function each: for the fuzzer's targets and
-//! for the tests that feed the same doors with seeded mutations. Each must return, whatever it is
-//! given.
+//! The entry points for external bytes, one function each, for the fuzzer's targets and for tests
+//! with seeded mutations. Each must return for any input.
 
 use std::path::Path;
 
 use sculptd_clay::Clay;
 use sculptd_geometry::job::Job;
 
-/// A mesh file of the kind that its name's ending (`obj`, `stl`, `ply`, `glb`, `3mf`) says: read,
-/// made into triangles, built.
+/// Reads a mesh file, converts it to triangles and builds clay. The extension of its name (`obj`,
+/// `stl`, `ply`, `glb`, `3mf`) selects the format.
 pub fn mesh_bytes(kind: &str, data: &[u8]) {
     let name = format!("input.{kind}");
     if let Ok(loaded) = sculptd_geometry::io::parse(data, Path::new(&name), &Job::default()) {
@@ -17,8 +16,8 @@ pub fn mesh_bytes(kind: &str, data: &[u8]) {
     }
 }
 
-/// A page of a work and what stands still in it, as a session's history keeps them: four bytes that
-/// say how long the latter is, then it, then the page.
+/// Decodes a page of a sculpture and its topology, as stored in a session's history: four bytes
+/// with the length of the topology, the topology, the page.
 pub fn page_bytes(data: &[u8]) {
     let Some((length, rest)) = data.split_first_chunk::<4>() else { return };
     let (shape, points) = rest.split_at(u32::from_le_bytes(*length) as usize % (rest.len() + 1));
@@ -27,11 +26,11 @@ pub fn page_bytes(data: &[u8]) {
     }
 }
 
-/// One line for the control socket.
+/// Parses one line of the control socket.
 #[cfg(unix)]
 pub fn rpc_bytes(data: &[u8]) {
     if let Ok(line) = sculptd_control::wire::parse(data) {
-        // The settings that a method merges with those in force.
+        // The settings that a method merges with the current ones.
         let _ = serde_json::from_value::<sculptd_clay::brush::BrushSettings>(line.params.clone())
             .map(|b| b.clamped());
         let _ = serde_json::from_value::<sculptd_engine::camera::Camera>(line.params.clone())
@@ -44,15 +43,15 @@ pub fn rpc_bytes(data: &[u8]) {
     }
 }
 
-/// A settings file.
+/// Parses a settings file.
 pub fn config_bytes(data: &[u8]) {
     if let Ok(text) = std::str::from_utf8(data) {
         let _ = sculptd_daemon::config::Resolved::of_text(text, "input", crate::presets());
     }
 }
 
-/// A session file, put into `folder` (which must be empty): its history listed; opened, or else
-/// salvaged; replayed; opened at its newest checkpoint.
+/// Reads a session file, written into `folder` (which must be empty): lists its history, opens or
+/// salvages it, replays it, and opens it at its newest checkpoint.
 pub fn session_bytes(folder: &Path, data: &[u8]) {
     use sculptd_daemon::session;
     let path = folder.join("input.sculpt");

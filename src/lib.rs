@@ -1,27 +1,27 @@
 //! # sculptd: the map
 //!
-//! `sculptd` turns the movements of a hand into clay, in real time. HID pen tablets, serial pens
-//! and a Leap-style hand-tracking feed are read by adaptors; their samples pass one bounded
-//! lock-free channel into a sculpt loop that runs at a fixed rate on the CPU; Booleans, thickness
-//! and distance run on background threads against immutable snapshots; a wgpu viewer with egui
-//! panels draws the snapshots.
+//! `sculptd` turns hand movements into clay, in real time. Adaptors read HID pen tablets, serial
+//! pens and a Leap-style hand-tracking feed. Their samples pass through one bounded lock-free
+//! channel into a sculpt loop, which runs at a fixed rate on the CPU. Booleans, thickness and
+//! distance run on background threads against immutable snapshots. A wgpu viewer with egui panels
+//! draws the snapshots.
 //!
-//! Read first: this page, then `sculptd_engine::command` (what can be asked),
-//! `sculptd_engine::world` (what one step does), `sculptd_daemon::live` (the loop around it). Each
-//! crate's `lib.rs` says where to start in it. `CONTRIBUTING.md` says how to build and where things
-//! are added.
+//! Read first: this page, then `sculptd_engine::command` (the possible requests),
+//! `sculptd_engine::world` (the effect of one step), `sculptd_daemon::live` (the loop around it).
+//! Each crate's `lib.rs` names the place to start in it. `CONTRIBUTING.md` explains how to build
+//! and where to add things.
 //!
 //! ## Five laws
-//! 1. **Two things change the world: a `Sample` (what a device said) and a `Command` (what was
-//!    asked).** A panel's click, a control-socket call, a finished Boolean, an undo: each is a
-//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise whole; no
-//!    channel, lock or thread handle is part of one. What takes long to build from a command (its
-//!    clay) lies ready in the [`sculptd_engine::payload::PayloadStore`] beside the world; without
-//!    it the world builds it again.
-//!    [`sculptd_engine::world::World::step`] is the only writer. It has no clock, no IO, no threads
-//!    of its own making, and never fails. So live running, replay, crash recovery, golden tests,
-//!    fuzzing and bug reports are one mechanism. Each command has one answer, at its place in
-//!    [`sculptd_engine::world::World::answers`]: nobody says "done" before it.
+//! 1. **Two things change the world: a `Sample` (a device's state) and a `Command` (a request).**
+//!    A panel's click, a control-socket call, a finished Boolean, an undo: each is a
+//!    [`sculptd_engine::command::Command`]. Both are plain data and serialise completely; neither
+//!    contains a channel, lock or thread handle. Data that takes long to build from a command (its
+//!    clay) waits in the [`sculptd_engine::payload::PayloadStore`] beside the world; without it the
+//!    world builds the data again.
+//!    [`sculptd_engine::world::World::step`] is the only writer. It has no clock and no IO, starts
+//!    no threads, and never fails. So live running, replay, crash recovery, golden tests, fuzzing
+//!    and bug reports are one mechanism. Each command has one answer, at its place in
+//!    [`sculptd_engine::world::World::answers`]; nothing reports success before it.
 //! 2. **Cost follows what moved, never what exists.** A dab costs what its vertices cost, on a mesh
 //!    of a thousand vertices or of ten million. No tick touches the whole mesh: not for normals,
 //!    not for the BVH, not for the spatial query, not to publish a snapshot, not for undo. A local
@@ -31,27 +31,27 @@
 //!    proximity change is never lost; motion may be coalesced, and every loss is counted and shown.
 //!    Nothing large is freed on the tick thread, whatever is full: see
 //!    [`sculptd_clay::GarbageSink`].
-//!    Dynamic topology is bounded by counted work, scanning and writing pages included; what does
-//!    not fit is carried over to the next tick. A thread makes its pages in advance. Two ticks may
-//!    be late for it: the one that first takes up a brush that changes topology, or first remeshes
-//!    locally, which makes room by the number of pages, and one with an undo, which finishes what
-//!    was carried over, some twenty milliseconds at most.
-//!    An edit of the whole mask, of face sets or of triangles in place, of a region too,
-//!    goes through pages in portions counted by what looking and writing cost, and strokes wait;
-//!    commands that need the surface wait in [`sculptd_daemon::live`] until it is done, but for an
-//!    undo, which takes new triangles in place back at once.
-//!    Five more exceptions: a local remesh allocates the lists of pages that it works on, and
-//!    once the memory of its tasks; an edit of face sets, and dynamic topology on an object that
-//!    has some, as a stroke that draws them, allocates two bytes a vertex that it writes; the end
-//!    of a stroke on a layer allocates that layer's new offsets; a command that needs the whole
-//!    surface while layers are still being summed up finishes them in its tick, and so do a
-//!    hand's menu and commands of a shared sculpture with such an edit; and in a shared sculpture
-//!    (feature `network`) ticks allocate, each replica builds a mesh that a command brings on
-//!    this thread, and where others sculpt beside an own stroke, the world is forked for the
-//!    picture (`network::local_echo`), at most ten times a second, at a cost of its pages.
+//!    Dynamic topology is bounded by counted work, including scanning and writing pages; work that
+//!    does not fit is carried over to the next tick. A thread makes its pages in advance. Two ticks
+//!    may be late for it: the first one with a brush that changes topology, or with a local remesh,
+//!    which allocates in proportion to the number of pages; and one with an undo, which finishes
+//!    the carried-over work, some twenty milliseconds at most.
+//!    An edit of the whole mask, of face sets or of triangles in place, also within a region, goes
+//!    through pages in portions counted by the cost of reading and writing, and strokes wait.
+//!    Commands that need the surface wait in [`sculptd_daemon::live`] until it is done, except an
+//!    undo, which reverts new triangles in place at once.
+//!    Five more exceptions: a local remesh allocates its lists of pages, and once the memory of its
+//!    tasks; an edit of face sets, a stroke that draws them, and dynamic topology on an object that
+//!    has some, allocate two bytes per written vertex; the end of a stroke on a layer allocates
+//!    that layer's new offsets; a command that needs the whole surface while layers are still being
+//!    summed up finishes them in its tick, and so do a hand menu and commands of a shared sculpture
+//!    during such an edit; and in a shared sculpture (feature `network`) ticks allocate, each
+//!    replica builds a mesh that a command brings on this thread, and while others sculpt beside a
+//!    local stroke, the world is forked for the picture (`network::local_echo`), at most ten times
+//!    a second, at the cost of its pages.
 //! 4. **Old files open.** A session, gallery or preference of an older version opens at its newest
-//!    state; only replay from the start may be refused, by name. A file is written beside and
-//!    renamed.
+//!    state; only replay from the start may be refused, by name. Each file is written under
+//!    a temporary name and renamed.
 //! 5. **Nothing happens when nothing happens.** An idle daemon and an idle window use no processor
 //!    time that a person could measure.
 //!
@@ -62,46 +62,46 @@
 //! [`sculptd_engine::world`] turns them into view rays, a resampled stroke and dabs;
 //! [`sculptd_clay::Clay::dab`] moves vertices in pages. The [`sculptd_clay::Snapshot`] in
 //! [`sculptd_daemon::Published`] hands the result to the viewer, which uploads the pages that
-//! changed and draws. Where a tablet's pen will be when the frame is seen, ring and stroke run
-//! ahead of it in the picture alone: `viewer::provisional`.
+//! changed and draws. In the picture alone, ring and stroke run ahead to the position of a tablet's
+//! pen that is predicted for the time when the frame is seen: `viewer::provisional`.
 //!
 //! ## Crates, from the bottom up
-//! The compiler holds the arrows between them; `tests/tidy` refuses circles between the files of a
-//! crate.
+//! The compiler enforces the dependencies between them; `tests/tidy` rejects cycles between the
+//! files of a crate.
 //!
-//! * `sculptd-geometry` (`src/geometry`) knows nobody: meshes, files, repair, BVH, Booleans,
+//! * `sculptd-geometry` (`src/geometry`) depends on none: meshes, files, repair, BVH, Booleans,
 //!   thickness, distance, jobs that can be cancelled.
-//! * `sculptd-devices` (`devices`) knows nobody: everything between a wire and a `Sample`; tablets
-//!   as data.
-//! * `sculptd-clay` (`src/clay`) knows geometry: pages, dabs, brushes, dynamic topology,
+//! * `sculptd-devices` (`devices`) depends on none: everything between a wire and a `Sample`;
+//!   tablets as data.
+//! * `sculptd-clay` (`src/clay`) depends on geometry: pages, dabs, brushes, dynamic topology,
 //!   multiresolution, undo, snapshots, local Booleans.
-//! * `sculptd-engine` (`src/engine`) knows devices, geometry, clay: commands, payloads, the scene
-//!   and its undo, the world, camera, strokes, hands.
-//! * `sculptd-control` (`src/control`) knows nobody: the requests, replies and events of the
+//! * `sculptd-engine` (`src/engine`) depends on devices, geometry, clay: commands, payloads, the
+//!   scene and its undo, the world, camera, strokes, hands.
+//! * `sculptd-control` (`src/control`) depends on none: the requests, replies and events of the
 //!   control socket as types, their JSON schema, a client.
-//! * `sculptd-daemon` (`src/daemon`) knows all of the above: the tick loop, simulated time,
+//! * `sculptd-daemon` (`src/daemon`) depends on all of the above: the tick loop, simulated time,
 //!   sessions, control socket, kiosk, metrics.
-//! * `sculptd-network` (`src/network`) knows the daemon and what is below it: one sculpture shared
+//! * `sculptd-network` (`src/network`) depends on the daemon and all below it: one sculpture shared
 //!   by several daemons, and a fleet of installations. Both protocols are state machines without
 //!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
 //!   set).
-//! * `sculptd-window` (`src/window`) knows the daemon and what is below it: panels (egui) and
-//!   viewer (wgpu): they see snapshots and send commands.
-//! * `sculptd-mesh-commands` (`src/mesh_commands`) knows geometry, and the clock of the devices:
-//!   the subcommands over mesh files. They stand apart so that an edit of the clay does not compile
-//!   them.
-//! * `sculptd` (`src/main.rs`, `src/cli`) knows all: the command line: reads arguments, calls,
-//!   prints.
+//! * `sculptd-window` (`src/window`) depends on the daemon and all below it: panels (egui) and
+//!   viewer (wgpu), which read snapshots and send commands.
+//! * `sculptd-mesh-commands` (`src/mesh_commands`) depends on geometry, and on the clock of the
+//!   devices: the subcommands over mesh files. They are separate so that an edit of the clay does
+//!   not recompile them.
+//! * `sculptd` (`src/main.rs`, `src/cli`) depends on all: the command line, which reads arguments,
+//!   calls, and prints.
 //! * `src/bindings`, for other languages: `c` (a header and a shared library over geometry and
-//!   devices) and `python` (over geometry; a workspace of its own). Nobody here knows them.
+//!   devices) and `python` (over geometry; a separate workspace). No crate here depends on them.
 //!
 //! ## Threads
-//! The core crates (geometry's Booleans apart) start no thread of their own accord: the daemon asks
-//! for the workers of [`sculptd_clay::Workers`] and passes the sink of
-//! [`sculptd_daemon::garbage_thread`] and the supply of [`sculptd_daemon::page_thread`] in.
+//! The core crates (except geometry's Booleans) start no threads. The daemon requests the workers
+//! of [`sculptd_clay::Workers`], and passes in the sink of [`sculptd_daemon::garbage_thread`] and
+//! the supply of [`sculptd_daemon::page_thread`].
 //!
-//! * main, made by the process: the window's event loop, or waits for a signal. Waits for: the
-//!   window system, with which it may be lost.
+//! * main, made by the process: runs the window's event loop, or waits for a signal. Waits for: the
+//!   window system, whose end may end it.
 //! * `sculptd-tick`, made by `daemon::live`: drains samples and commands, steps the world,
 //!   publishes. Waits for: its own clock only.
 //! * `sculptd-worker-N`, made by `clay::Workers`, for the tick thread: parts of a large dab. Waits
@@ -112,17 +112,17 @@
 //!   need. Waits for: the tick thread.
 //! * one a tablet, one a serial port, one a tracker, made by `devices::device_thread`, for the
 //!   adaptors: reads, parses, sends samples. Waits for: its device.
-//! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the object in the
-//!   hands, sent back as commands. Waits for: a choice in the hands' menu.
-//! * `sculptd-follow`, made by `daemon::live_booleans`: computes results that follow their operands
-//!   again. Waits for: the published state, time.
+//! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the held
+//!   object, sent back as commands. Waits for: a choice in the hand menu.
+//! * `sculptd-follow`, made by `daemon::live_booleans`: recomputes live Boolean results when their
+//!   operands change. Waits for: the published state, time.
 //! * `sculptd-global`, made by `geometry::boolean::global`: the slow exact route of a Boolean, so
-//!   that it can be given up. Waits for: its Boolean.
+//!   that it can be cancelled. Waits for: its Boolean.
 //! * `sculptd-tail`, made by `daemon::session::writer`: copies input to memory that outlives the
 //!   process. Waits for: the tick thread.
 //! * `sculptd-journal`, made by `daemon::session::writer`: writes samples and commands in groups.
 //!   Waits for: the tail, the disk.
-//! * `sculptd-sync`, made by `daemon::session::syncer`: asks the disk to keep what was written.
+//! * `sculptd-sync`, made by `daemon::session::syncer`: syncs written input to the disk.
 //!   Waits for: the journal, the disk.
 //! * `sculptd-history`, made by `daemon::session::history`: writes the pages of each step; fetches
 //!   them for undo. Waits for: the tick thread, the disk.
@@ -134,47 +134,48 @@
 //!   the published state.
 //! * `sculptd-metrics`, `sculptd-share`, made by `daemon::http`: serve metrics, and a visitor's
 //!   sculpture for download, each to many clients. Wait for: their socket, time.
-//! * `sculptd-telemetry`, made by `daemon::telemetry`: sends figures and the log to a collector.
+//! * `sculptd-telemetry`, made by `daemon::telemetry`: sends metrics and the log to a collector.
 //!   Waits for: time, the collector.
 //! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits
 //!   for: time, a signal.
 //! * `sculptd-kiosk`, made by `daemon::kiosk::keeper`: the cycle of an installation: attract,
 //!   sculpt, reset. Waits for: time, the published state.
-//! * `sculptd-gallery`, made by `daemon::kiosk::spool`: brings finished sculptures to their place.
-//!   Waits for: the disk, the network.
+//! * `sculptd-gallery`, made by `daemon::kiosk::spool`: sends finished sculptures to their
+//!   destination. Waits for: the disk, the network.
 //! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the
 //!   clock.
 //! * `sculptd-prune`, made by `cli::library`: removes old sessions of the data folder. Waits for:
 //!   the disk.
-//! * `sculptd-brushes`, made by `daemon::brush_folder`: reads a person's own brushes anew when a
-//!   file of theirs changes. Waits for: the clock. Owns: the folder as it was read. Speaks through:
-//!   the list that all clones of the presets share.
-//! * `sculptd-survivor`, made by `cli::window_guard`: goes on in the place of the main thread where
-//!   the window system has ended that. Waits for: such a loss.
+//! * `sculptd-brushes`, made by `daemon::brush_folder`: reads the user's brushes again when a file
+//!   changes. Waits for: the clock. Owns: the folder as it was read. Publishes through: the list
+//!   that all clones of the presets share.
+//! * `sculptd-survivor`, made by `cli::window_guard`: replaces the main thread if the window
+//!   system has ended it. Waits for: such a loss.
 //! * `sculptd-limit`, made by `daemon::live_run`: ends a run after `--for`. Waits for: the clock.
 //! * `sculptd-shared`, made by `network::live`: the station of a shared sculpture: takes datagrams
-//!   and the own input, orders or follows. Waits for: the network, the tick thread, time.
+//!   and the local input, orders or follows. Waits for: the network, the tick thread, time.
 //! * `sculptd-replica`, made by `network::live`: hashes, checkpoints, and worlds made of them, for
 //!   that station. Waits for: the station.
 //! * `sculptd-bulk`, made by `network::zenoh_link`: sends checkpoints to those who join. Waits for:
 //!   them, and for the receiver.
-//! * `sculptd-fleet`, made by `network::fleet::installation_thread`: publishes how an installation
-//!   is, and does what staff ask. Waits for: the network, time, the published state.
+//! * `sculptd-fleet`, made by `network::fleet::installation_thread`: publishes the state of an
+//!   installation, and carries out requests of staff. Waits for: the network, time, the published
+//!   state.
 //! * `sculptd-load`, `sculptd-export`, `sculptd-outline`, `sculptd-picture`, made by
 //!   `window::viewer::tasks`: read and write files for the window. Waits for: the disk.
 //! * `sculptd-boolean`, `sculptd-trim`, `sculptd-level`, `sculptd-remesh`, `sculptd-sets`,
 //!   `sculptd-mask`, made by `window::viewer::tasks`: changes of the whole object that the window
 //!   asked for, sent as commands. Waits for: the loop's answer.
 //! * `sculptd-brush`, made by `window::viewer::brush_requests`: writes the brush in hand into the
-//!   folder of a person's own. Waits for: the disk.
+//!   folder of the user's brushes. Waits for: the disk.
 //! * `sculptd-dialog`, made by `window::viewer::tasks`: the desktop's file dialog. Waits for: a
 //!   person.
-//! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's own file
+//! * `sculptd-folder`, made by `window::viewer::tasks`: lists a folder for the window's file
 //!   chooser. Waits for: the disk.
-//! * `sculptd-look`, made by `window::viewer::tasks`: reads and keeps pictures for the look of the
+//! * `sculptd-look`, made by `window::viewer::tasks`: reads and stores pictures for the look of the
 //!   clay. Waits for: the disk.
 //! * `sculptd-sound`, made by `window::sound` (feature `sound`, not in the default set):
-//!   opens, starts and stops the device that plays the sound of a contact; the sound system's own
+//!   opens, starts and stops the device that plays the sound of a contact; the sound system's
 //!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.

@@ -1,4 +1,4 @@
-//! The presets that this program brings along: `config/brushes/NAME.toml`, embedded.
+//! The built-in presets: `config/brushes/NAME.toml`, embedded.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ macro_rules! texts {
     };
 }
 
-/// The name of each brush that has a preset, and its text.
+/// The name of each brush with a preset, and its text.
 pub const TEXTS: &[(&str, &str)] = texts![
     "gaussian",
     "smooth",

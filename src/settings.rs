@@ -1,11 +1,11 @@
-//! The documented settings and the words that this program brings along: the files of `config/`,
-//! embedded. The members have the same defaults in code; the tests here hold the two together.
+//! The documented settings and the built-in texts: the files of `config/`, embedded. The settings
+//! have the same defaults in code; the tests here compare the two.
 
 /// Every setting of the daemon with its default and its meaning (`config/sculptd.toml`).
 pub const DAEMON: &str = include_str!("../config/sculptd.toml");
 /// Every setting of an installation (`config/kiosk.toml`).
 pub const KIOSK: &str = include_str!("../config/kiosk.toml");
-/// What the screen of an installation says, by the language's code.
+/// Texts of an installation's screen, by language code.
 pub const LANGUAGES: &[(&str, &str)] = &[
     ("en", include_str!("../config/languages/en.toml")),
     ("it", include_str!("../config/languages/it.toml")),
@@ -18,7 +18,7 @@ macro_rules! window_texts {
     };
 }
 
-/// What the window says, by the language's code: messages in Fluent's syntax.
+/// Texts of the window, by language code: messages in Fluent's syntax.
 pub const WINDOW_TEXTS: &[(&str, &str)] =
     window_texts!["en", "de", "el", "es", "fr", "it", "ja", "zh",];
 
@@ -32,7 +32,7 @@ mod tests {
     #[test]
     fn the_daemon_s_file_is_the_code_s_own_defaults_and_names_every_key() {
         let written: Config = toml::from_str(DAEMON).expect("it parses");
-        // What the table of the brush leaves out is its preset's: compared below.
+        // Values missing from the brush's table come from its preset: compared below.
         let code = Config::default();
         assert_eq!(Config { brush: code.brush, ..written }, code);
         let keys = |table: &toml::Table| -> Vec<String> {
@@ -45,7 +45,7 @@ mod tests {
         };
         let in_code = toml::Table::try_from(Config::default()).expect("it serialises");
         assert_eq!(keys(&DAEMON.parse().expect("it parses")), keys(&in_code));
-        // Laid over the defaults of the code the file changes nothing but the origins.
+        // Applied over the defaults of the code, the file changes nothing but the origins.
         let presets = crate::presets();
         let laid = Resolved::of_text(DAEMON, "the file", presets).expect("it is valid");
         assert_eq!(laid.config, Resolved::defaults(presets).config);

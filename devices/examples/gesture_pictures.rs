@@ -56,7 +56,8 @@ struct Arrow {
     to: Vec3,
 }
 
-/// Where a point is in the picture, and how near: seen from above and behind, without perspective.
+/// Projects a point into the picture, with its depth: seen from above and behind, without
+/// perspective.
 fn seen(p: Vec3) -> (Vec2, f32) {
     let view = Quat::from_rotation_x(0.9) * (p - vec3(0.0, 200.0, 15.0));
     (vec2(SIZE[0] * 0.5 + view.x * SCALE, SIZE[1] * 0.5 - view.y * SCALE), view.z)

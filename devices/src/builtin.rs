@@ -1,5 +1,5 @@
-//! The tablet files that are built in. A test holds this list to the folder, and writes it anew
-//! when `SCULPTD_BLESS` is set.
+//! The built-in tablet files. A test compares this list with the folder, and rewrites it when
+//! `SCULPTD_BLESS` is set.
 
 /// Name and text of the files of `tablets/` with these names.
 macro_rules! tablets {

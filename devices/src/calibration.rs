@@ -29,7 +29,7 @@ pub struct Calibration {
     /// Width over height of what is drawn on. The area is cut to it, about its middle, so that a
     /// circle stays a circle.
     pub lock_aspect: Option<f32>,
-    /// How pressure is bent. The default leaves it as it is.
+    /// Pressure curve. The default changes nothing.
     pub pressure: PressureCurve,
 }
 
@@ -75,7 +75,7 @@ impl PressureCurve {
 }
 
 impl Calibration {
-    /// Whether every figure makes sense; the error says which does not.
+    /// Checks that every figure is valid; the error names the one that is not.
     ///
     /// # Errors
     /// A figure that is not finite, an area without size, a curve that does not rise.
@@ -150,8 +150,7 @@ impl Calibration {
             origin = origin.min(whole - size);
         }
         if let Some(aspect) = self.lock_aspect {
-            // What is drawn on stands upright; on a tablet that lies turned its width is the
-            // tablet's height.
+            // The screen is upright; on a rotated tablet its width is the tablet's height.
             let aspect = if self.quarter_turns % 2 == 1 { 1.0 / aspect } else { aspect };
             let cut = vec2(size.x.min(size.y * aspect), size.y.min(size.x / aspect));
             origin += (size - cut) * 0.5;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::time::Instant;
 
-/// A clock that counts microseconds from an origin of its own and never runs backward.
+/// A monotonic clock that counts microseconds from an arbitrary origin.
 #[derive(Debug, Clone)]
 pub enum Clock {
     /// Microseconds since the clock was made.
@@ -22,7 +22,7 @@ impl Clock {
         Clock::Monotonic(Instant::now())
     }
 
-    /// A clock that stands at 0 until [`Clock::set_us`] moves it.
+    /// Creates a clock that stays at 0 until [`Clock::set_us`] moves it.
     pub fn manual() -> Self {
         Clock::Manual(Arc::new(AtomicU64::new(0)))
     }

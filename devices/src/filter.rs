@@ -11,7 +11,7 @@ use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
 /// A direction is filtered like a position at the end of a lever of this length, in mm.
 const LEVER: f32 = 100.0;
-/// After a longer gap, in microseconds, the filter starts anew.
+/// Gap, in microseconds, after which the filter restarts.
 const STALE_US: u64 = 250_000;
 /// Joints, tips and bones of one hand: three of the arm, six a finger.
 const PLACES: usize = 3 + 5 * 6;

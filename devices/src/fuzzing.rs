@@ -1,5 +1,5 @@
-//! What must hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that break
-//! it; a test runs the kept ones.
+//! Properties that hold for any bytes at all. `cargo fuzz` (in `devices/fuzz`) looks for bytes that
+//! violate them; a test runs the kept ones.
 
 use std::sync::OnceLock;
 
@@ -186,7 +186,7 @@ mod tests {
         }
     }
 
-    /// Run by hand to make the seeds anew: `cargo test -p sculptd-devices --lib write_seeds --
+    /// Run by hand to rewrite the seeds: `cargo test -p sculptd-devices --lib write_seeds --
     /// --ignored`.
     #[test]
     #[ignore = "writes devices/fuzz/corpus"]

@@ -15,11 +15,11 @@ pub struct Latency {
 /// A reading of [`Latency`], in microseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Quantiles {
-    /// Half of all took at most so long.
+    /// Median, in microseconds.
     pub p50: u64,
-    /// 99 of a hundred took at most so long.
+    /// 99th percentile, in microseconds.
     pub p99: u64,
-    /// All took at most so long.
+    /// Maximum, in microseconds.
     pub max: u64,
 }
 
@@ -41,8 +41,8 @@ impl Latency {
         self.sum_us
     }
 
-    /// How many took at most so long: exact for one less than a power of two, else a step's worth
-    /// too few.
+    /// Returns the number of values up to `us`: exact for one less than a power of two, else up to
+    /// one step too few.
     pub fn at_most(&self, us: u64) -> u64 {
         let whole = (0..STEPS).take_while(|s| upper(*s) <= us);
         whole.map(|s| self.counts[s]).sum()

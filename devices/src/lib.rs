@@ -7,21 +7,21 @@
 //! |---|---|---|
 //! | [`sample`] | the state of a device at one instant: mm, 0 to 1, radians | none |
 //! | [`hid`] | pen tablets over HID: parsers, readers, replug | one, and one an interface |
-//! | [`catalogue`], [`tablet`] | the facts of each model, and which model a device is | none |
-//! | [`descriptor`], [`report`] | report descriptors; what a parser reads in a report | none |
+//! | [`catalogue`], [`tablet`] | facts of each model, and identification of devices | none |
+//! | [`descriptor`], [`report`] | report descriptors; data that a parser reads in a report | none |
 //! | [`pen_state`] | proximity, contact, tool and buttons, for every family alike | none |
-//! | [`pad_actions`] | what keys, wheels, rings, barrel buttons and the eraser do | none |
+//! | [`pad_actions`] | actions of keys, wheels, rings, barrel buttons and the eraser | none |
 //! | [`serial`] | serial pens: four protocols, resync, probing of allowed ports only | one a port |
 //! | [`leap`] | tracked hands: WebSocket client, frames, the tracker's clock | one a service |
 //! | [`calibration`], [`filter`] | settings for a tablet; jitter of tracked hands | none |
-//! | [`prediction`] | where a pen will be when a frame is seen; only to be shown | none |
+//! | [`prediction`] | predicted pen position when a frame is seen; only for display | none |
 //! | [`queue`] | the channel to the consumer: bounded, lock-free, no transition lost | none |
 //! | [`recording`] | recorded bytes, played through the same decoders | none |
 //! | [`sim`] | simulated devices that send bytes, for tests and demos | one a device that plays |
 //!
-//! What the crate does not do: it knows no mesh and no window, reads no configuration file and has
-//! no global state. No reader waits for the consumer, except when its own list of kept samples is
-//! full of transitions. No port and no service is opened that was not named or allowed.
+//! The crate has no mesh, window or global state, and reads no configuration file. No reader waits
+//! for the consumer, except when its list of kept samples is full of transitions. Only ports
+//! and services that were named or allowed are opened.
 //!
 //! [`recording::Player`] plays a recording through the decoders that read live devices:
 //!
@@ -53,10 +53,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`hid::start`] watches the machine's own tablets and reads each on a thread of its own;
-//! [`hid::HidHandle::status`] lists what is read and what is not, with the reason. A new model is a
-//! file in `tablets/`, or in a folder that is given to [`catalogue::Catalogue::with_dir`];
-//! [`tablet`] documents its fields.
+//! [`hid::start`] watches the machine's tablets and reads each on a separate thread;
+//! [`hid::HidHandle::status`] lists the read and the rejected interfaces, with the reason. A new
+//! model is a file in `tablets/`, or in a folder passed to
+//! [`catalogue::Catalogue::with_dir`]; [`tablet`] documents its fields.
 //!
 //! The crate was run on Linux only. The code for Windows and macOS is built from the same sources.
 

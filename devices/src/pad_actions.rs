@@ -1,17 +1,16 @@
-//! What the keys, wheels, rings, strips, barrel buttons and the eraser of a tablet do.
+//! Actions of the keys, wheels, rings, strips, barrel buttons and the eraser of a tablet.
 //!
 //! Three steps lead from a state to an action, each plain data and each usable alone:
 //!
-//! 1. [`ControlEdges`] compares consecutive [`Pad`] and [`Pen`] states and tells what changed:
+//! 1. [`ControlEdges`] compares consecutive [`Pad`] and [`Pen`] states and reports each change as a
 //!    [`ControlEvent`].
-//! 2. An [`ActionTable`] names what each [`Control`] does: a [`Binding`]. It is read from the
-//!    `[actions]` table of a model's TOML file; what that leaves out comes from
-//!    [`ActionTable::defaults`].
+//! 2. An [`ActionTable`] assigns a [`Binding`] to each [`Control`]. It is read from the `[actions]`
+//!    table of a model's TOML file; missing entries come from [`ActionTable::defaults`].
 //! 3. [`ActionState`] applies the table to the events, with the modes of the pad, and gives
 //!    [`ActionEvent`]s: an action is pressed, is released, or a value is turned.
 //!
 //! The names of actions are strings, because this crate knows no program: the consumer resolves
-//! them and reports those that it does not know.
+//! them and reports the unknown ones.
 //!
 //! ```
 //! use sculptd_devices::pad_actions::{ActionEvent, ActionState, ActionTable};
@@ -124,7 +123,7 @@ impl<'de> Deserialize<'de> for Control {
     }
 }
 
-/// What a control does.
+/// Action of a control.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Binding {
@@ -147,20 +146,20 @@ pub enum Binding {
     Nothing,
 }
 
-/// What each control of one tablet does.
+/// Actions of each control of one tablet.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ActionTable {
-    /// What holds in every mode.
+    /// Bindings of every mode.
     pub controls: BTreeMap<Control, Binding>,
-    /// What differs in each mode, the first mode first. Empty: the pad has one mode. A mode is what
-    /// libinput calls a mode of a mode group; the consumer sets the LED where there is one.
+    /// Bindings that differ in each mode, the first mode first. Empty: the pad has one mode. A mode
+    /// corresponds to a mode of a libinput mode group; the consumer sets the LED if there is one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<BTreeMap<Control, Binding>>,
 }
 
 impl ActionTable {
-    /// What a tablet's controls do where neither its file nor the user says.
+    /// Returns the default bindings, for controls that neither the tablet's file nor the user sets.
     pub fn defaults() -> ActionTable {
         let press = |name: &str| Binding::Press(name.to_owned());
         let hold = |name: &str| Binding::Hold(name.to_owned());
@@ -198,13 +197,13 @@ impl ActionTable {
         below
     }
 
-    /// What a control does in a mode; `None` where it does nothing.
+    /// Returns the binding of a control in a mode; `None` if it does nothing.
     pub fn binding(&self, control: Control, mode: usize) -> Option<&Binding> {
         let own = self.modes.get(mode).and_then(|m| m.get(&control));
         own.or_else(|| self.controls.get(&control)).filter(|b| **b != Binding::Nothing)
     }
 
-    /// Whether the figures and names can be used.
+    /// Checks that the figures and names are valid.
     ///
     /// # Errors
     /// An empty name or a step that is not finite; the text names the control.
@@ -227,7 +226,7 @@ impl ActionTable {
     }
 }
 
-/// Whether an entry of [`Pad::strips`] has ends.
+/// Shape of an entry of [`Pad::strips`]: with or without ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TouchShape {
@@ -256,7 +255,7 @@ pub struct ControlEdges {
     pad: Pad,
     buttons: u32,
     eraser: bool,
-    /// What is left of a finger's way, in steps, after whole steps were told.
+    /// Remainder of a finger's movement, in steps, after the reported whole steps.
     rest: [f32; 2],
 }
 
@@ -335,7 +334,7 @@ fn edges(before: u32, now: u32, control: fn(u8) -> Control, emit: &mut dyn FnMut
     }
 }
 
-/// What a consumer does about a change.
+/// Change to be carried out by the consumer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionEvent {
     /// The action begins.
@@ -404,7 +403,7 @@ impl ActionState {
         changes.into_iter().for_each(|e| self.apply(e, emit));
     }
 
-    /// Puts another table in place. What is held is released first.
+    /// Replaces the table. Releases held actions first.
     pub fn set_table(&mut self, table: ActionTable, emit: &mut dyn FnMut(ActionEvent)) {
         for (_, action) in self.held.drain(..) {
             emit(ActionEvent::Released { action });

@@ -46,12 +46,12 @@ const PROOF: u32 = 3;
 /// Counts above this are noise and no pressure: no pen has more than 16 bits.
 const MOST_PRESSURE: u32 = 0xffff;
 
-/// What is known of the model's pen.
+/// Configuration for the model's pen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenConfig {
-    /// Number of the device that the samples go out under.
+    /// Device id of the samples.
     pub device: DeviceId,
-    /// What its counts mean.
+    /// Scale of its counts.
     pub scale: PenScale,
     /// Microseconds of silence after which the pen has left; `None` where a report always says it.
     pub silence_us: Option<u64>,
@@ -61,7 +61,7 @@ pub struct PenConfig {
     pub tilts: bool,
 }
 
-/// What counts mean.
+/// Units of the counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PenScale {
     /// First and last count of the active area.
@@ -87,7 +87,7 @@ pub struct PenState {
     fresh: bool,
     /// The rest pressure of a worn pen, as a share.
     offset: f32,
-    /// The tip switch of this report, where it says so.
+    /// The tip switch of this report, if it has one.
     switch: Option<bool>,
     /// Pressure while the tip switch last said that nothing touches, as a share. A report that
     /// hides the switch behind a button is judged by what is above it.
@@ -134,7 +134,7 @@ impl PenState {
         }
     }
 
-    /// Whether the pen is in proximity.
+    /// Returns true if the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range
     }
@@ -144,7 +144,7 @@ impl PenState {
         self.outside
     }
 
-    /// How the pen's pressure was used so far.
+    /// Returns how the pen has used its pressure range so far.
     pub fn pressure_use(&self) -> PressureUse {
         self.pressure_use
     }
@@ -165,7 +165,7 @@ impl PenState {
         }
     }
 
-    /// When silence will end the visit.
+    /// Returns the time at which silence will end the visit.
     pub fn due_us(&self) -> Option<u64> {
         let ends = self.pen.tip && (self.fast || self.repeats >= REPEATS);
         let contact = ends.then_some(self.cfg.contact_silence_us);

@@ -1,18 +1,18 @@
-//! Where a pen will be when a frame is seen: a Kalman filter for each axis (Kalman 1960) over
+//! Predicts a pen's position when a frame is seen: a Kalman filter for each axis (Kalman 1960) over
 //! place, speed and acceleration, driven by white noise of the jerk (the model of Singer 1970 in
 //! its limit; Bar-Shalom, Li and Kirubarajan 2001, section 6.2.3). Google's ink-stroke-modeler
 //! predicts strokes by such a filter as well.
 //!
-//! What is predicted is only shown: nothing that a prediction says becomes a [`crate::Sample`].
+//! Predictions are only shown: none becomes a [`crate::Sample`].
 //!
 //! Laws kept here:
-//! * A pen that brakes is not led past the place where it would stand still.
-//! * What the filter is not sure of is led less, and a pen that rests not at all.
-//! * A gap of [`STALE_US`] or a pen that left begins anew.
+//! * The prediction for a braking pen ends where the pen would stop.
+//! * An uncertain prediction is shortened, and a resting pen has none.
+//! * A gap of [`STALE_US`] or a pen that left restarts the filter.
 
 use glam::DVec2;
 
-/// After a longer gap, in microseconds, the filter starts anew, and nothing is predicted.
+/// Gap, in microseconds, after which the filter restarts and nothing is predicted.
 pub const STALE_US: u64 = 100_000;
 /// Never further ahead than this, microseconds.
 pub const FURTHEST_US: u64 = 60_000;
@@ -23,12 +23,11 @@ const NOISE: f64 = 3e-4;
 /// The density of the jerk's noise, shares squared a second to the fifth: strokes of a hand at 1 to
 /// 3 Hz over a third of a tablet have a tenth of the error that they have without prediction.
 const JERK: f64 = 2e3;
-/// How unsure the filter is of speed and acceleration at first, shares a second and a second
-/// squared.
+/// Initial uncertainty of speed and acceleration, in shares per second and per second squared.
 const AT_FIRST: (f64, f64) = (5.0, 50.0);
 /// The share of the acceleration that is believed to last.
 const LASTING: f64 = 0.6;
-/// Where the way ahead is less than so many standard deviations of its own, it is none.
+/// Least prediction, in its standard deviations, that is shown; a shorter one counts as none.
 const SURE: f64 = 2.0;
 
 /// The three numbers of one axis and how far they are trusted; the covariance is the same for both
@@ -40,13 +39,13 @@ struct AxisState {
     acceleration: f64,
 }
 
-/// What one pen does, learned from its reports.
+/// Motion of one pen, learned from its reports.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PenPredictor {
     axes: [AxisState; 2],
     /// Covariance of place, speed and acceleration; symmetric.
     covariance: [[f64; 3]; 3],
-    /// When the last report came, microseconds, and where the pen was.
+    /// Time of the last report, in microseconds; its position is `last`.
     last_us: Option<u64>,
     last: DVec2,
     reports: u32,
@@ -121,13 +120,14 @@ impl PenPredictor {
         }
     }
 
-    /// Where the pen will be at a time, as shares of the tablet's area; `None` out of range.
+    /// Returns the predicted position at a time, in shares of the tablet's area; `None` out of
+    /// range.
     pub fn place_at(&self, t_us: u64) -> Option<DVec2> {
         self.last_us.map(|_| self.last + self.ahead(t_us))
     }
 
-    /// How far from its last report the pen will be at a time, as shares of the tablet's area; zero
-    /// where that is not known.
+    /// Returns the predicted movement since the last report, in shares of the tablet's area; zero
+    /// if it is unknown.
     pub fn ahead(&self, t_us: u64) -> DVec2 {
         let Some(last) = self.last_us.filter(|_| self.reports > FIRST) else { return DVec2::ZERO };
         let by = t_us.saturating_sub(last);

@@ -1,10 +1,10 @@
-//! How a pen's range of pressure is used, and whether a saturated pen was pressed that hard.
+//! Use of a pen's pressure range, and whether a saturated pen was pressed that hard.
 //!
-//! A report in contact is saturated where its pressure is the maximum that it is read with. Three
-//! things make that happen, and the raw counts tell them apart:
+//! A report in contact is saturated if its pressure is the maximum of the range with which it is
+//! read. There are three causes, and the raw counts distinguish them:
 //!
-//! * **The person presses that hard.** The pen then sends one count again and again, its own
-//!   highest: exactly the maximum, and none above it. It gets there through the counts below.
+//! * **The person presses that hard.** The pen then sends its highest count again and again:
+//!   exactly the maximum, and none above it. It gets there through the counts below.
 //! * **The maximum is too low.** Counts above it are sent; read by them, the pen would not be
 //!   saturated.
 //! * **The bytes are misread.** The pressure is at its maximum without ever having risen: it jumps
@@ -34,7 +34,7 @@ pub struct PressureUse {
     pub maximum: u32,
     /// The highest count in contact.
     pub highest: u32,
-    /// How often the maximum was reached from a lower count, within a contact.
+    /// Number of times that the maximum was reached from a lower count, within a contact.
     pub rises: u64,
     /// Those of them that came from a count near it.
     pub near: u64,
@@ -109,7 +109,7 @@ impl PressureUse {
         if self.contacts == 0 { 0.0 } else { self.saturated as f64 / self.contacts as f64 }
     }
 
-    /// What the figures say.
+    /// Returns the conclusion from the figures.
     pub fn saturation(&self) -> Saturation {
         let classes = self.classes.count_ones();
         let climbs = self.near * 2 >= self.rises + self.begun && classes >= LEAST_CLASSES;

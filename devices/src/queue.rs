@@ -2,7 +2,7 @@
 //! transition.
 //!
 //! Rules:
-//! * The consumer (the tick thread) never waits: [`Receiver::drain`] takes what is there.
+//! * The consumer (the tick thread) never waits: [`Receiver::drain`] takes the samples present.
 //! * A sample that differs from its device's last one in nothing but motion may be replaced by a
 //!   newer one while the channel is full. A **transition** (contact, proximity, buttons, the set of
 //!   hands) is kept, in order, until there is room; no motion is ever merged across one.
@@ -32,10 +32,10 @@ pub const COUNTED_DEVICES: usize = 512;
 /// a hand can.
 const MAX_PENDING: usize = 512;
 
-/// How long one blocked attempt lasts before the stop flag is looked at again.
+/// Duration of one blocked attempt before the stop flag is checked again.
 const WAIT_SLICE: Duration = Duration::from_millis(5);
 
-/// How long a dropped sender goes on trying to send the samples that it kept.
+/// Time for which a dropped sender keeps trying to send the samples that it kept.
 const DROP_PATIENCE: Duration = Duration::from_millis(500);
 
 /// A channel that holds at most `capacity` samples (at least 1). The factory makes one [`Sender`]
@@ -46,7 +46,7 @@ pub fn channel(capacity: usize) -> (SenderFactory, Receiver) {
     (SenderFactory { tx, stats: stats.clone() }, Receiver { rx, stats })
 }
 
-/// What happened to the samples of every device. Readable from any thread at any time.
+/// Counters of the samples of every device. Readable from any thread at any time.
 #[derive(Debug)]
 pub struct Stats {
     devices: Box<[Counters]>,
@@ -177,12 +177,12 @@ impl SenderFactory {
 pub struct Sender {
     tx: cc::Sender<Sample>,
     stats: Arc<Stats>,
-    /// The last sample pushed for each device, by which motion is told from a transition. A
-    /// handful: searched in line.
+    /// The last sample pushed for each device, to distinguish motion from a transition. There are
+    /// few, so the search is linear.
     last: Vec<Sample>,
     pending: VecDeque<Kept>,
     stop: Option<Arc<AtomicBool>>,
-    /// What the person set, for the few devices of this adaptor that it was set for.
+    /// The person's calibrations, for the few devices of this adaptor that have one.
     calibrations: Vec<(DeviceId, Calibration)>,
 }
 
@@ -193,7 +193,7 @@ struct Kept {
 }
 
 impl Sender {
-    /// Once the flag is set, no call waits any more. An adaptor passes its own stop flag.
+    /// Sets the flag after which no call waits any more. An adaptor passes its stop flag.
     pub fn stop_when(&mut self, flag: Arc<AtomicBool>) {
         self.stop = Some(flag);
     }

@@ -22,7 +22,7 @@ pub enum Parsed {
 /// Most facts in one report: seven frames of a Bluetooth pen and two halves of its pad.
 const MAX_BATCH: usize = 10;
 
-/// What one report says, in order. Some carry several frames of the pen, and its pad.
+/// Content of one report, in order. Some carry several frames of the pen, and its pad.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Batch {
     items: [Parsed; MAX_BATCH],
@@ -47,7 +47,7 @@ impl Batch {
 /// A pen in range. `None`: this report does not say, and the last value stays.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PenReport {
-    /// Which end of the pen, or which tool.
+    /// End of the pen, or another tool.
     pub tool: Option<Tool>,
     /// The tip switch; families without one leave contact to the pressure.
     pub tip: Option<bool>,
@@ -70,9 +70,9 @@ pub struct PenReport {
 pub struct PadReport {
     /// Pressed keys, bit 0 the first.
     pub keys: Option<u32>,
-    /// Which wheel, and its steps since the last report, clockwise positive.
+    /// Index of a wheel, and its steps since the last report, clockwise positive.
     pub turned: Option<(u8, i32)>,
-    /// Which ring or strip, and its place, 0 to 1; inner `None` when let go.
+    /// Index of a ring or strip, and the finger's position, 0 to 1; inner `None` when released.
     pub strip: Option<(u8, Option<f32>)>,
 }
 

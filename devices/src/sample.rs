@@ -47,7 +47,7 @@ pub enum Body {
     Pad(Pad),
 }
 
-/// What touches or hovers.
+/// Tool that touches or hovers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 pub enum Tool {
     /// The tip of a pen.
@@ -64,7 +64,7 @@ pub enum Tool {
 /// A pen over or on its surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Default)]
 pub struct Pen {
-    /// Which tool it is. It does not change within a visit.
+    /// Tool in use. It does not change within a visit.
     pub tool: Tool,
     /// The pen is in proximity: position is meaningful. `false` in the last sample of a visit.
     pub in_range: bool,
@@ -114,7 +114,7 @@ pub struct Pad {
 pub struct Hands {
     /// The tracker's own frame number.
     pub frame: i64,
-    /// How many entries of `hands` are used, at most [`MAX_HANDS`].
+    /// Number of used entries of `hands`, at most [`MAX_HANDS`].
     pub count: u8,
     /// The hands. Entries from `count` on have no meaning.
     pub hands: [Hand; MAX_HANDS],

@@ -13,7 +13,7 @@ use crate::pad_actions::ActionTable;
 pub struct Tablet {
     /// Brand and model as printed on it.
     pub name: String,
-    /// Where the facts come from.
+    /// Source of the facts.
     pub source: String,
     /// The active area.
     pub area: Area,
@@ -22,10 +22,10 @@ pub struct Tablet {
     /// The pad. Absent where the tablet has none.
     #[serde(default, skip_serializing_if = "PadFacts::is_empty")]
     pub pad: PadFacts,
-    /// What its keys, wheels and pen buttons do by default; see [`crate::pad_actions`].
+    /// Default actions of its keys, wheels and pen buttons; see [`crate::pad_actions`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub actions: Option<ActionTable>,
-    /// How the model appears on the bus. A model may have several firmwares.
+    /// Identities of the model on the bus. A model may have several firmwares.
     pub id: Vec<Id>,
 }
 
@@ -53,11 +53,11 @@ pub struct Area {
     pub max_y: i32,
 }
 
-/// What the pen can do.
+/// Capabilities of the pen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PenFacts {
-    /// Counts at full pressure; 0 where the pen has none.
+    /// Counts at full pressure; 0 for a pen without pressure.
     pub max_pressure: u32,
     /// Buttons on the barrel.
     pub buttons: u8,
@@ -66,7 +66,7 @@ pub struct PenFacts {
     pub max_distance: u32,
 }
 
-/// What the pad has.
+/// Controls of the pad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PadFacts {
@@ -76,7 +76,7 @@ pub struct PadFacts {
     /// Number of wheels, dials and rings.
     #[serde(default)]
     pub wheels: u8,
-    /// Where the pad's report keeps them, for families with several layouts.
+    /// Position of the controls in the pad's report, for families with several layouts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<PadLayout>,
 }
@@ -104,7 +104,7 @@ pub struct Id {
     /// [`StringIs`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub strings: Vec<String>,
-    /// Feature reports to send before the pen uses its own protocol, in hexadecimal.
+    /// Feature reports to send before the pen uses its vendor protocol, in hexadecimal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_feature: Vec<String>,
     /// Output reports to send, as `init_feature`.
@@ -113,7 +113,7 @@ pub struct Id {
     /// USB strings whose reading switches the tablet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub init_strings: Vec<u8>,
-    /// What this model does differently from its family.
+    /// Differences of this model from its family.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub quirks: Vec<Quirk>,
 }
@@ -124,7 +124,7 @@ pub struct Id {
 pub struct StringIs<'a> {
     /// Index of the USB string.
     pub index: u8,
-    /// What it must look like.
+    /// Pattern of the string.
     pub pattern: &'a str,
 }
 
@@ -135,7 +135,7 @@ impl<'a> StringIs<'a> {
         Some(StringIs { index: index.parse().ok()?, pattern })
     }
 
-    /// Whether a text fits the pattern.
+    /// Returns true if a text matches the pattern.
     pub fn matches(&self, text: &str) -> bool {
         let (pattern, start) =
             self.pattern.strip_prefix('^').map_or((self.pattern, false), |p| (p, true));
@@ -153,7 +153,7 @@ impl<'a> StringIs<'a> {
     }
 }
 
-/// The parsers: a closed set. What each reads stands in the file of `hid/` that names the family.
+/// The parsers: a closed set. The file of `hid/` that names the family documents its reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
@@ -236,7 +236,7 @@ impl Family {
     }
 }
 
-/// How one model differs from its family.
+/// Difference of one model from its family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quirk {
@@ -248,7 +248,7 @@ pub enum Quirk {
     NeedsNewPen,
     /// Height counts up toward the surface.
     HeightInverted,
-    /// Where the family has tilt, this model sends something else.
+    /// This model sends other data in place of the family's tilt.
     NoTilt,
 }
 
@@ -278,7 +278,7 @@ pub enum PadLayout {
 pub struct TabletError {
     /// Name of the file.
     pub file: String,
-    /// What is wrong with it.
+    /// The fault in it.
     pub what: String,
 }
 

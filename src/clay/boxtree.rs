@@ -1,6 +1,6 @@
-//! The tree of boxes: eight children a node, no pointers. What it spans lies in the order of a
-//! balanced k-d tree, so eight neighbours in that order are a good node, and a refit is one pass
-//! from the leaves up.
+//! A box tree with eight children a node and no pointers. The leaves follow the order of a balanced
+//! k-d tree, so eight neighbours in that order make a good node. A refit is one pass from the
+//! leaves up.
 //!
 //! One type serves both levels: over a page's triangles (a leaf is eight triangles) and over the
 //! clay's pages (a leaf is a page). Memory: 192 bytes for eight leaves, an eighth more for the
@@ -92,7 +92,7 @@ impl BoxRay {
         BoxRay { ready, near: shift(1.0), far: shift(-1.0) }
     }
 
-    /// Where the ray enters one box, if it does before `far`.
+    /// Returns the distance at which the ray enters one box, if that is before `far`.
     #[inline(always)]
     pub(super) fn enters(&self, lo: Vec3, hi: Vec3, far: f32) -> Option<f32> {
         let mut planes = Planes::EMPTY;
@@ -101,7 +101,8 @@ impl BoxRay {
         (self.slabs(&planes, far, &mut near) & 1 == 1).then_some(near[0])
     }
 
-    /// Which of eight boxes the ray meets before `far`, and where it enters each.
+    /// Returns a bit for each of eight boxes that the ray meets before `far`, and stores where it
+    /// enters each.
     #[inline(always)]
     fn slabs(&self, node: &Planes, far: f32, near: &mut [f32; 8]) -> u32 {
         let r = &self.ready;
@@ -155,7 +156,7 @@ impl BoxTree {
         self.nodes.resize(total, Planes::EMPTY);
     }
 
-    /// Makes room for so many leaves; the tree stays as it is.
+    /// Makes room for this many leaves; the tree stays as it is.
     pub(super) fn reserve(&mut self, leaves: usize) {
         // The levels above the lowest are an eighth of it together, and a few.
         let nodes = leaves.div_ceil(8) * 8 / 7 + LEVELS;
@@ -168,7 +169,7 @@ impl BoxTree {
         self.nodes.extend_from_slice(&other.nodes);
     }
 
-    /// Whether both have the same boxes.
+    /// Returns true if both trees have the same boxes.
     pub(super) fn same(&self, other: &BoxTree) -> bool {
         self.leaves == other.leaves
             && self.nodes.iter().map(|n| n.0).eq(other.nodes.iter().map(|n| n.0))
@@ -182,7 +183,7 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Planes>()
     }
 
-    /// First node of each level, lowest first, and how many levels there are.
+    /// First node of each level, lowest first, and the number of levels.
     fn levels(&self) -> ([usize; LEVELS], usize) {
         let mut starts = [0; LEVELS];
         let mut at = 0;

@@ -36,7 +36,7 @@ pub struct Clay {
     pub(super) stale: Stale,
     spines: SpinePool,
     pub(super) revision: u64,
-    /// Which object this is, where several took each other's place.
+    /// The identifier of the object, where several replaced each other.
     pub(super) object_id: u32,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
@@ -68,7 +68,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What the clay takes at rest: all but undo.
+    /// Returns the bytes that the clay takes at rest: all but undo.
     pub fn at_rest(&self) -> usize {
         self.pages + self.topology + self.top + self.pool
     }
@@ -141,17 +141,17 @@ impl Clay {
         self.pool.supply = supply;
     }
 
-    /// What was odd about the input, in words.
+    /// Returns the warnings about the input.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// How many vertices the clay has.
+    /// Returns the number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.vertices
     }
 
-    /// How many triangles the clay has.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles
     }
@@ -161,13 +161,13 @@ impl Clay {
         self.revision
     }
 
-    /// Which object this is, where several took each other's place: a page's number and revision
-    /// name it within one of them.
+    /// Returns the identifier of the object, where several replaced each other: a page's number and
+    /// revision are unique within one object.
     pub fn object_id(&self) -> u32 {
         self.object_id
     }
 
-    /// Says which object the clay is, see [`Clay::object_id`].
+    /// Sets the identifier of the object, see [`Clay::object_id`].
     pub fn set_object_id(&mut self, object_id: u32) {
         self.object_id = object_id;
     }
@@ -177,22 +177,22 @@ impl Clay {
         self.top.bounds()
     }
 
-    /// How many pages there are, pages without vertices included.
+    /// Returns the number of pages, including pages without vertices.
     pub fn page_count(&self) -> usize {
         self.pages.len()
     }
 
     /// # Panics
-    /// When there is no such page.
+    /// Panics if there is no such page.
     pub fn page(&self, index: u32) -> &Arc<Page> {
         &self.pages[index as usize]
     }
 
-    /// A page as it was when the open step began; as it is, where the step has not touched it or
-    /// has changed its topology.
+    /// Returns a page as it was when the open step began. Returns the current page if the step has
+    /// not touched it or has changed its topology.
     ///
     /// # Panics
-    /// When there is no such page.
+    /// Panics if there is no such page.
     pub fn before(&self, index: u32) -> &Arc<Page> {
         let now = &self.pages[index as usize];
         self.history
@@ -226,8 +226,8 @@ impl Clay {
         }
     }
 
-    /// The greatest number of a face set; 0: there is none. Costs a look at each chunk of
-    /// pages, and at each page of those that changed since the last snapshot.
+    /// Returns the greatest number of a face set; 0 if there is none. Visits each chunk of pages,
+    /// and each page that changed since the last snapshot.
     pub fn highest_set(&self) -> u16 {
         self.spines.highest_set(&self.pages, &self.stale)
     }
@@ -288,7 +288,7 @@ impl Clay {
         self.history.end()
     }
 
-    /// Says who changes the clay from now on, for steps of several people.
+    /// Sets the author of the next changes, for steps of several people.
     pub fn set_author(&mut self, author: Author) {
         self.history.authors.now = author;
     }
@@ -302,24 +302,25 @@ impl Clay {
         self.history.end_of_people(ended, |i, was| is_more_than_surface(was, &pages[i as usize]))
     }
 
-    /// Which pages the open step of several people has changed so far, and somebody whose it is.
+    /// Returns the pages that the open step has changed so far, and one of the people it belongs
+    /// to.
     pub fn open_step(&self) -> Option<(StepPages, u8)> {
         let whole = |i: u32, was: &Page| is_more_than_surface(was, &self.pages[i as usize]);
         self.history.open_pages(whole).zip(self.history.authors.first())
     }
 
-    /// Whether a person changes the clay in the open step.
+    /// Returns true if the open step includes changes of a person.
     pub fn is_step_of(&self, person: u8) -> bool {
         self.history.is_open() && self.history.authors.holds(person)
     }
 
-    /// Which pages a step changed; `None`: there is no such step.
+    /// Returns the pages that a step changed; `None` if there is no such step.
     pub fn step_pages(&self, place: StepPlace) -> Option<StepPages> {
         self.history.pages_of(place)
     }
 
-    /// Makes a step the newest of its kind. Only for one that shares no page with those that came
-    /// after it ([`StepPages::shares`]): then the clay is the same in either order.
+    /// Makes a step the newest of its kind. The step must share no page with the steps after it
+    /// ([`StepPages::shares`]): then the clay is the same in either order.
     pub fn raise_step(&mut self, place: StepPlace) {
         self.history.raise(place);
     }
@@ -329,20 +330,20 @@ impl Clay {
         self.history.forget_one_redo(k);
     }
 
-    /// Whether an undo step is open.
+    /// Returns true if an undo step is open.
     pub fn is_in_step(&self) -> bool {
         self.history.is_open()
     }
 
-    /// Takes back the newest step. False when there is none. An open step is closed before, but for
-    /// one of several people: that shares no page with what is taken back.
+    /// Undoes the newest step. Returns false if there is none. Closes an open step first, except
+    /// one of several people: that shares no page with the undone step.
     pub fn undo(&mut self) -> bool {
         self.end_alone();
         self.travel(|history, swap| history.undo(swap))
     }
 
-    /// Does the step again that was taken back last. False when there is none. An open step is as
-    /// with [`Clay::undo`].
+    /// Redoes the step undone last. Returns false if there is none. Treats an open step as
+    /// [`Clay::undo`] does.
     pub fn redo(&mut self) -> bool {
         self.end_alone();
         self.travel(|history, swap| history.redo(swap))
@@ -381,7 +382,7 @@ impl Clay {
         done
     }
 
-    /// What was taken back can no longer be done again.
+    /// Forgets the steps that can be redone.
     pub fn forget_redo(&mut self) {
         self.history.forget_redo();
     }
@@ -391,7 +392,7 @@ impl Clay {
         self.history.forget_oldest();
     }
 
-    /// Nothing can be taken back or done again, and no step is open.
+    /// Forgets all steps, so that nothing can be undone or redone and no step is open.
     pub fn forget_steps(&mut self) {
         self.history.forget();
     }
@@ -437,7 +438,7 @@ impl Clay {
         self.history.grow(count);
         self.stale.grow(count);
         if count > self.top.leaves() {
-            // Room for more than one, or each new page would build the tree anew.
+            // Room for more than one, or each new page would rebuild the tree.
             self.top.reset((count + count / 8).next_multiple_of(64));
             for (i, page) in self.pages.iter().enumerate() {
                 self.top.set_leaf(i, page.lo, page.hi);
@@ -446,7 +447,7 @@ impl Clay {
         }
     }
 
-    /// Steps that can be taken back.
+    /// Returns the number of steps that can be undone.
     pub fn undo_steps(&self) -> usize {
         self.history.undo_steps()
     }
@@ -489,12 +490,12 @@ impl Clay {
         hash(&|i| &self.pages[i as usize], self.totals())
     }
 
-    /// What the pages weigh, bytes: the same in every run, unlike [`Clay::memory`].
+    /// Returns the size of the pages in bytes: the same in every run, unlike [`Clay::memory`].
     pub fn weight(&self) -> usize {
         self.pages.iter().map(|p| p.weight() + p.topology.bytes()).sum()
     }
 
-    /// What the clay takes now, bytes by part. Costs a little for each page.
+    /// Returns the current size of the clay in bytes, by part. Visits each page.
     pub fn memory(&self) -> Memory {
         Memory {
             pages: self.pages.iter().map(|p| p.bytes()).sum(),
@@ -506,8 +507,8 @@ impl Clay {
     }
 }
 
-/// Whether a page differs from what it was by more than the surface: by its topology, or by the
-/// list of layers.
+/// Returns true if a page differs from its former state by more than the surface: by its topology,
+/// or by the list of layers.
 fn is_more_than_surface(was: &Page, now: &Page) -> bool {
     let stack = |page: &Page| page.layers().and_then(|l| l.stack.as_ref().map(Arc::as_ptr));
     !Arc::ptr_eq(&was.topology, &now.topology) || stack(was) != stack(now)

@@ -30,14 +30,14 @@ use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 /// Rows below which one thread does a dab alone: waking another costs more than it helps.
 const PARALLEL: usize = 6 * 1024;
 
-/// What a dab did.
+/// The result of a dab.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DabReport {
     /// Vertices that the kernel counted.
     pub affected: usize,
     /// Vertices with a new position, mask, colour or face set.
     pub moved: usize,
-    /// Pages written anew.
+    /// The number of pages rewritten.
     pub pages: usize,
 }
 
@@ -78,7 +78,7 @@ trait PageKernel: Sync {
 /// A page before a dab.
 struct Was<'a> {
     old: &'a Page,
-    /// When the open step began.
+    /// The page when the open step began.
     before: &'a Page,
     stack: Option<&'a LayerStack>,
 }
@@ -321,8 +321,8 @@ fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>
     slot.any |= if slot.layers.is_some() { LAYERED } else { 0 };
 }
 
-/// Gives the new page of slot `s` its face sets: those of before, and where marks say so the new
-/// ones, at home and in the halo.
+/// Gives the new page of slot `s` its face sets: the former ones, and the new ones where marks are
+/// set, for owned and halo vertices.
 fn regroup(buffers: &mut DabBuffers, s: usize, pages: &[Arc<Page>], pool: &mut Pool) {
     let DabBuffers { slots, slot_of, .. } = buffers;
     let old = &pages[slots[s].index as usize];

@@ -32,7 +32,7 @@ pub struct PhaseTimes {
 pub(super) struct PageOutput {
     pub(super) index: u32,
     pub(super) page: Arc<Page>,
-    /// One an own vertex: [`MOVED`](super::normals::MOVED) and so on.
+    /// One for each owned vertex: [`MOVED`](super::normals::MOVED) and so on.
     pub(super) marks: Vec<u8>,
     /// All marks, joined, those of the halo's homes too.
     pub(super) any: u8,
@@ -42,16 +42,16 @@ pub(super) struct PageOutput {
     pub(super) affected: usize,
     /// The page holds the old page's normals and tree already.
     pub(super) complete: bool,
-    /// The new face sets, one an own vertex, where marks say [`GROUPED`](super::normals::GROUPED);
-    /// empty where none do.
+    /// The new face sets, one for each owned vertex, valid where marks contain
+    /// [`GROUPED`](super::normals::GROUPED); empty where none do.
     pub(super) sets: Vec<u16>,
-    /// What the page has of the layers from now on; `None`: what the old page has.
+    /// The new layers of the page; `None` keeps the old page's.
     pub(super) layers: Option<Option<Arc<PageLayers>>>,
     pub(super) normals_ns: u64,
     pub(super) bvh_ns: u64,
 }
 
-/// A page that a dab writes: what only its own task touches.
+/// The data of a page that a dab writes, touched only by the page's task.
 #[derive(Debug)]
 pub(super) struct PageTask {
     /// Parts of the halo to take over.
@@ -94,7 +94,7 @@ pub(super) struct DabBuffers {
     pub(super) spare: Vec<(PageOutput, PageTask)>,
     /// For each page its slot in this dab plus one, or 0.
     pub(super) slot_of: Vec<u32>,
-    /// What a spare slot holds: making an empty page would allocate.
+    /// The page in a spare slot: making an empty page would allocate.
     pub(super) blank: Arc<Page>,
     /// Rows that a new slot gets room for.
     pub(super) rows: usize,
@@ -130,7 +130,7 @@ impl DabBuffers {
         (slot, side)
     }
 
-    /// Makes room for so many pages in the clay, and for dabs that write many of them.
+    /// Makes room for this many pages in the clay, and for dabs that write many of them.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.slot_of.reserve(pages.saturating_sub(self.slot_of.len()));
         self.slots.reserve(256);

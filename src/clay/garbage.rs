@@ -36,7 +36,7 @@ pub trait CollectGarbage: Send + Sync + fmt::Debug {
     fn collect(&self, garbage: Garbage);
 }
 
-/// Where garbage goes. The default frees it at once, on the thread that discards it.
+/// The destination of garbage. The default frees it at once, on the thread that discards it.
 #[derive(Debug, Clone, Default)]
 pub struct GarbageSink(Option<Arc<dyn CollectGarbage>>);
 

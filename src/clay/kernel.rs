@@ -9,28 +9,29 @@ use super::normals::{GROUPED, MOVED, PAINTED};
 use super::page::{BLOCK, BREAK, Page, Points, Ring};
 use sculptd_geometry::simd::cotangents;
 
-/// What a brush does to one page. Called once for each page that the dab may reach, on any thread,
-/// in any order; it sees the state before the dab everywhere, also of neighbours in other pages, so
-/// that the order cannot show.
+/// The effect of a brush on one page. Called once for each page that the dab may reach, on any
+/// thread, in any order. It reads the state before the dab everywhere, also of neighbours in other
+/// pages, so that the order does not affect the result.
 pub trait Kernel: Sync {
-    /// Whether it changes hidden vertices too; else what it writes there is dropped.
+    /// True if it changes hidden vertices too; otherwise its writes to them are dropped.
     const CHANGES_HIDDEN: bool = false;
-    /// Whether it sees each page, halo included, as the open undo step found it: for what goes over
-    /// a surface in portions and looks at neighbours, which may have been written before.
+    /// True if it reads each page, halo included, as it was when the open undo step began. For
+    /// kernels that process a surface in portions and read neighbours, which may be written
+    /// already.
     const SEES_START: bool = false;
 
-    /// Changes the own vertices of one page through `out`.
+    /// Changes the owned vertices of one page through `out`.
     fn page(&self, page: &PageIn<'_>, out: &mut PageOut<'_>);
 }
 
-/// A page as a kernel reads it: the state before the dab, halo included. Own vertices are
+/// A page as a kernel reads it: the state before the dab, halo included. Owned vertices are
 /// `0..own()`.
 #[derive(Debug, Clone, Copy)]
 pub struct PageIn<'a> {
     page: &'a Page,
     before: &'a Page,
     number: u32,
-    /// Whether a layer is active, and the sum of the page's layers.
+    /// True if a layer is active, and the sum of the page's layers.
     layers: (bool, Option<LayerSum<'a>>),
     /// Own, then halo.
     pub positions: Points<'a>,
@@ -57,12 +58,12 @@ impl<'a> PageIn<'a> {
         }
     }
 
-    /// How many own vertices the page has; higher local indices are halo.
+    /// Returns the number of owned vertices; higher local indices are halo.
     pub fn own(&self) -> usize {
         self.page.topology.own
     }
 
-    /// Which page of the clay it is.
+    /// Returns the page's number in the clay.
     pub fn number(&self) -> u32 {
         self.number
     }
@@ -105,8 +106,9 @@ impl<'a> PageIn<'a> {
         self.page.colour(local)
     }
 
-    /// Where the vertex was when the stroke (the open undo step) began; own or halo. With
-    /// [`PageIn::normal_before`] this is all that "displacement so far" brushes need.
+    /// Returns the position of an owned or halo vertex at the start of the stroke (the open undo
+    /// step). Brushes that depend on the displacement so far need only this and
+    /// [`PageIn::normal_before`].
     #[inline(always)]
     pub fn before(&self, local: usize) -> Vec3 {
         self.before.point(local)
@@ -130,12 +132,13 @@ impl<'a> PageIn<'a> {
         self.before.colour(local)
     }
 
-    /// What the page has of its object's layers, as it was when the open step began.
+    /// Returns the page's layer data as it was when the open step began.
     pub fn layers(&self) -> Option<&'a PageLayers> {
         self.page.layers()
     }
 
-    /// Where an own vertex would be without the active layer. `None`: the base is active.
+    /// Returns the position of an owned vertex without the active layer; `None` if the base is
+    /// active.
     #[inline(always)]
     pub fn below_active_layer(&self, own: usize) -> Option<Vec3> {
         let (active, sum) = &self.layers;
@@ -149,45 +152,45 @@ impl<'a> PageIn<'a> {
         self.page.topology.ids[own]
     }
 
-    /// The face set of an own or a halo vertex; 0: none.
+    /// Returns the face set of an owned or halo vertex; 0: none.
     #[inline(always)]
     pub fn face_set(&self, local: usize) -> u16 {
         self.page.face_set(local)
     }
 
-    /// The face set when the open undo step began, of an own or a halo vertex; 0: none.
+    /// Returns the face set of an owned or halo vertex when the open undo step began; 0: none.
     #[inline(always)]
     pub fn face_set_before(&self, local: usize) -> u16 {
         self.before.face_set(local)
     }
 
-    /// Whether an own vertex lies on the border of the surface, or on a non-manifold edge.
+    /// Returns true if an owned vertex is on the border of the surface, or on a non-manifold edge.
     #[inline(always)]
     pub fn is_border(&self, own: usize) -> bool {
         self.page.topology.kinds[own] != Ring::Closed
     }
 
-    /// Whether an own vertex lies on the border of the surface, all its triangles in one open fan:
-    /// its ring then begins and ends on the border.
+    /// Returns true if an owned vertex is on the border of the surface with all its triangles in
+    /// one open fan: its ring then begins and ends on the border.
     #[inline(always)]
     pub fn is_open(&self, own: usize) -> bool {
         self.page.topology.kinds[own] == Ring::Open
     }
 
-    /// Whether all is regular about an own vertex: one closed fan.
+    /// Returns true if the triangles of an owned vertex form one closed fan.
     #[inline(always)]
     pub fn is_closed(&self, own: usize) -> bool {
         self.page.topology.kinds[own] == Ring::Closed
     }
 
-    /// Neighbours of an own vertex, counter-clockwise, as local indices. About a non-manifold
-    /// vertex one may come twice.
+    /// Returns the neighbours of an owned vertex, counter-clockwise, as local indices. Around a
+    /// non-manifold vertex a neighbour may appear twice.
     #[inline(always)]
     pub fn ring(&self, own: usize) -> impl ExactSizeIterator<Item = u16> + 'a {
         self.page.topology.ring(own).iter().map(|k| k & !BREAK)
     }
 
-    /// Cotangent-weighted sums about an own vertex with a closed ring of six: see
+    /// Returns the cotangent-weighted sums around an owned vertex with a closed ring of six: see
     /// [`cotangents::about`].
     #[inline(always)]
     pub fn cotangents(&self, own: usize) -> Option<Vec4> {
@@ -205,7 +208,7 @@ impl<'a> PageIn<'a> {
         self.page.topology.hexes.len()
     }
 
-    /// The two other corners of each triangle about an own vertex, counter-clockwise.
+    /// Returns the two other corners of each triangle around an owned vertex, counter-clockwise.
     #[inline(always)]
     pub fn wedges(&self, own: usize) -> impl Iterator<Item = [u16; 2]> + 'a {
         let t = &self.page.topology;
@@ -219,7 +222,7 @@ impl<'a> PageIn<'a> {
     }
 }
 
-/// Where a kernel writes. Each vertex at most once a dab.
+/// The output of a kernel. A kernel writes each vertex at most once a dab.
 #[derive(Debug)]
 pub struct PageOut<'a> {
     pub(super) points: &'a mut [Vec4],
@@ -228,7 +231,7 @@ pub struct PageOut<'a> {
     /// See [`super::dab_buffers::PageOutput::sets`].
     pub(super) sets: &'a mut Vec<u16>,
     pub(super) affected: usize,
-    /// What the page has of the layers from now on; `None`: what it has.
+    /// The new layer data of the page; `None` keeps the current one.
     pub(super) layers: Option<Option<Arc<PageLayers>>>,
 }
 
@@ -290,8 +293,8 @@ impl PageOut<'_> {
         self.marks[v] |= GROUPED;
     }
 
-    /// Adds `by`, one a vertex, to the own vertices from `first` on. A sum that is not finite, or
-    /// the same as before, changes nothing.
+    /// Adds `by`, one per vertex, to the owned vertices from `first` on. A sum that is not finite,
+    /// or that equals the old value, changes nothing.
     #[inline(always)]
     pub fn push_block(&mut self, first: usize, by: &[Vec4]) {
         let rows = &mut self.points[first..first + by.len()];
@@ -311,9 +314,9 @@ impl PageOut<'_> {
         }
     }
 
-    /// Adds `offset * weights[v]` to every own vertex: the way for brushes whose offset has one
-    /// direction. A sum that is not finite changes nothing. `weights`: one an own vertex, 0 where
-    /// nothing is to happen.
+    /// Adds `offset * weights[v]` to every owned vertex, for brushes whose offset has one
+    /// direction. A sum that is not finite changes nothing. `weights` has one value per owned
+    /// vertex, 0 for no change.
     #[inline(always)]
     pub fn push_all(&mut self, offset: Vec3, weights: &[f32]) {
         let offset = offset.extend(0.0);

@@ -6,7 +6,7 @@
 //! Laws kept here:
 //! * The cost of a change follows the pages that it reaches, never the mesh: [`Clay::dab`],
 //!   normals, trees, undo and [`Snapshot`] alike.
-//! * Whoever holds a page may read it for ever: a page is written anew, never changed.
+//! * A page is immutable once shared: a change writes a new page, so a reader may keep its page.
 //! * Same input, same bits, with any number of [`Workers`].
 //! * No clock, no IO, no randomness, no threads but those of [`Workers`]. Memory that is no longer
 //!   needed goes to the owner's [`GarbageSink`], and pages for changing topology come from its

@@ -106,7 +106,7 @@ impl LiveMap {
             same &= Arc::ptr_eq(old.topology(), page.topology());
             for (v, &id) in page.topology().ids.iter().enumerate() {
                 let to = page.point(v);
-                // After cuts numbers have gaps: another topology, which is told below.
+                // After cuts, numbers have gaps: another topology, which is reported below.
                 let Some(row) = self.ranks.find(id) else { continue };
                 if self.mesh.positions.get(row as usize).is_some_and(|at| *at != to) {
                     moved.push((row, to));
@@ -224,7 +224,7 @@ impl LiveMap {
         &self.values
     }
 
-    /// Whether each value is of an older state of the clay.
+    /// Returns a flag for each value, true if it was measured on an older state of the clay.
     pub fn is_stale(&self) -> &[bool] {
         &self.is_stale
     }

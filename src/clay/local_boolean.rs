@@ -118,7 +118,7 @@ impl ToolSurroundings {
         out
     }
 
-    /// What goes and what comes; None unless both have the same border.
+    /// Returns the triangles to remove and to add; `None` unless both have the same border.
     fn change(
         &self,
         a: &Arrangement,
@@ -198,7 +198,7 @@ impl ToolSurroundings {
     }
 }
 
-/// How often the clay goes around a point.
+/// Returns the winding number of the clay around a point.
 fn winding(clay: &Snapshot, o: DVec3) -> i32 {
     let (lo, hi) = clay.bounds();
     let (lo, hi) = (lo.as_dvec3(), hi.as_dvec3());

@@ -1,8 +1,8 @@
 //! Masks by what is measured over the whole surface: where a part is thin, and where it is
 //! sheltered from light.
 //!
-//! A mask is measured on a snapshot, away from the tick, and then applied page by page. It adds to
-//! the mask that is there, as that of the hollows does.
+//! A mask is measured on a snapshot, away from the tick, and then applied page by page. Like the
+//! cavity mask, it adds to the existing mask.
 
 use std::sync::Arc;
 
@@ -24,17 +24,17 @@ const BLOCK: usize = 1 << 16;
 /// The border is soft: over this share of the measure the mask goes from free to protected.
 const SOFT: f32 = 0.25;
 
-/// What a mask is made from.
+/// The measure that a mask is made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MaskMeasure {
-    /// Protects what is at most so thick (clay units), by one ray along each vertex's normal.
+    /// Masks parts of at most this thickness (clay units), by one ray along each vertex's normal.
     Thin(f32),
-    /// Protects where at least this share of the light of an even sky is blocked by the object
-    /// itself, 0 to 1: ambient occlusion.
+    /// Masks where the object blocks at least this share of the light of an even sky, 0 to 1:
+    /// ambient occlusion.
     Occlusion(f32),
 }
 
-/// Why no mask was made.
+/// The reason why no mask was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MeasuredMaskError {
     /// Nothing would be protected by half or more.
@@ -50,7 +50,8 @@ pub enum MeasuredMaskError {
 pub struct MeasuredMask {
     /// Of the clay that it was measured on.
     pub revision: u64,
-    /// For each page with something to protect the mask of its own vertices, 0 to 255; ascending.
+    /// The mask of the owned vertices, 0 to 255, for each page with something to protect;
+    /// ascending.
     pub pages: Arc<Vec<(u32, Vec<u8>)>>,
 }
 
@@ -58,7 +59,7 @@ impl MeasuredMask {
     /// Measures a snapshot on the current rayon pool.
     ///
     /// # Errors
-    /// Where nothing would be protected, or the job was cancelled.
+    /// Returns an error if nothing would be protected, or the job was cancelled.
     pub fn new(
         snapshot: &Snapshot,
         by: MaskMeasure,
@@ -77,7 +78,7 @@ impl MeasuredMask {
         self.pages.iter().flat_map(|p| &p.1).filter(|m| **m >= 128).count() as u64
     }
 
-    /// Whether it was measured on this clay as it is. Costs a look at each page.
+    /// Returns true if it was measured on the clay's current state. Visits each page.
     pub fn fits(&self, clay: &Clay) -> bool {
         let fits = |(page, mask): &(u32, Vec<u8>)| {
             (*page as usize) < clay.page_count() && clay.page(*page).own() == mask.len()
@@ -103,7 +104,8 @@ fn stored(share: f32) -> u8 {
     (share.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
-/// Pages by number, each with `of` its own vertices; those with nothing to protect are left out.
+/// Returns each page's number with `of` its owned vertices; pages with nothing to protect are left
+/// out.
 fn by_page(
     snapshot: &Snapshot,
     job: &Job,
@@ -131,7 +133,7 @@ fn thin(snapshot: &Snapshot, below: f32, job: &Job) -> Result<Vec<(u32, Vec<u8>)
     let (ranks, values) = (snapshot.ranks(), map.values());
     by_page(snapshot, job, |page, v| {
         let value = ranks.find(page.topology().ids[v]).map_or(f32::NAN, |r| values[r as usize]);
-        // Where no wall was found there is no thickness.
+        // Without a wall there is no thickness.
         if value.is_nan() { 0 } else { stored(1.0 - (value / below - 1.0) / SOFT) }
     })
 }

@@ -32,7 +32,7 @@ pub const MAX_TRIANGLES: u64 = 1 << 26;
 /// to a hundredth.
 const ROUNDS: usize = 24;
 
-/// Why another level cannot be shown.
+/// The reason why another level cannot be shown.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum LevelError {
     /// There is no coarser level.
@@ -68,7 +68,7 @@ impl From<TriMesh> for Level {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Lower {
     left: Level,
-    /// Where the vertices of the next finer one were when it was put in place from this.
+    /// The vertices of the next finer level when it was built from this one.
     came: Vec<Vec3>,
 }
 
@@ -79,7 +79,7 @@ struct Upper {
     positions: Vec<Vec3>,
     colours: Option<Vec<[u8; 4]>>,
     masks: Option<Vec<f32>>,
-    /// What the next coarser one was then.
+    /// The next coarser level at that time.
     base: Vec<Vec3>,
     base_colours: Option<Vec<[u8; 4]>>,
     base_masks: Option<Vec<f32>>,
@@ -97,18 +97,18 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Which level is shown, 0 the coarsest, and how many there are.
+    /// Returns the current level, 0 the coarsest, and the number of levels.
     pub fn at(&self) -> (usize, usize) {
         (self.below.len(), self.below.len() + 1 + self.above.len())
     }
 
-    /// Whether the clay is still of the triangles that it was shown with.
+    /// Returns true if the clay still has the triangles that it was shown with.
     pub fn fits(&self, now: &TriMesh) -> bool {
         self.shape == shape(now)
     }
 
-    /// One level finer: what was sculpted there, or as yet nothing. `levels`: those that came with
-    /// `now`; a mesh without any is its own lowest.
+    /// Returns the next finer level, with the details sculpted there, if any. `levels` are those
+    /// that came with `now`; a mesh without any is its lowest level.
     pub fn up(
         levels: Option<&Levels>,
         now: &Level,
@@ -204,7 +204,7 @@ struct Painted<'a, T> {
     now: Option<&'a [T]>,
     base: Option<&'a [T]>,
     kept: Option<&'a [T]>,
-    /// What stands where nothing was painted.
+    /// The value where nothing was painted.
     free: T,
 }
 
@@ -240,7 +240,7 @@ impl<T: Copy + PartialEq> Painted<'_, T> {
 /// A place of a vertex and the frame of the surface there.
 type Frame = (DVec3, [DVec3; 3]);
 
-/// A point as it lies in one frame, in another.
+/// Transforms a point from one frame to another.
 fn carried(p: Vec3, from: &Frame, to: &Frame) -> Vec3 {
     let off = p.as_dvec3() - from.0;
     let [x, y, z] = from.1.map(|axis| axis.dot(off));

@@ -120,9 +120,9 @@ pub(super) fn all(page: &mut Page) {
     }
 }
 
-/// Writes all normals of a page whose vertices in the blocks `touched` moved: the own ones that
-/// they bear on anew, all else from `old`. Marks own vertices whose normal is another now
-/// [`TURNED`].
+/// Updates the normals of a page whose vertices in the blocks `touched` moved: recomputes the
+/// affected owned ones, and copies the others from `old`. Marks owned vertices whose normal changed
+/// as [`TURNED`].
 #[inline(always)]
 pub(super) fn around_moved<W: Wide>(
     w: W,

@@ -24,7 +24,7 @@ use sculptd_geometry::simd::rings::Hexes;
 /// The bit of a ring's entry that says: between the entry before and this one there is no triangle.
 pub const BREAK: u16 = 0x8000;
 
-/// Vertices, own and halo in a row, that are told apart no further when what moved is looked for.
+/// The number of vertices in a block, owned and halo in a row: the resolution of tracking movement.
 pub(super) const BLOCK: usize = 32;
 
 /// The bit of the block that a row is in. All beyond the last bit share it.
@@ -33,13 +33,13 @@ pub(super) fn block_of(row: usize) -> u32 {
     1 << (row / BLOCK).min(31)
 }
 
-/// How the triangles lie about a vertex.
+/// The arrangement of the triangles around a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Ring {
     /// One closed fan: the last neighbour and the first make a triangle too.
     Closed,
-    /// One open fan: the vertex lies on the border of the surface. Also a vertex without triangles.
+    /// One open fan: the vertex is on the border of the surface. Also a vertex without triangles.
     Open,
     /// Several fans, parted by [`BREAK`]; a closed one among them repeats its first neighbour.
     ManyFans,
@@ -54,12 +54,12 @@ pub struct Neighbour {
     pub first: u32,
 }
 
-/// What stands still while a mesh is only displaced.
+/// The part of a page that stays fixed while the mesh is only displaced.
 #[derive(Debug, Default, Clone, Serialize, Deserialize)]
 pub struct PageTopology {
-    /// How many vertices are the page's own.
+    /// The number of owned vertices.
     pub own: usize,
-    /// The own vertices' numbers in the mesh that was loaded.
+    /// The owned vertices' numbers in the mesh that was loaded.
     pub ids: Vec<u32>,
     /// Local corners, counter-clockwise seen from outside. In the order of the page's tree: eight
     /// make a leaf.
@@ -74,20 +74,20 @@ pub struct PageTopology {
     pub ring_starts: Vec<u16>,
     /// The rings' local indices, with [`BREAK`] bits.
     pub rings: Vec<u16>,
-    /// How the triangles lie about each own vertex.
+    /// The arrangement of the triangles around each owned vertex.
     pub kinds: Vec<Ring>,
     /// The vertices of each leaf of the page's tree. This and what comes after follows from the
     /// rest when a page is made or read.
     #[serde(skip)]
     pub leaves: Leaves,
-    /// For each 32 own vertices the blocks that they and their rings lie in.
+    /// The blocks of each 32 owned vertices and their rings.
     #[serde(skip)]
     pub ring_blocks: Vec<u32>,
-    /// For each eight leaves of the page's tree the blocks that their vertices lie in.
+    /// The blocks of the vertices of each eight leaves of the page's tree.
     #[serde(skip)]
     pub leaf_blocks: Vec<u32>,
-    /// Own vertices whose triangles are all in other pages, or that have none: the page's tree does
-    /// not know them.
+    /// Owned vertices whose triangles are all in other pages, or that have none: they are not in
+    /// the page's tree.
     #[serde(skip)]
     pub loose: Vec<u16>,
     /// Local index of each halo vertex in its home page.
@@ -213,18 +213,18 @@ impl Points<'_> {
         self.0[i].truncate()
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are no rows.
+    /// Returns true if there are no rows.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
 
-/// What a dab may change, and the topology it belongs to.
+/// The part of a page that a dab may change, and the topology it belongs to.
 #[derive(Debug, Default)]
 pub struct Page {
     pub(super) topology: Arc<PageTopology>,
@@ -275,7 +275,7 @@ impl Page {
         self.sets.clone_from(&other.sets);
     }
 
-    /// What the page has of its object's layers; `None`: no layer changes it.
+    /// Returns the page's layer data; `None` if no layer changes it.
     pub fn layers(&self) -> Option<&PageLayers> {
         self.layers.as_deref()
     }
@@ -291,12 +291,12 @@ impl Page {
         self.layers = layers.shared();
     }
 
-    /// What stands still while the page is only displaced.
+    /// Returns the part that stays fixed while the page is only displaced.
     pub fn topology(&self) -> &Arc<PageTopology> {
         &self.topology
     }
 
-    /// Whether an own vertex lies on a border, or its ring is not one closed fan.
+    /// Returns true if an owned vertex is on a border, or its ring is not one closed fan.
     pub fn is_border(&self, own: usize) -> bool {
         self.topology.kinds[own] != Ring::Closed
     }
@@ -333,7 +333,7 @@ impl Page {
         self.points[local].truncate()
     }
 
-    /// The unit normal of an own or a halo vertex.
+    /// Returns the unit normal of an owned or halo vertex.
     #[inline]
     pub fn normal(&self, local: usize) -> Vec3 {
         self.normals[local].truncate()
@@ -400,8 +400,8 @@ impl Page {
         (self.lo, self.hi) = (lo, hi);
     }
 
-    /// What undo counts for the page, bytes: the same however much room its vectors happen to have,
-    /// for a replay must forget the same steps.
+    /// Returns the page's size in the undo budget, in bytes. It does not depend on the capacity of
+    /// the page's vectors, because a replay must forget the same steps.
     pub(super) fn weight(&self) -> usize {
         // The tree: 192 bytes for 64 triangles, and a little for the nodes above.
         size_of::<Page>()
@@ -432,19 +432,19 @@ impl Page {
         self.sets().map_or(0, |s| s.highest)
     }
 
-    /// The number of the set and [`HIDDEN`], of an own or a halo vertex.
+    /// Returns the number of the set and [`HIDDEN`], of an owned or halo vertex.
     #[inline]
     pub(crate) fn set_bits(&self, local: usize) -> u16 {
         self.sets().map_or(0, |s| s.rows[local])
     }
 
-    /// The set of an own or a halo vertex; 0: none.
+    /// Returns the set of an owned or halo vertex; 0: none.
     #[inline]
     pub fn face_set(&self, local: usize) -> u16 {
         self.set_bits(local) & !HIDDEN
     }
 
-    /// Whether an own or a halo vertex is hidden.
+    /// Returns true if an owned or halo vertex is hidden.
     #[inline]
     pub fn is_hidden(&self, local: usize) -> bool {
         self.set_bits(local) & HIDDEN != 0
@@ -456,7 +456,7 @@ impl Page {
         self.sets().filter(|s| s.any_hidden).map(|s| s.rows.as_slice())
     }
 
-    /// Whether all corners of a triangle are hidden.
+    /// Returns true if all corners of a triangle are hidden.
     #[inline]
     pub fn is_triangle_hidden(&self, triangle: usize) -> bool {
         self.hidden_rows().is_some_and(|rows| all_hidden(rows, self.triangles()[triangle]))

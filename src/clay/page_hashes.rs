@@ -8,7 +8,7 @@ use super::layers::PageLayers;
 use super::page::Page;
 use super::snapshot::Snapshot;
 
-/// What is known of the clay that was hashed last.
+/// The snapshot that was hashed last, and its hashes.
 #[derive(Debug, Default)]
 pub struct PageHashes {
     last: Option<Snapshot>,

@@ -15,7 +15,7 @@ use crate::page::{Neighbour, Page, PageTopology, Ring};
 use crate::page_sets::PageSets;
 use crate::stored::BadPage;
 
-/// How long the lists are, and what is no list of numbers.
+/// The lengths of the lists, and the fields that are not lists of numbers.
 #[derive(Serialize, Deserialize)]
 struct PageHead {
     revision: u64,

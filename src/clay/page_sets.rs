@@ -12,7 +12,7 @@ pub const MOST_SETS: u16 = 0x7fff;
 pub struct PageSets {
     /// Own, then halo.
     pub(crate) rows: Vec<u16>,
-    /// Whether any of them is hidden.
+    /// True if any of them is hidden.
     pub(crate) any_hidden: bool,
     /// The greatest number of a set among them.
     pub(crate) highest: u16,
@@ -37,13 +37,13 @@ impl PageSets {
         &self.rows
     }
 
-    /// What undo counts, bytes.
+    /// Returns the size in the undo budget, in bytes.
     pub(crate) fn weight(&self) -> usize {
         size_of::<PageSets>() + 16 + self.rows.len() * 2
     }
 }
 
-/// Whether all three corners are hidden.
+/// Returns true if all three corners are hidden.
 #[inline(always)]
 pub(crate) fn all_hidden(rows: &[u16], corners: [u16; 3]) -> bool {
     corners.iter().fold(HIDDEN, |all, &v| all & rows[v as usize]) != 0

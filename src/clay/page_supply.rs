@@ -38,7 +38,7 @@ pub trait SupplyPages: Send + Sync + fmt::Debug {
     fn take(&self) -> Option<SparePage>;
 }
 
-/// Where pages come from. The default has none.
+/// The source of pages. The default has none.
 #[derive(Debug, Clone, Default)]
 pub struct PageSupply(Option<Arc<dyn SupplyPages>>);
 

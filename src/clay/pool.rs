@@ -25,18 +25,18 @@ pub(super) struct Pool {
     topologies: Vec<Arc<PageTopology>>,
     /// Face sets of pages that nobody holds any more; their contents are old.
     sets: Vec<Arc<PageSets>>,
-    /// What a page holds that has none.
+    /// The empty topology of a page without one.
     blank: Arc<PageTopology>,
-    /// The page that stands where there was none before: one for all.
+    /// The empty page that precedes every new page: one for all.
     nothing: Arc<Page>,
     /// Rows, and leaves of the tree, that a new page gets room for.
     rows: usize,
     leaves: usize,
     /// Topology is changed: every page has room for any that may come of it.
     roomy: bool,
-    /// Takes what is more than the pool keeps.
+    /// Receives what exceeds the pool's capacity.
     pub(super) sink: GarbageSink,
-    /// Gives pages where the pool has none and topology is changed.
+    /// Supplies pages when the pool has none and topology is changed.
     pub(super) supply: PageSupply,
 }
 
@@ -167,7 +167,7 @@ impl Pool {
                     self.sink.discard(Garbage::Shared(layers));
                 }
                 if let Some(mut sets) = free.sets.take() {
-                    // Pages that were only displaced share them with those that took their place.
+                    // Displaced pages share their sets with the pages that replaced them.
                     if Arc::get_mut(&mut sets).is_some() && self.sets.len() < KEPT {
                         self.sets.push(sets);
                     } else {

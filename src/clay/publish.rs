@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::page::Page;
 use super::snapshot::{CHUNK, Chunk};
 
-/// Which pages changed since somebody looked.
+/// The pages that changed since the last snapshot.
 #[derive(Debug, Default)]
 pub(super) struct Stale {
     chunk_is: Vec<bool>,
@@ -29,7 +29,7 @@ impl Stale {
         }
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         let (chunks, nodes) = (pages.div_ceil(CHUNK), pages.div_ceil(8));
         self.chunk_is.reserve(chunks.saturating_sub(self.chunk_is.len()));
@@ -105,18 +105,18 @@ impl SpinePool {
         }
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.most = pages.div_ceil(CHUNK);
-        // What readers hold of a few snapshots in a row.
+        // The chunks that readers hold of a few snapshots in a row.
         let ready = self.most.min(256);
         while self.free_chunks.len() < ready {
             self.free_chunks.push(free_chunk());
         }
     }
 
-    /// The greatest number of a face set in the clay. Costs a look at each chunk, and at each page
-    /// of those that changed since they were last shown.
+    /// Returns the greatest number of a face set in the clay. Visits each chunk, and each page that
+    /// changed since the last snapshot.
     pub(super) fn highest_set(&self, pages: &[Arc<Page>], stale: &Stale) -> u16 {
         let of = |(c, pages): (usize, &[Arc<Page>])| match self.shown.get(c) {
             Some(chunk) if !stale.chunk_is[c] => chunk.highest_set,

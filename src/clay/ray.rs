@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 /// A half-line. `t` counts in lengths of `dir`: with unit length it is a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where the ray begins.
+    /// The start of the ray.
     pub origin: Vec3,
-    /// Where it goes; not zero.
+    /// The direction; not zero.
     pub dir: Vec3,
 }
 
-/// Where a ray meets the surface.
+/// The point where a ray meets the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hit {
     /// Distance along the ray.

@@ -17,9 +17,9 @@ pub enum Reach {
     },
     /// All points within `radius` of the segment between `from` and `to`.
     Capsule {
-        /// Where the axis begins.
+        /// The start of the axis.
         from: Vec3,
-        /// Where the axis ends.
+        /// The end of the axis.
         to: Vec3,
         /// The distance to the axis, > 0.
         radius: f32,
@@ -27,7 +27,7 @@ pub enum Reach {
 }
 
 impl Reach {
-    /// Whether the reach may touch a box (never wrongly "no").
+    /// Returns true if the reach may touch a box; never false for a box that it touches.
     #[inline]
     pub fn touches(&self, lo: Vec3, hi: Vec3) -> bool {
         match *self {
@@ -83,7 +83,7 @@ impl Reach {
         }
     }
 
-    /// Whether the point lies within the reach, its border included.
+    /// Returns true if the point is within the reach, its border included.
     #[inline]
     pub fn contains(&self, p: Vec3) -> bool {
         self.distance_squared(p) <= self.radius() * self.radius()

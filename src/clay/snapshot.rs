@@ -1,8 +1,8 @@
 //! The clay at one moment, immutable and shared.
 //!
-//! A snapshot is a spine of chunks of pages. Publishing makes new only the chunks with a changed
-//! page; the pages themselves are shared with the clay, which writes a page anew instead of
-//! changing it (copy on write).
+//! A snapshot is a spine of chunks of pages. Publishing rebuilds only the chunks with a changed
+//! page. The clay shares the pages themselves and replaces a page instead of changing it (copy on
+//! write).
 
 use std::sync::Arc;
 
@@ -75,13 +75,13 @@ impl Snapshot {
         (0..self.totals.pages).map(|i| self.page(i as u32))
     }
 
-    /// How many pages there are, pages without vertices included.
+    /// Returns the number of pages, including pages without vertices.
     pub fn page_count(&self) -> usize {
         self.totals.pages
     }
 
     /// # Panics
-    /// When there is no such page.
+    /// Panics if there is no such page.
     pub fn page(&self, index: u32) -> &Arc<Page> {
         &self.spine[index as usize / CHUNK].pages[index as usize % CHUNK]
     }
@@ -132,12 +132,12 @@ impl Snapshot {
         self.totals.next
     }
 
-    /// How many vertices the clay had.
+    /// Returns the number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.totals.vertices
     }
 
-    /// How many triangles the clay had.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.totals.triangles
     }

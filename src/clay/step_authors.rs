@@ -1,20 +1,20 @@
-//! Whose the pages of an open step are, where several people change one clay at once.
+//! Tracks which people changed the pages of an open step, where several change one clay at once.
 //!
-//! Strokes that go on at the same time lie in one open step. When it is closed it is parted: people
-//! who changed no page in common get a step each, whose pages are those that they changed; people
-//! who did are the owners of one step, as nobody can tell which of its bits are whose. So the steps
-//! of one closing share no page, and each can be taken back without the others. Where some of the
-//! people go on, the steps of those who do not are closed, and what is left stays open.
+//! Simultaneous strokes share one open step, which is split when it is closed. People who changed
+//! no page in common get a step each, with the pages that they changed. People who changed a common
+//! page own one step together, because their changes in it cannot be separated. So the steps of one
+//! closing share no page, and each can be undone without the others. If some of the people
+//! continue, only the steps of the others are closed, and the rest stays open.
 
-/// Who changes the clay from now on.
+/// The author of the next changes to the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Author {
-    /// Nobody is told apart: a clay of one person.
+    /// Changes are not attributed: a clay of one person.
     #[default]
     Nobody,
     /// One of several people.
     Person(u8),
-    /// What follows from what several people did, as pages that follow a stroke.
+    /// Consequences of several people's changes, as pages that follow a stroke.
     Everybody,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct StepAuthors {
     marks: Vec<u32>,
 }
 
-/// One step of those that an open step is parted into.
+/// One of the steps that an open step is split into.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct StepPart {
     /// Ascending; empty where nobody is known.
@@ -41,7 +41,7 @@ pub(super) struct StepPart {
 }
 
 impl StepPart {
-    /// Whether a page with these marks is in it.
+    /// Returns true if it contains a page with these marks.
     pub(super) fn holds(&self, marks: u32) -> bool {
         self.bits & marks != 0 || self.bits == u32::MAX
     }
@@ -59,17 +59,17 @@ impl StepAuthors {
         self.bit();
     }
 
-    /// Whether people are told apart.
+    /// Returns true if changes are attributed to people.
     pub(super) fn is_told(&self) -> bool {
         self.now != Author::Nobody
     }
 
-    /// Somebody of the step.
+    /// Returns one of the people of the step.
     pub(super) fn first(&self) -> Option<u8> {
         self.people.iter().flatten().copied().next()
     }
 
-    /// Whether something holds of all people of the step.
+    /// Returns true if `of` holds for all people of the step.
     pub(super) fn all(&self, of: impl Fn(u8) -> bool) -> bool {
         self.people.iter().flatten().all(|p| of(*p))
     }
@@ -86,7 +86,7 @@ impl StepAuthors {
         self.marks = marks;
     }
 
-    /// Whether a person is in the step.
+    /// Returns true if a person is in the step.
     pub(super) fn holds(&self, person: u8) -> bool {
         self.people.contains(&Some(person))
     }
@@ -122,7 +122,7 @@ impl StepAuthors {
         self.marks.get(place).copied().unwrap_or(0)
     }
 
-    /// The steps that a step of so many pages is parted into, in the order of their first owners.
+    /// Splits a step of `pages` pages into parts, in the order of their first owners.
     /// `whole`: its pages cannot be parted.
     pub(super) fn parts(&self, pages: usize, whole: bool) -> Vec<StepPart> {
         let owned = |bits: u32| {

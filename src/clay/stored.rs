@@ -21,10 +21,10 @@ use crate::assembly::Built;
 #[error("the bytes are not those of a page")]
 pub struct BadPage;
 
-/// What clay is besides its pages.
+/// The state of the clay besides its pages.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ObjectState {
-    /// How many pages there are.
+    /// The number of pages.
     pub pages: u32,
     /// As [`Clay::revision`].
     pub revision: u64,
@@ -78,9 +78,9 @@ impl PageTopology {
 }
 
 impl Page {
-    /// What a dab may change: points and normals, own and halo, 32 bytes a vertex. Behind them what
-    /// the page has of its object's layers (postcard), where it has anything or face sets, and then
-    /// those, two bytes a vertex, where it has any.
+    /// Returns the part that a dab may change: points and normals, owned and halo, 32 bytes a
+    /// vertex. Layer data (postcard) follows if the page has layers or face sets. Face sets, two
+    /// bytes a vertex, follow if it has any.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.points.len() * 32);
         for row in self.points.iter().chain(&self.normals) {
@@ -160,7 +160,7 @@ impl Page {
     }
 }
 
-/// Whether every page's halo names vertices that are there.
+/// Returns true if every page's halo refers to vertices that exist.
 fn fit(pages: &[Arc<Page>]) -> bool {
     pages.iter().all(|p| {
         let t = p.topology();
@@ -184,10 +184,10 @@ impl Clay {
         }
     }
 
-    /// Clay of stored pages, as it was but for undo, which has nothing to take back.
+    /// Restores clay from stored pages, without undo steps.
     ///
     /// # Errors
-    /// [`BadPage`] where the pages are not all there, or do not fit each other.
+    /// Returns [`BadPage`] if pages are missing or do not fit each other.
     pub fn of_stored(pages: Vec<Arc<Page>>, rest: &ObjectState) -> Result<Clay, BadPage> {
         if pages.len() != rest.pages as usize
             || !fit(&pages)
@@ -204,8 +204,8 @@ impl Clay {
         Ok(mesh)
     }
 
-    /// Clay of its own with the same pages, which both share until one of them changes. It has no
-    /// steps to take back. Costs as much as there are pages, not vertices.
+    /// Returns separate clay with the same pages, which both share until one of them changes. It
+    /// has no undo steps. The cost is proportional to the number of pages, not of vertices.
     pub fn duplicate(&self, object_id: u32) -> Clay {
         let built = Built {
             pages: self.pages.clone(),
@@ -221,10 +221,10 @@ impl Clay {
         twin
     }
 
-    /// Clay of its own as this one is now, in the middle of a step too: what is done to it is a try
-    /// that this one knows nothing of. It has no steps to take back but the open one. Its revisions
-    /// go on after `revision`, so that no state of it is taken for one of this clay. Costs as much
-    /// as there are pages, not vertices.
+    /// Returns a separate copy of the clay in its current state, also in the middle of a step, for
+    /// trial changes that do not affect this one. It has no undo steps except the open one. Its
+    /// revisions continue after `revision`, so that none of its states is confused with one of this
+    /// clay. The cost is proportional to the number of pages, not of vertices.
     pub fn fork(&self, revision: u64) -> Clay {
         let mut twin = self.duplicate(self.object_id);
         twin.history.go_on_as(&self.history);
@@ -232,16 +232,16 @@ impl Clay {
         twin
     }
 
-    /// Which empty pages are used first, as [`Clay::rest`] told it.
+    /// Restores the order in which empty pages are reused, as returned by [`Clay::rest`].
     pub fn set_empty(&mut self, empty: Vec<u32>) {
         let count = self.pages.len() as u32;
         self.empty = empty;
         self.empty.retain(|i| *i < count);
     }
 
-    /// Stored pages take the place of those that are here: a jump within the history of this
-    /// object. Nothing can be taken back or done again after it. False, and nothing done, where the
-    /// pages are not of this object.
+    /// Replaces the current pages with stored ones: a jump within the history of this object.
+    /// Afterwards nothing can be undone or redone. Returns false, and changes nothing, if the pages
+    /// are not of this object.
     pub fn jump(&mut self, pages: &[(u32, Arc<Page>)]) -> bool {
         let count = pages.iter().map(|(i, _)| *i as usize + 1).max().unwrap_or(0);
         if count > self.pages.len() + pages.len() {

@@ -19,16 +19,16 @@ struct Step {
     whole: bool,
 }
 
-/// A step of a history: the newest that can be taken back, or done again, is at 0.
+/// The place of a step in the history: 0 is the newest step that can be undone or redone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepPlace {
-    /// One that can be taken back.
+    /// A step that can be undone.
     Undo(usize),
-    /// One that can be done again.
+    /// A step that can be redone.
     Redo(usize),
 }
 
-/// Which pages a step changed.
+/// The pages that a step changed.
 #[derive(Debug, Clone, Default)]
 pub struct StepPages {
     whole: bool,
@@ -36,9 +36,9 @@ pub struct StepPages {
 }
 
 impl StepPages {
-    /// Whether two steps changed a page in common, halos included: then neither can be taken back
-    /// without the one that came after it. A step that changed topology or the list of layers
-    /// shares with every other.
+    /// Returns true if two steps changed a page in common, halos included: then neither can be
+    /// undone without the later one. A step that changed topology or the list of layers shares with
+    /// every other.
     pub fn shares(&self, other: &StepPages) -> bool {
         self.whole || other.whole || self.bits.iter().zip(&other.bits).any(|(a, b)| a & b != 0)
     }
@@ -50,7 +50,7 @@ const STEPS: usize = 1024;
 #[derive(Debug)]
 pub(super) struct History {
     open: Option<Pages>,
-    /// What the pages of the open step weigh.
+    /// The size of the open step's pages, in bytes.
     open_bytes: u64,
     undo: VecDeque<Step>,
     redo: Vec<Step>,
@@ -91,7 +91,7 @@ impl History {
         self.authors.clone_from(&other.authors);
     }
 
-    /// Makes room for so many pages in the clay.
+    /// Makes room for this many pages in the clay.
     pub(super) fn reserve(&mut self, pages: usize) {
         self.touched.reserve(pages.saturating_sub(self.touched.len()));
     }
@@ -140,8 +140,8 @@ impl History {
         self.open.iter().flatten().for_each(|(i, page)| visit(*i, page));
     }
 
-    /// Closes the step. What can no longer be redone, and the oldest steps beyond the bound, go to
-    /// the garbage sink. Whether there is a step more.
+    /// Closes the step. Moves the steps that can no longer be redone, and the oldest steps beyond
+    /// the bound, to the garbage sink. Returns true if a step was added.
     pub(super) fn end(&mut self) -> bool {
         let Some(pages) = self.open.take() else { return false };
         if pages.is_empty() {
@@ -153,10 +153,10 @@ impl History {
         true
     }
 
-    /// Closes the step of several people, parted as [`StepAuthors`] says: the parts whose owners
-    /// have all `ended`. What is left stays open; nothing of it, where everybody has. The owners of
-    /// each closed part, in the order of the steps. What can be done again stays. `whole`: what a
-    /// page was differs from what it is by more than its surface.
+    /// Closes the step of several people, split by [`StepAuthors`]: the parts whose owners have all
+    /// `ended`. The rest stays open; nothing stays open if everybody has ended. Returns the owners
+    /// of each closed part, in the order of the steps. Steps that can be redone are kept. `whole`
+    /// returns true if a page changed by more than its surface.
     pub(super) fn end_of_people(
         &mut self,
         ended: impl Fn(u8) -> bool,
@@ -200,7 +200,8 @@ impl History {
         parts.into_iter().map(|p| p.owners).collect()
     }
 
-    /// Which pages the open step has changed so far; `None`: there is none, or it changed nothing.
+    /// Returns the pages that the open step has changed so far; `None` if there is no step or no
+    /// change.
     pub(super) fn open_pages(&self, whole: impl Fn(u32, &Page) -> bool) -> Option<StepPages> {
         let pages = self.open.as_ref().filter(|p| !p.is_empty())?;
         Some(StepPages {
@@ -224,13 +225,13 @@ impl History {
         }
     }
 
-    /// Which pages a step changed.
+    /// Returns the pages that a step changed.
     pub(super) fn pages_of(&self, place: StepPlace) -> Option<StepPages> {
         let step = self.step(place)?;
         Some(StepPages { whole: step.whole, bits: self.bits(&step.pages) })
     }
 
-    /// Makes a step the newest, as if it had come after those that it shares no page with.
+    /// Makes a step the newest, as if it came after all steps with which it shares no page.
     pub(super) fn raise(&mut self, place: StepPlace) {
         match place {
             StepPlace::Undo(k) if k < self.undo.len() => {
@@ -258,7 +259,7 @@ impl History {
         self.open.is_some()
     }
 
-    /// Nothing can be taken back or done again.
+    /// Forgets all steps, so that nothing can be undone or redone.
     pub(super) fn forget(&mut self) {
         if let Some(open) = self.open.take() {
             self.sink.discard(Garbage::Pages(open));
@@ -285,7 +286,7 @@ impl History {
         }
     }
 
-    /// Lets the oldest step go, which can then no longer be taken back.
+    /// Discards the oldest step, which can then no longer be undone.
     pub(super) fn forget_oldest(&mut self) {
         if let Some(gone) = self.undo.pop_front() {
             self.bytes -= gone.bytes;

@@ -20,7 +20,7 @@ impl Workers {
         Workers { count: count.max(1), pool: Arc::default() }
     }
 
-    /// How many threads work on a dab.
+    /// Returns the number of threads that work on a dab.
     pub fn count(&self) -> usize {
         self.count
     }

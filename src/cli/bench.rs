@@ -39,7 +39,7 @@ pub struct BenchArgs {
     /// Vertices that one dab is to affect, about.
     #[arg(long, value_name = "K", default_value_t = 10_000)]
     pub affected: usize,
-    /// Which brush, by its name, with its preset; `turns` changes between gaussian and smooth.
+    /// The brush to measure, with its preset; `turns` alternates between gaussian and smooth.
     #[arg(long, value_name = "NAME", default_value = "gaussian")]
     pub brush: BenchBrush,
     /// Dynamic topology with edges of this share of the radius, under single dabs (all of it done
@@ -60,7 +60,7 @@ pub struct BenchArgs {
     pub workers: usize,
 }
 
-/// What is measured: one brush, or two by turns.
+/// The measured brush: one, or two in alternation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BenchBrush {
     One(BrushKind),
@@ -87,7 +87,8 @@ impl BenchBrush {
         }
     }
 
-    /// The brush's preset; those that raise by the dab leave so little that the form lasts.
+    /// Returns the brush's preset. Brushes that raise the surface get a small strength, so that the
+    /// form lasts.
     fn settings(self, turn: usize) -> BrushSettings {
         let kind = self.kind(turn);
         let preset = crate::presets().of(kind);
@@ -300,13 +301,13 @@ fn ray_from(mesh: &Clay, towards: Vec3) -> Ray {
     Ray { origin: (lo + hi) * 0.5 + towards * (hi - lo).length(), dir: -towards }
 }
 
-/// Where single dabs go.
+/// Path of the single dabs.
 #[derive(Debug, Clone, Copy)]
 enum DabPath {
     /// A spiral over the whole ball, neighbours a small step apart.
     Spiral,
-    /// To and fro on a great circle, neighbours a fifth of the radius apart: where dabs change
-    /// topology, each must find the clay as finely cut as it does on a mesh of any other size.
+    /// An arc on a great circle in both directions, neighbours a fifth of the radius apart. If dabs
+    /// change topology, each dab must find the clay cut as finely as on a mesh of any other size.
     Arc {
         /// The brush's radius as an angle of the ball.
         radius: f32,
@@ -458,7 +459,7 @@ fn single_dabs(mesh: &mut Clay, args: &BenchArgs, radius: f32, workers: &Workers
         if i % STROKE == STROKE - 1 {
             mesh.end_step();
         }
-        // As a reader does, the last one is let go when the next one is there.
+        // Like a reader, release the last snapshot once the next one exists.
         snapshot.replace(mesh.snapshot());
         let total = now_ns() - t0;
         let after = mesh.phases();

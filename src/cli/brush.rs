@@ -11,17 +11,16 @@ use sculptd_geometry::io::read_regular;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum BrushCommand {
-    /// Every brush: those of the program, and your own. What is wrong with a file is said on
-    /// standard error.
+    /// List all brushes: built-in and your own. Errors in files are printed to standard error.
     List,
-    /// Keep the brush that the running daemon has in hand under a name.
+    /// Save the brush in hand of the running daemon under a name.
     #[cfg(unix)]
     Save {
         name: String,
         /// One line on what it is for.
         #[arg(long, default_value = "")]
         about: String,
-        /// Its place in lists: lower comes first.
+        /// Its position in lists: lower comes first.
         #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
         order: i32,
         /// The picture of heights that goes with it: PNG, JPEG, WebP, TIFF or EXR.
@@ -40,15 +39,15 @@ pub enum BrushCommand {
         name: String,
         /// Made if it is not there.
         folder: PathBuf,
-        /// In the place of a file that is there.
+        /// Replace an existing file.
         #[arg(long)]
         replace: bool,
     },
-    /// Take brushes from files, with their pictures, into your own.
+    /// Import brushes, with their pictures, from files.
     Import {
         #[arg(required = true)]
         files: Vec<PathBuf>,
-        /// In the place of brushes that have the same names.
+        /// Replace existing brushes of the same names.
         #[arg(long)]
         replace: bool,
     },
@@ -70,7 +69,7 @@ fn picture_bytes(path: &Path) -> Result<Vec<u8>, Fail> {
     Ok(bytes)
 }
 
-/// Copies a brush, whose file lies in `from`, into a folder.
+/// Copies a brush, whose file is in folder `from`, into a folder.
 fn copy(brush: &OwnBrush, from: Option<&Path>, to: &Path, replace: bool) -> Result<PathBuf, Fail> {
     let picture = from.zip(brush.picture_file.as_ref()).map(|(from, file)| from.join(file));
     let bytes = picture.as_deref().map(picture_bytes).transpose()?;

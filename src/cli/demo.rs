@@ -28,7 +28,7 @@ pub struct DemoArgs {
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
-    /// Where the finished mesh goes; the name's ending says the format.
+    /// Write the finished mesh to this file; its extension selects the format.
     #[arg(long, value_name = "FILE", default_value = "demo.stl")]
     pub export: PathBuf,
     /// Sculpt this mesh instead of the ball.
@@ -37,7 +37,7 @@ pub struct DemoArgs {
     /// Record everything into this new session file.
     #[arg(long, value_name = "FILE")]
     pub session: Option<PathBuf>,
-    /// How fast the headless demo runs; the hash is the same.
+    /// Speed of the headless demo; the hash is the same.
     #[arg(long, value_enum, default_value_t)]
     pub pace: Pace,
 }

@@ -16,8 +16,8 @@ pub fn available() -> Result<(), String> {
     Ok(())
 }
 
-/// Whether to open a window: not if it is not wanted, and not where there is no screen (which is
-/// said in one line).
+/// Returns true if a window should open: not if `headless`, and not without a screen, which is
+/// printed in one line.
 pub fn wanted(headless: bool) -> bool {
     if headless {
         return false;
@@ -31,19 +31,19 @@ pub fn wanted(headless: bool) -> bool {
     }
 }
 
-/// What a run shows and leaves behind.
+/// Outputs of a run: its window and its files.
 #[derive(Debug, Default)]
 pub struct Shown {
-    /// Whether there is a window.
+    /// True if there is a window.
     pub window: bool,
     pub full_screen: bool,
-    /// Where a person's own brushes are kept; `None`: nowhere.
+    /// Folder of the user's brushes; `None` if there is none.
     pub brushes: Option<PathBuf>,
-    /// A large mesh that the window loads, in the place of the ball that the run begins with.
+    /// A large mesh for the window to load; it replaces the initial ball.
     pub open_first: Option<PathBuf>,
-    /// The sculpture begins with this run.
+    /// True if the sculpture begins with this run.
     pub fresh: bool,
-    /// The mesh that is written at the end.
+    /// File to write the mesh to at the end.
     pub export: Option<PathBuf>,
     /// The session's file, for the window's title.
     pub session: Option<PathBuf>,
@@ -95,10 +95,10 @@ pub fn window(
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
 }
 
-/// Whether the window has what the screen of an installation is to be shown with.
+/// Checks that the window has the material that the screen of an installation uses.
 ///
 /// # Errors
-/// Names the material that there is none of, and those that there are.
+/// Returns an error that names the unknown material and the known ones.
 #[cfg(feature = "viewer")]
 pub fn check_screen(screen: &sculptd_daemon::kiosk::ScreenSettings) -> Result<(), String> {
     let names = sculptd_window::look::MATERIALS.map(|m| m.short_name());
@@ -117,9 +117,9 @@ pub fn check_screen(_: &sculptd_daemon::kiosk::ScreenSettings) -> Result<(), Str
     Ok(())
 }
 
-/// The languages of the window: those that the program brings along, and those of the person's own
-/// folder, `languages/CODE/window.ftl` beside the preferences. The first one is guessed from the
-/// environment, as `setlocale` reads it.
+/// Returns the window's languages: the built-in ones, and those of the user's folder,
+/// `languages/CODE/window.ftl` beside the preferences. The initial language comes from the
+/// environment, in the order of `setlocale`.
 #[cfg(feature = "viewer")]
 fn translations() -> sculptd_window::language::Translations {
     let set = |name: &&str| std::env::var(name).ok().filter(|value| !value.is_empty());

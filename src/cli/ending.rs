@@ -33,12 +33,12 @@ pub fn export(path: Option<&Path>, world: &mut World) -> Result<Option<String>, 
     Ok(Some(path.display().to_string()))
 }
 
-/// Waits for the session's last group, and says so if the disk did not take it.
+/// Waits for the session's last group, and warns if it could not be written.
 pub fn close_journal(thread: Option<WriterThread>) {
     warn_of_fault(thread.and_then(WriterThread::finish));
 }
 
-/// Says what the disk did not take.
+/// Prints a warning about the input that could not be written.
 pub fn warn_of_fault(fault: Option<String>) {
     if let Some(fault) = fault {
         eprintln!("sculptd: warning: {fault}");

@@ -16,8 +16,8 @@ use sculptd_network::fleet::state::fleet_name;
 use sculptd_network::random::system_entropy;
 use sculptd_network::zenoh_link::Endpoints;
 
-/// Reads the settings of an installation. Settings on trial that ended the program, or that cannot
-/// be read, are taken back first.
+/// Reads the settings of an installation. Settings on trial are reverted first if they ended the
+/// program or cannot be read.
 pub fn settings(path: &Path) -> Result<(KioskConfig, SettingsFiles, TrialStart), Fail> {
     let files = SettingsFiles::new(path);
     let mut trial = files.begin().map_err(Fail::Config)?;
@@ -93,7 +93,7 @@ pub fn attend(part: FleetPart, run: &LiveRun, again: &Arc<AtomicBool>) -> Result
     start(part, sight).map(drop).map_err(|e| Fail::Config(format!("the fleet: {e}")))
 }
 
-/// Begins the program anew with the arguments of this run: it does not come back but by a failure.
+/// Restarts the program with the arguments of this run. It returns only on failure.
 pub fn begin_again() -> Fail {
     let failed = |e: std::io::Error| Fail::Check(format!("the program cannot begin anew: {e}"));
     let program = match std::env::current_exe() {

@@ -23,23 +23,23 @@ pub struct InviteArgs {
     /// The sculpture, as it is hosted.
     #[arg(value_name = "NAME", value_parser = sculpture_name)]
     pub name: String,
-    /// As what the guest joins.
+    /// Role of the guest.
     #[arg(long, value_enum, value_name = "ROLE", default_value_t)]
     pub role: JoinRole,
-    /// For this person alone: the invitation has a key of its own, which lets in nobody of another
-    /// name, and can be withdrawn without the others.
+    /// Invite only this person: the invitation gets a separate key, which admits nobody of another
+    /// name and can be revoked separately.
     #[arg(long = "as", value_name = "PERSON")]
     pub person: Option<String>,
-    /// Where the host listens, as tcp/studio.example:7447. May be repeated; without it the guest
-    /// finds the host on the local network.
+    /// Address on which the host listens, as tcp/studio.example:7447. May be repeated; without it
+    /// the guest looks for the host on the local network.
     #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
     pub connect: Vec<String>,
     /// The folder of the host's invitations. Without it, `invitations/NAME` in the user's data
     /// folder.
     #[arg(long, value_name = "FOLDER")]
     pub keys: Option<PathBuf>,
-    /// Write the QR code here: a picture (.png) or a drawing (.svg). Without it the code is shown
-    /// below the link, where that goes to a terminal.
+    /// Write the QR code to this file: a picture (.png) or a drawing (.svg). Without it the code is
+    /// shown below the link, if the output is a terminal.
     #[arg(short, long, value_name = "FILE", value_parser = picture_file)]
     pub output: Option<PathBuf>,
 }
@@ -131,7 +131,7 @@ fn invitation(args: &InviteArgs, folder: &Path) -> Result<(Invitation, bool), Fa
     Ok((made, true))
 }
 
-/// Whether a square is dark; those of the border are not.
+/// Returns true if a square is dark; border squares are not.
 fn is_dark(code: &Code, x: usize, y: usize) -> bool {
     let inner = |k: usize| k.checked_sub(BORDER).filter(|k| *k < code.side);
     inner(x).zip(inner(y)).is_some_and(|(x, y)| code.dark[y * code.side + x])

@@ -23,8 +23,8 @@ fn now_s() -> u64 {
     since.map_or(0, |d| d.as_secs())
 }
 
-/// The file of a new session, and what is beyond the limits removed on a thread of its own; `None`
-/// where there is no folder for it, which is said.
+/// Returns the file of a new session, and removes sessions beyond the limits in a separate thread.
+/// Prints a warning and returns `None` if the folder cannot be created.
 pub fn begin(mesh: Option<&Path>) -> Option<PathBuf> {
     let folder = folder()?;
     if let Err(e) = std::fs::create_dir_all(&folder) {
@@ -45,7 +45,7 @@ pub fn recent(open: Option<&Path>) -> Vec<PathBuf> {
     all.filter(|p| Some(p.as_path()) != open).take(OFFERED).collect()
 }
 
-/// Goes on with another session: in a new process, for a window can be made once in each.
+/// Opens another session in a new process, because each process can create only one window.
 pub fn open(session: &Path, config: Option<&Path>) -> Outcome {
     let program = std::env::current_exe().map_err(|e| Fail::io(session, &e))?;
     let mut next = std::process::Command::new(&program);
@@ -65,14 +65,14 @@ pub fn open(session: &Path, config: Option<&Path>) -> Outcome {
     }
 }
 
-/// What a library may hold.
+/// Limits of a library.
 #[derive(Debug, Clone, Copy)]
 pub struct LibraryLimits {
-    /// Sessions that stay whatever their age and size, the newest ones.
+    /// Number of newest sessions to keep regardless of age and size.
     pub keep: usize,
-    /// Seconds since the last write after which a session may go.
+    /// Age in seconds since the last write, after which a session may be removed.
     pub age_s: u64,
-    /// Bytes of all sessions together.
+    /// Limit of the bytes of all sessions.
     pub bytes: u64,
 }
 
@@ -92,7 +92,7 @@ pub struct LibraryEntry {
     pub written_s: u64,
 }
 
-/// Where the sessions are kept; `None` where there is no home folder.
+/// Returns the folder of the sessions; `None` without a home folder.
 pub fn folder() -> Option<PathBuf> {
     directories::ProjectDirs::from("", "", "sculptd").map(|d| d.data_dir().join("sessions"))
 }

@@ -30,7 +30,7 @@ fn not_started(e: LiveRunError) -> Fail {
     }
 }
 
-/// What is left to do once a run is over.
+/// Work left once a run is over.
 struct Closing<F> {
     run: LiveRun,
     export: Option<PathBuf>,
@@ -81,9 +81,9 @@ fn load(run: &LiveRun, path: &Path) -> Result<(), Fail> {
     run.live.commands.send(command).map_err(|e| Fail::Check(e.to_string()))
 }
 
-/// Runs until the end, then goes on with `then`; `begun_run` is told of the run once it has begun.
-/// All on the thread of the window, or where that is lost
-/// on another, which ends the process.
+/// Runs until the end, then calls `then`. `begun_run` is called once the run has begun. Everything
+/// runs in the window's thread. If the window is lost, another thread continues and ends the
+/// process.
 pub fn run(
     options: LiveOptions,
     shown: &Shown,

@@ -16,7 +16,7 @@ pub enum LogFormat {
 /// `info,sculptd_daemon::session=trace`). Without it, and where it cannot be read, `info`.
 pub fn begin(format: LogFormat) {
     let wanted = std::env::var("SCULPTD_LOG").unwrap_or_default();
-    // What the network's library tells of its every session is nothing for a person.
+    // The network library's messages about every session do not concern users.
     let usual = || {
         let all = Targets::new().with_default(LevelFilter::INFO);
         all.with_target("zenoh", LevelFilter::ERROR)
@@ -31,7 +31,7 @@ pub fn begin(format: LogFormat) {
     };
     let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
     let log = tracing_subscriber::registry();
-    // What the staff of a fleet may ask for, however much is written here.
+    // The log lines that fleet staff may request, independent of the filter here.
     #[cfg(feature = "network")]
     let log = log.with(super::log_ring::LogRing.with_filter(usual()));
     #[cfg(unix)]

@@ -97,24 +97,24 @@ pub enum Command {
     /// Ask the running daemon.
     #[cfg(unix)]
     Ctl(ctl::CtlArgs),
-    /// A window of the running daemon on this screen, where it has none or has lost its own.
+    /// Open a window of the running daemon on this screen, if it has none or has lost it.
     #[cfg(unix)]
     Window,
-    /// Look after installations from a distance: list them, follow them, ask them for something,
-    /// roll settings out.
+    /// Manage installations remotely: list them, follow them, send them requests, roll out
+    /// settings.
     #[cfg(feature = "network")]
     Fleet(fleet::FleetArgs),
-    /// An invitation to a shared sculpture, as a link and a QR code.
+    /// Create an invitation to a shared sculpture, as a link and a QR code.
     #[cfg(feature = "network")]
     Invite(invite::InviteArgs),
-    /// Whether this machine can sculpt, and what to type where it cannot.
+    /// Check whether this machine can sculpt, and print how to fix what fails.
     Doctor(doctor::DoctorArgs),
-    /// The session files: list them, look at one, remove old ones, save a damaged one.
+    /// Manage session files: list them, show one, remove old ones, salvage a damaged one.
     Session {
         #[command(subcommand)]
         command: session::SessionCommand,
     },
-    /// Your own brushes: list, save, export and import them.
+    /// Manage your own brushes: list, save, export and import them.
     Brush {
         /// The folder of your own brushes, if it is not at its usual place.
         #[arg(long, value_name = "FOLDER", global = true)]

@@ -23,7 +23,7 @@ pub struct RenderArgs {
     /// Pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x800")]
     pub size: (u32, u32),
-    /// Where the eye is.
+    /// Direction of the camera.
     #[arg(long, value_enum, default_value_t)]
     pub view: ViewFrom,
     /// No perspective.
@@ -31,7 +31,7 @@ pub struct RenderArgs {
     pub orthographic: bool,
     #[arg(long, default_value = "clay", value_parser = materials())]
     pub material: String,
-    /// A picture of a lit ball stands for material and light: PNG, JPEG or WebP.
+    /// Use a picture of a lit ball as material and light: PNG, JPEG or WebP.
     #[arg(long, value_name = "FILE")]
     pub matcap: Option<PathBuf>,
     /// Light from a picture of surroundings: Radiance HDR or EXR.
@@ -40,28 +40,28 @@ pub struct RenderArgs {
     /// Light from the room that comes with the program.
     #[arg(long, conflicts_with_all = ["matcap", "environment"])]
     pub room: bool,
-    /// How far the main light, or the surroundings, are turned about the upright axis, degrees.
+    /// Rotation of the main light, or of the surroundings, about the vertical axis, in degrees.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub turned: f32,
-    /// How high the main light stands over the horizon, degrees.
+    /// Height of the main light above the horizon, in degrees.
     #[arg(long, default_value_t = RAISED, allow_negative_numbers = true)]
     pub raised: f32,
-    /// How much of the main light shadows take, 0 casts none to 1.
+    /// Strength of the main light's shadows: 0 casts none, up to 1.
     #[arg(long, default_value_t = 0.0)]
     pub shadow: f32,
-    /// One tone a triangle.
+    /// Shade each triangle in one tone.
     #[arg(long)]
     pub flat: bool,
-    /// How strongly hollows are darkened and ridges lightened, 0 to 2.
+    /// Strength of darkened hollows and lightened ridges, 0 to 2.
     #[arg(long, default_value_t = 1.0)]
     pub cavity: f32,
-    /// How strongly forms shade their own hollows and each other, 0 to 2.
+    /// Strength of ambient occlusion, 0 to 2.
     #[arg(long, default_value_t = 1.0)]
     pub shade: f32,
-    /// Edges of triangles over the clay.
+    /// Draw the edges of triangles.
     #[arg(long)]
     pub wireframe: bool,
-    /// So many pictures of one whole turn, numbered: NAME-000.png and on.
+    /// Render this number of pictures of a full turn, numbered: NAME-000.png and on.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(2..=999))]
     pub turntable: Option<u32>,
 }

@@ -60,7 +60,7 @@ struct ReplayAnswer {
     jumps_missed: u64,
     /// Pictures written.
     frames: u32,
-    /// What of the file could not be read, if anything.
+    /// Description of the unreadable part of the file, if any.
     loss: Option<String>,
 }
 

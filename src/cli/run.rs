@@ -56,7 +56,7 @@ pub struct RunArgs {
     /// Full screen, for an installation.
     #[arg(long)]
     pub kiosk: bool,
-    /// Settings of the installation, in the place of the built-in config/kiosk.toml.
+    /// Settings of the installation, instead of the built-in config/kiosk.toml.
     #[arg(long, value_name = "FILE", requires = "kiosk")]
     pub kiosk_config: Option<PathBuf>,
     /// End after this many seconds of the loop's time.
@@ -66,27 +66,27 @@ pub struct RunArgs {
     /// May be repeated.
     #[arg(long, value_name = "RECORDING")]
     pub play_device: Vec<PathBuf>,
-    /// Which part of the tablet a played recording covers the view with: the part that it uses, or
-    /// all of it.
+    /// Part of the tablet that a played recording maps to the view: the part that it uses, or the
+    /// whole area.
     #[arg(long, value_enum, default_value_t)]
     pub play_area: PlayArea,
-    /// Write the mesh here at the end; the name's ending says the format.
+    /// Write the mesh to this file at the end; its extension selects the format.
     #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
-    /// Write the summary here at the end, as JSON.
+    /// Write the summary to this file at the end, as JSON.
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
-    /// How fast recordings are played. Headless, the default is as fast as the machine can; in a
-    /// window, as it was.
+    /// Playback speed of recordings. The default is as fast as the machine can without a window,
+    /// and the recorded speed with one.
     #[arg(long, value_enum)]
     pub pace: Option<Pace>,
-    /// Serve figures for Prometheus here, at /metrics; a port alone is on the loopback. No page
-    /// does without.
+    /// Serve metrics for Prometheus at this address, under /metrics; a port alone means the
+    /// loopback. Without this option nothing is served.
     #[cfg(unix)]
     #[arg(long, value_name = "PORT|ADDRESS:PORT", value_parser = sculptd_daemon::metrics::address)]
     pub metrics: Option<std::net::SocketAddr>,
-    /// Send figures and the log to a collector of OpenTelemetry: OTLP over HTTP. Without a URL to
-    /// the one of the environment, OTEL_EXPORTER_OTLP_ENDPOINT, or http://127.0.0.1:4318.
+    /// Send metrics and the log to an OpenTelemetry collector: OTLP over HTTP. The default URL is
+    /// that of the environment, OTEL_EXPORTER_OTLP_ENDPOINT, or http://127.0.0.1:4318.
     #[cfg(unix)]
     #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = "")]
     pub telemetry: Option<String>,
@@ -97,7 +97,7 @@ pub struct RunArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum PlayArea {
-    /// Where the recording's contacts are.
+    /// The area of the recording's contacts.
     #[default]
     Used,
     /// The whole active area.
@@ -171,7 +171,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             .flatten();
     let session = args.session.as_ref().or(own.as_ref());
     let fresh = !session.is_some_and(|s| s.exists());
-    // A large mesh is loaded in sight, with its progress, once the window is there.
+    // A large mesh is loaded after the window opens, with visible progress.
     let (meshes, later) = match args.mesh.clone() {
         m if m.len() == 1 && window && fresh && kiosk.is_none() && is_large(&m[0]) => {
             (Vec::new(), m.into_iter().next())
@@ -286,7 +286,7 @@ fn own_brushes(named: Option<&Path>) -> Result<Option<BrushFolder>, Fail> {
     }))
 }
 
-/// What a person has bound to the controls of tablets.
+/// Reads the user's bindings of tablet controls.
 fn tablet_controls() -> TabletControls {
     let Some(file) = TabletControls::default_file() else { return TabletControls::default() };
     let (controls, told) = TabletControls::of_file(&file);
@@ -303,7 +303,7 @@ fn is_large(mesh: &Path) -> bool {
     std::fs::metadata(mesh).is_ok_and(|m| m.is_file() && m.len() >= LARGE_FILE)
 }
 
-/// Whether a daemon that has lost its window already shows what is asked for.
+/// Returns true if a daemon that has lost its window already shows the requested sculpture.
 #[cfg(unix)]
 fn follows_lost_window(args: &RunArgs) -> bool {
     let plain = args.mesh.is_empty() && args.play_device.is_empty() && !args.kiosk;

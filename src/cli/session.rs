@@ -22,31 +22,31 @@ pub enum SessionCommand {
         /// The user's own state folder if left out.
         folder: Option<PathBuf>,
     },
-    /// What a session holds, and how whole it is. Ends with 1 if it is damaged.
+    /// Show the contents and the condition of a session. Exits with 1 if it is damaged.
     Show { session: PathBuf },
-    /// Every place that the work was at, branches too; `sculptd ctl jump` goes to one of a running
-    /// daemon's.
+    /// List every place in the history, including branches; `sculptd ctl jump` goes to a place of a
+    /// running daemon's.
     History {
         session: PathBuf,
-        /// Write the small picture of each place into this folder, as place-00000.png and on.
+        /// Write a thumbnail of each place into this folder, as place-00000.png and on.
         #[arg(long, value_name = "FOLDER")]
         pictures: Option<PathBuf>,
     },
-    /// Remove the oldest sessions, or shorten the histories of those that stay; says which, and
-    /// does it only with --yes.
+    /// Remove the oldest sessions, or shorten the histories of the others. Lists them, and changes
+    /// them only with --yes.
     Prune {
         folder: Option<PathBuf>,
-        /// How many of the newest stay.
+        /// Number of newest sessions to keep.
         #[arg(long, value_name = "N", default_value_t = 20)]
         keep: usize,
-        /// Let the oldest places of each session that stays go, until its history takes so many
-        /// MiB.
+        /// Remove the oldest places of each remaining session until its history is at most this
+        /// many MiB.
         #[arg(long, value_name = "MIB")]
         history: Option<u64>,
         #[arg(long)]
         yes: bool,
     },
-    /// Save what can be read of a damaged session into a new file beside it.
+    /// Salvage a damaged session into a new file beside it.
     Save { session: PathBuf },
 }
 
@@ -105,7 +105,7 @@ struct Shorter {
     path: PathBuf,
     /// Bytes of its history before.
     bytes: u64,
-    /// What went; none where nothing was done yet.
+    /// The removed places and freed bytes; absent if nothing was done yet.
     freed: Option<Freed>,
 }
 

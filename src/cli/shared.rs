@@ -44,14 +44,14 @@ pub struct SharedArgs {
     /// others, and which shows nothing of theirs. Without it, what the link says, or a sculptor.
     #[arg(long, value_enum, value_name = "ROLE", requires = "join")]
     pub role: Option<JoinRole>,
-    /// What the others call you; without it, what the link says, or the name of your account.
+    /// Your name for the others; default: the name in the link, or that of your account.
     #[arg(long = "as", value_name = "NAME")]
     pub person: Option<String>,
-    /// Where to listen for others, as tcp/0.0.0.0:7447. May be repeated; without it, any port.
+    /// Listen for others on this endpoint, as tcp/0.0.0.0:7447. May be repeated; default: any port.
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Vec<String>,
-    /// Whom to connect to, as tcp/studio.local:7447. May be repeated. Others on the local network
-    /// are found without it.
+    /// Connect to this endpoint, as tcp/studio.local:7447. May be repeated. Others on the local
+    /// network are found without it.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Vec<String>,
 }
@@ -92,7 +92,7 @@ impl std::fmt::Debug for JoinText {
 }
 
 impl SharedArgs {
-    /// What is joined. Nothing of a link is in an error.
+    /// Returns the link to join. Errors contain no part of a link.
     fn target(&self) -> Result<JoinLink, Fail> {
         let text = self.join.as_ref().map_or("", |j| &j.0);
         let mut read = String::new();
@@ -117,12 +117,13 @@ impl SharedArgs {
         JoinLink::read(link).map_err(|e| Fail::Usage(format!("--join: not a link to join: {e}")))
     }
 
-    /// Whether anything is shared.
+    /// Returns true if the sculpture is shared.
     pub fn is_on(&self) -> bool {
         self.host.is_some() || self.join.is_some()
     }
 
-    /// Whether this is the screen or the tablet of others' work: nothing of it is kept here.
+    /// Returns true if this run is only a viewer or a device of another's sculpture. It stores
+    /// nothing then.
     pub fn looks_on(&self) -> bool {
         self.join.is_some() && self.role.is_some_and(|role| role != JoinRole::Sculptor)
     }
@@ -179,8 +180,8 @@ impl SharedArgs {
         Ok(Box::new(shared.link))
     }
 
-    /// Joins, and waits for the world of the others; the host's rate becomes that of the own loop.
-    /// `alone` begins the world of a device, which is shown nothing.
+    /// Joins a shared sculpture and waits for its world. The local loop uses the host's rate.
+    /// `alone` creates the world of a device, which receives nothing.
     pub fn join(
         &self,
         config: &mut Config,

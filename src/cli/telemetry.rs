@@ -1,5 +1,5 @@
-//! `sculptd run --telemetry [URL]`: figures and the log for a collector of OpenTelemetry. What is
-//! usual in its environment is heeded: `OTEL_EXPORTER_OTLP_ENDPOINT`, `OTEL_EXPORTER_OTLP_HEADERS`,
+//! `sculptd run --telemetry [URL]`: sends metrics and the log to an OpenTelemetry collector. It
+//! reads the standard variables: `OTEL_EXPORTER_OTLP_ENDPOINT`, `OTEL_EXPORTER_OTLP_HEADERS`,
 //! `OTEL_RESOURCE_ATTRIBUTES`, `OTEL_SERVICE_NAME`, `OTEL_METRIC_EXPORT_INTERVAL` (milliseconds).
 
 use std::fmt::Write as _;
@@ -17,19 +17,19 @@ use sculptd_daemon::telemetry::log_queue::{LogQueue, LogRecord};
 use sculptd_daemon::telemetry::otlp::Resource;
 use sculptd_daemon::telemetry::{TelemetryOptions, host_name};
 
-/// Where a collector of this computer listens.
+/// Address of a collector on this computer.
 const NEAR: &str = "http://127.0.0.1:4318";
-/// Between two exports, where nothing else is said.
+/// Default interval between two exports.
 const EVERY_MS: u64 = 15_000;
-/// The least and the most of it.
+/// Least and greatest interval.
 const BOUNDS_MS: (u64, u64) = (100, 3_600_000);
 
 static LOGS: LazyLock<Arc<LogQueue>> = LazyLock::new(Arc::default);
 
-/// What `--telemetry` asks for; `url`: as it stands there, empty where none does.
+/// Returns the options of `--telemetry`. `url`: the given value, empty if there is none.
 ///
 /// # Errors
-/// [`Fail::Usage`] for what cannot be read.
+/// Returns [`Fail::Usage`] for an invalid value.
 pub fn options(url: &str) -> Result<TelemetryOptions, Fail> {
     let env = |name: &str| std::env::var(name).ok().filter(|v| !v.trim().is_empty());
     let (name, text) = match (url, env("OTEL_EXPORTER_OTLP_ENDPOINT")) {

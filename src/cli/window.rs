@@ -1,5 +1,5 @@
-//! `sculptd window`: a window of the running daemon on this screen, where it has none or has lost
-//! its own.
+//! `sculptd window`: opens a window of the running daemon on this screen, if it has none or has
+//! lost it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -14,8 +14,7 @@ use sculptd_daemon::window_link::DisplayVariables;
 
 /// Longest wait for one answer.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// How often the daemon is asked whether it shows the window, and for how long: a large session
-/// takes its time to open.
+/// Interval and number of polls for the window: a large session takes time to open.
 const ASK: Duration = Duration::from_millis(100);
 const ASKED: usize = 1200;
 
@@ -23,7 +22,7 @@ fn status() -> Option<Value> {
     call(&default_path(), "status", &Value::Null, PATIENCE).ok()
 }
 
-/// The session of a running daemon that has lost its window.
+/// Returns the session of a running daemon that has lost its window.
 pub fn lost() -> Option<PathBuf> {
     let status = status()?;
     let session = status["session"].as_str().map(PathBuf::from)?;
@@ -33,7 +32,7 @@ pub fn lost() -> Option<PathBuf> {
 /// The screen of this process, as the parameters of `window`.
 fn screen() -> Value {
     let variable = |name: &str| std::env::var(name).ok().filter(|v| !v.is_empty());
-    // The socket of a compositor lies in a folder that the daemon may not have as its own.
+    // The compositor's socket may be in a folder that is not the daemon's `XDG_RUNTIME_DIR`.
     let wayland = variable("WAYLAND_DISPLAY").map(|name| {
         let folder = variable("XDG_RUNTIME_DIR").unwrap_or_default();
         Path::new(&folder).join(name).display().to_string()
@@ -54,7 +53,7 @@ pub fn run(json: bool) -> Outcome {
         e => Fail::Input(e.to_string()),
     })?;
     let quiet = crossbeam_channel::never::<()>();
-    // Until the daemon has begun anew it still says that the window is lost.
+    // Until the daemon has restarted, it still reports the window as lost.
     for _ in 0..ASKED {
         let _ = quiet.recv_timeout(ASK);
         match status().and_then(|s| s["window"].as_str().map(str::to_owned)).as_deref() {
@@ -73,8 +72,8 @@ pub fn run(json: bool) -> Outcome {
     Err(Fail::Device("the daemon has not shown its window within two minutes".into()))
 }
 
-/// Goes on with a session in a window on another screen: in the same process, begun anew, for a
-/// process can make one window.
+/// Continues a session in a window on another screen. It restarts the process, because a process
+/// can create only one window.
 #[cfg(unix)]
 pub fn go_on(session: &Path, screen: &DisplayVariables, arguments: &[OsString]) -> Outcome {
     use std::os::unix::process::CommandExt;

@@ -37,12 +37,12 @@ impl Drop for WaitAtExit {
     }
 }
 
-/// Runs `show` on this thread. Where it panics, the answer is `Err` with the reason. Where it ends
-/// the process, this call never returns: `survivor` runs on a thread of its own, gives the exit
-/// code, and the process ends with that.
+/// Runs `show` on this thread. Returns `Err` with the reason if it panics. If it ends the process,
+/// this call never returns: `survivor` runs on a separate thread and returns the exit code of the
+/// process.
 ///
 /// # Errors
-/// Where `show` fails or panics, and where there can be no survivor.
+/// Returns an error if `show` fails or panics, or if the survivor cannot start.
 pub fn guarded(
     show: impl FnOnce() -> Result<(), String>,
     survivor: impl FnOnce() -> u8 + Send + 'static,

@@ -8,8 +8,8 @@ use serde_json::{Map, Value};
 use crate::range::{COORDINATE, Range, SHARE, STROKE_MS, VIEW};
 use crate::wire::RpcError;
 
-/// Settings of a brush, named as in the configuration's `[brush]`. As parameters, what is named
-/// changes and the rest stays; as a reply, everything is there.
+/// Settings of a brush, named as in the configuration's `[brush]`. As parameters, only the named
+/// settings change; a reply contains all.
 ///
 /// The daemon knows the range of each number and refuses others with the name, the value and the
 /// range; the numbers here are as the configuration file documents them.
@@ -17,13 +17,14 @@ use crate::wire::RpcError;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct BrushSettings {
-    /// The brush, by the name that `brushes` lists. Another brush comes with its own settings.
+    /// The brush, by the name that `brushes` lists. A change of the brush restores that brush's
+    /// settings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
     /// Radius, as a share of the object's bounding radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
-    /// How much one dab does; for brushes that raise, its height as a share of the radius.
+    /// Strength of one dab; for brushes that raise, its height as a share of the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strength: Option<f32>,
     /// The opposite of what the brush does: carve instead of raise.
@@ -32,10 +33,10 @@ pub struct BrushSettings {
     /// Distance between dabs, as a share of the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f32>,
-    /// How pressure scales the strength.
+    /// Pressure curve of the strength.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_strength: Option<PressureCurve>,
-    /// How pressure scales the radius.
+    /// Pressure curve of the radius.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_radius: Option<PressureCurve>,
     /// Mirror images over the planes x = 0, y = 0, z = 0 through the object's middle.
@@ -84,7 +85,7 @@ pub type BrushesReply = Vec<BrushInfo>;
 pub struct BrushInfo {
     /// Its name, for [`BrushSettings::kind`].
     pub name: String,
-    /// What it does, one sentence.
+    /// Description of the brush, one sentence.
     pub about: String,
     /// The settings that it comes with.
     pub settings: BrushSettings,
@@ -121,11 +122,11 @@ pub struct PictureReply {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskParams {
-    /// What is done to the mask of the whole object.
+    /// Change of the whole object's mask.
     pub action: MaskAction,
 }
 
-/// What is done to the mask of the whole object.
+/// Change of the whole object's mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -134,7 +135,7 @@ pub enum MaskAction {
     Clear,
     /// Everything is protected.
     Fill,
-    /// What was free is protected, and the other way round.
+    /// Swaps free and protected.
     Invert,
     /// Each vertex takes the mean of its neighbours.
     Blur,
@@ -154,25 +155,25 @@ pub enum MaskAction {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskMeasuredParams {
-    /// What is measured.
+    /// Measure to mask by.
     pub by: MaskMeasure,
 }
 
-/// What is protected by a measure of the whole object.
+/// Measure of the whole object that decides the mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskMeasure {
-    /// What is at most so thick, in the unit of the scene; more than 0.
+    /// Masks walls up to this thickness, in the unit of the scene; more than 0.
     Thin(f64),
-    /// Where the object keeps at least this share of the light of an even sky from itself: ambient
+    /// Masks places where the object blocks at least this share of an even sky's light: ambient
     /// occlusion. More than 0.
     Occlusion(
         #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32,
     ),
 }
 
-/// What came of `mask-measured`.
+/// Result of `mask-measured`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MaskMeasuredReply {
@@ -185,7 +186,7 @@ pub struct MaskMeasuredReply {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskRegionParams {
-    /// What is masked, all the way through.
+    /// Region to mask, all the way through.
     pub region: ViewRegion,
     /// The mask there: 1 protects, 0 frees.
     #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))]
@@ -222,16 +223,16 @@ pub enum ViewRegion {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CurveParams {
-    /// What is done with the curve.
+    /// Action on the curve.
     pub act: CurveAction,
 }
 
-/// What is done with the curve that a pen has laid with the method `curve`.
+/// Action on the curve that a pen has laid with the method `curve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CurveAction {
-    /// The brush is drawn along it, as one stroke.
+    /// Draws the brush along it, as one stroke.
     Apply,
     /// It is discarded.
     Cancel,
@@ -262,7 +263,7 @@ pub struct StrokeParams {
     /// start of the stroke, 0 to 60,000, and rises by at least 1 from point to point.
     #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 1000)))]
     pub points: Vec<StrokePoint>,
-    /// What the points' coordinates are.
+    /// Space of the points' coordinates.
     pub space: StrokeSpace,
     /// Settings for this stroke alone; the brush in hand comes back afterwards.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -337,7 +338,7 @@ pub enum StrokePoint {
     World(#[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 5]),
 }
 
-/// What the coordinates of a stroke's points are.
+/// Space of the coordinates of a stroke's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

@@ -1,8 +1,8 @@
-//! Holds parameters against the ranges of the schema, before anything is made of them.
+//! Checks parameters against the ranges of the schema, before anything is made of them.
 //!
-//! The types say what shape parameters have; the ranges of their numbers and the lengths of their
-//! lists stand in `schema.json`, which is generated from the same types. A number is therefore
-//! published and checked by one declaration.
+//! The types define the shape of parameters; `schema.json`, which is generated from the same types,
+//! defines the ranges of their numbers and the lengths of their lists. One declaration therefore
+//! both publishes and checks a number.
 
 use std::sync::LazyLock;
 
@@ -97,8 +97,8 @@ fn bounds(value: f64, min: Option<f64>, max: Option<f64>) -> Result<(), String> 
     }
 }
 
-/// Whether a value has the shape of a branch: its type, its named constants, its fields, its
-/// number of items. Ranges do not count, so that a number out of range is told as one.
+/// Returns true if a value has the shape of a branch: its type, its named constants, its fields,
+/// its number of items. Ranges are ignored, so that a number out of range is reported as one.
 fn fits(schema: &Value, value: &Value) -> bool {
     let schema = resolve(schema);
     if !schema["const"].is_null() && schema["const"] != *value {
@@ -124,7 +124,7 @@ fn fits(schema: &Value, value: &Value) -> bool {
         Value::Object(fields) => schema["required"]
             .as_array()
             .is_none_or(|all| all.iter().filter_map(Value::as_str).all(|k| fields.contains_key(k))),
-        // Branches that are lists are told apart by their fixed lengths.
+        // Branches that are lists are distinguished by their fixed lengths.
         Value::Array(items) if schema["minItems"] == schema["maxItems"] => {
             schema["minItems"].as_u64().is_none_or(|n| n == items.len() as u64)
         }

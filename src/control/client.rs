@@ -26,13 +26,13 @@ pub enum ClientError {
         /// The socket.
         path: PathBuf,
     },
-    /// The socket lies in a folder of the temporary directory that is not this user's alone: what
-    /// listens there may be anybody.
+    /// The socket is in a folder of the temporary directory that other users can access: any user's
+    /// program may listen there.
     #[error("{}: {why}", path.display())]
     Foreign {
         /// The socket.
         path: PathBuf,
-        /// What is wrong with the folder.
+        /// The fault of the folder.
         why: String,
     },
     /// The daemon did not answer in time, or closed the connection.
@@ -40,7 +40,7 @@ pub enum ClientError {
     Silent {
         /// The socket.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// The daemon refused the request.
@@ -103,7 +103,7 @@ impl Client {
     /// Calls a method and waits for its reply.
     ///
     /// # Errors
-    /// Where the daemon refuses, does not answer in time, or answers something else.
+    /// The daemon refuses, does not answer in time, or gives an unexpected answer.
     pub fn call<M: Method>(&mut self, params: &M::Params) -> Result<M::Reply, ClientError> {
         let malformed = |e: serde_json::Error| ClientError::Malformed(e.to_string());
         let params = serde_json::to_value(params).map_err(malformed)?;
@@ -151,7 +151,7 @@ impl Client {
     /// The next event, after `subscribe`; `None` where none comes within `patience`.
     ///
     /// # Errors
-    /// Where the daemon has closed the connection or sends something else.
+    /// The daemon has closed the connection or sends something unexpected.
     pub fn next_event(&mut self, patience: Duration) -> Result<Option<EventNotice>, ClientError> {
         use std::io::ErrorKind::{TimedOut, WouldBlock};
         if let Some(event) = self.events.pop_front() {
@@ -217,8 +217,8 @@ pub fn call(
     Client::connect(path, patience)?.call_by_name(method, params.clone())
 }
 
-/// Where a daemon listens unless it is told otherwise: `$XDG_RUNTIME_DIR/sculptd.sock`, else a
-/// folder of the user's own under the temporary folder.
+/// Returns the default socket path of a daemon: `$XDG_RUNTIME_DIR/sculptd.sock`, else in the user's
+/// folder under the temporary folder.
 pub fn default_path() -> PathBuf {
     match std::env::var_os("XDG_RUNTIME_DIR") {
         Some(dir) if !dir.is_empty() => PathBuf::from(dir).join("sculptd.sock"),
@@ -226,8 +226,8 @@ pub fn default_path() -> PathBuf {
     }
 }
 
-/// What is wrong with the fallback folder in the temporary directory, if the socket lies in it:
-/// another user may have made it, or may put a socket of their own into it.
+/// Returns the fault of the fallback folder in the temporary directory, if the socket is in it:
+/// another user may have made it, or may put a socket into it.
 pub fn foreign_folder(path: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
     let folder = path.parent()?;
@@ -235,7 +235,7 @@ pub fn foreign_folder(path: &Path) -> Option<String> {
     if folder.parent() != Some(&std::env::temp_dir()) || folder.file_name()? != own.as_str() {
         return None;
     }
-    // Where it is missing, nobody has made it.
+    // A missing folder belongs to nobody.
     let about = std::fs::symlink_metadata(folder).ok()?;
     let remedy = "set XDG_RUNTIME_DIR to a folder of your own";
     if !about.is_dir() || about.uid() != user_id() {

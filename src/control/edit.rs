@@ -13,10 +13,10 @@ use crate::range::{COORDINATE, VIEW};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Operation {
-    /// What either covers. Version 1 calls it `add` in `join`.
+    /// Everything that either covers. Version 1 calls it `add` in `join`.
     #[serde(alias = "add")]
     Union,
-    /// What both cover. Version 1 calls it `keep` in `join`.
+    /// Everything that both cover. Version 1 calls it `keep` in `join`.
     #[serde(alias = "keep")]
     Intersection,
     /// The object without the tool. Version 1 calls it `carve` in `join`.
@@ -64,11 +64,11 @@ pub struct BooleanReply {
     pub pages_written: u64,
     /// Pages that stayed as they were.
     pub pages_shared: u64,
-    /// How often it was computed: again where the object changed there meanwhile.
+    /// Number of computations: repeated if the object changed there meanwhile.
     pub tries: u64,
-    /// How long it took, seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
-    /// Layers that were baked into the surface, because all of it was computed anew. Where only the
+    /// Layers that were baked into the surface, because all of it was recomputed. If only the
     /// surroundings of the tool were, the layers stay.
     #[serde(default)]
     pub layers_baked: u64,
@@ -83,7 +83,7 @@ pub struct BooleanReply {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrimParams {
-    /// What is cut off, all the way through.
+    /// Part to cut off, all the way through.
     pub part: TrimRegion,
 }
 
@@ -108,9 +108,9 @@ pub enum TrimRegion {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProgressReply {
-    /// Whether a Boolean is under way.
+    /// True while a Boolean is under way.
     pub running: bool,
-    /// How far it is, 0 to 1; `null` where none is.
+    /// Progress, 0 to 1; `null` if no Boolean is under way.
     pub done: Option<f32>,
 }
 
@@ -118,7 +118,7 @@ pub struct ProgressReply {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CancelReply {
-    /// Whether there was one to cancel.
+    /// True if a Boolean was cancelled.
     pub cancelled: bool,
 }
 
@@ -148,7 +148,7 @@ pub enum LevelStep {
 pub struct LevelReply {
     /// The level that is shown from now on.
     pub level: u64,
-    /// How many there are.
+    /// Number of levels.
     pub levels: u64,
     /// Layers that were baked into the surface before another level took its place.
     #[serde(default)]
@@ -190,7 +190,7 @@ pub struct RemeshReply {
     /// Pairs of triangles that cross each other.
     #[serde(default)]
     pub self_intersections: u64,
-    /// How long it took, seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     #[serde(default)]
@@ -199,7 +199,7 @@ pub struct RemeshReply {
     /// they were carried over.
     #[serde(default)]
     pub sets_dropped: u64,
-    /// What of the old surface the new one does not hold, in words.
+    /// Properties of the old surface that the new one lacks, in words.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
@@ -234,16 +234,16 @@ pub struct HistoryNode {
     pub parent: Option<u64>,
     /// The tick that made it.
     pub tick: u64,
-    /// What made it: the name of the event, for `Jump` with the node that was gone to.
+    /// Cause of the node: the name of the event, for `Jump` with the target node.
     #[serde(alias = "event")]
     pub deed: Value,
     /// Pages of the mesh that the step changed.
     pub changed: u64,
     /// Pages of the mesh.
     pub pages: u64,
-    /// Whether another branch leaves the node before.
+    /// True if another branch starts at the previous node.
     pub branch: bool,
-    /// Whether the object is here.
+    /// True if the object is at this node.
     pub here: bool,
 }
 
@@ -253,7 +253,7 @@ pub struct HistoryNode {
 pub struct LoadReply {
     /// Vertices of the mesh.
     pub vertices: u64,
-    /// What was left out or guessed, one sentence each.
+    /// Data that was left out or guessed, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -263,7 +263,7 @@ pub struct LoadReply {
 pub struct TakeUpReply {
     /// Triangles of the mesh.
     pub triangles: u64,
-    /// What was left out or guessed, one sentence each.
+    /// Data that was left out or guessed, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -277,7 +277,7 @@ pub struct ExportReply {
     pub tick: u64,
     /// Vertices that were written.
     pub vertices: u64,
-    /// What of the objects the format does not hold, one sentence each.
+    /// Properties of the objects that the format cannot hold, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
@@ -292,7 +292,7 @@ pub struct HashReply {
     pub hash: String,
 }
 
-/// How wall thickness is defined; as `--method` of `sculptd thickness`.
+/// Definition of wall thickness; as `--method` of `sculptd thickness`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -360,7 +360,7 @@ pub struct ThicknessReply {
     pub upper: Option<f64>,
     /// The two bounds are proven over the whole surface.
     pub certified: bool,
-    /// What the bounds say, in one sentence.
+    /// Meaning of the bounds, in one sentence.
     pub statement: String,
     /// The share of the area below the limit, in per cent; `null` without a limit.
     pub below_percent: Option<f64>,

@@ -1,4 +1,4 @@
-//! What a subscribed client is told: one line for each change.
+//! Events sent to a subscribed client: one line for each change.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::status::Losses;
 pub enum EventName {
     /// The mesh changed.
     Work,
-    /// A step was made, taken back or done again.
+    /// A step was made, undone or redone.
     History,
     /// The brush or one of its settings changed.
     Brush,
@@ -55,19 +55,19 @@ pub struct SubscribeReply {
 pub struct EventNotice {
     /// The tick at which the change was seen.
     pub tick: u64,
-    /// What changed, and what it is now.
+    /// Kind of the change, and the new state.
     #[serde(flatten)]
     pub event: Event,
 }
 
-/// What changed, and its new state. Changes within 50 ms of each other are one event.
+/// Kind of a change, and the new state. Changes within 50 ms of each other are one event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "event", content = "now", rename_all = "kebab-case")]
 pub enum Event {
     /// The mesh changed.
     Work(MeshState),
-    /// A step was made, taken back or done again.
+    /// A step was made, undone or redone.
     History(HistoryState),
     /// The brush or one of its settings changed.
     Brush(Box<BrushSettings>),
@@ -102,20 +102,20 @@ pub struct MeshState {
     pub triangles: u64,
 }
 
-/// How far `undo` and `redo` go.
+/// Reach of `undo` and `redo`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryState {
-    /// Steps that can be taken back.
+    /// Number of steps that `undo` can reach.
     pub undo_steps: u64,
-    /// Steps that can be done again.
+    /// Number of steps that `redo` can reach.
     pub redo_steps: u64,
 }
 
-/// Whether the session file takes what is written.
+/// State of the session file's writes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JournalState {
-    /// Why not; `null` while all is well, and where no session is recorded.
+    /// The fault; `null` while all is well, or if no session is recorded.
     pub fault: Option<String>,
 }

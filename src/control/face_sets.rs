@@ -23,9 +23,9 @@ pub struct FaceSetsReply {
 pub struct FaceSetInfo {
     /// Its number.
     pub set: u16,
-    /// How many vertices are in it.
+    /// Number of vertices in it.
     pub vertices: u64,
-    /// How many of them are hidden.
+    /// Number of hidden vertices in it.
     pub hidden: u64,
     /// Its name; `null`: it has none.
     #[serde(default)]
@@ -46,12 +46,12 @@ pub struct FaceSetNameParams {
     pub name: Option<String>,
 }
 
-/// What a face set is made from.
+/// Source of a face set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceSetSource {
-    /// What is masked by half or more becomes a new set.
+    /// The vertices masked by half or more become a new set.
     Mask,
     /// All that is shown becomes a new set.
     Visible,
@@ -63,12 +63,12 @@ pub enum FaceSetSource {
     Crease,
 }
 
-/// Parameters of `sets.make`. What is hidden stays in its sets.
+/// Parameters of `sets.make`. Hidden vertices stay in their sets.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FaceSetMakeParams {
-    /// What the sets are made from.
+    /// Source of the sets.
     pub from: FaceSetSource,
     /// Of `normals` and `crease`; 0 to 180, without it 40.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -89,7 +89,7 @@ pub struct FaceSetParams {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(inner(range(min = 0.0, max = 1.0))))]
     pub at: Option<[f32; 2]>,
-    /// What is masked by half or more, in the place of a set.
+    /// Acts on the vertices masked by half or more, instead of a set.
     pub masked: bool,
 }
 
@@ -122,12 +122,12 @@ pub struct FaceSetExtractParams {
     pub name: Option<String>,
 }
 
-/// What is done with what is seen in a region.
+/// Action on the faces seen in a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceSetRegionAction {
-    /// What of it is not hidden becomes a new face set.
+    /// Its visible part becomes a new face set.
     Make,
     /// It is hidden.
     Hide,
@@ -142,7 +142,7 @@ pub enum FaceSetRegionAction {
 pub struct FaceSetRegionParams {
     /// Where, all the way through.
     pub region: ViewRegion,
-    /// What is done with it.
+    /// Action on the region.
     pub action: FaceSetRegionAction,
     /// Only what faces the eye.
     #[serde(default)]
@@ -155,6 +155,6 @@ pub struct FaceSetRegionParams {
 pub struct FaceSetReply {
     /// The set that was made or that it was about; `null`: several, or none.
     pub set: Option<u16>,
-    /// How many sets were made.
+    /// Number of sets made.
     pub made: u64,
 }

@@ -13,7 +13,7 @@ pub struct LayersReply {
     pub layers: Vec<LayerInfo>,
     /// The layer that strokes change; `null`: the base.
     pub active: Option<u32>,
-    /// Whether strokes can change what is active: not a layer that is hidden or of an intensity
+    /// True if strokes can change the active part: not a hidden layer, nor one with an intensity
     /// nearer to 0 than 0.01.
     pub takes_strokes: bool,
 }
@@ -26,7 +26,7 @@ pub struct LayerInfo {
     pub id: u32,
     /// Its name for people.
     pub name: String,
-    /// What its offsets are multiplied by, -2 to 2.
+    /// Factor of its offsets, -2 to 2.
     pub intensity: f32,
     /// A layer that is not visible changes nothing.
     pub visible: bool,
@@ -82,11 +82,11 @@ pub struct LayerMoveParams {
 pub struct LayerSetParams {
     /// The layer.
     pub layer: u32,
-    /// What its offsets are multiplied by from now on.
+    /// New factor of its offsets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(range(min = -2.0, max = 2.0)))]
     pub intensity: Option<f32>,
-    /// Whether it is visible from now on.
+    /// New visibility.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub visible: Option<bool>,
     /// More changes of this layer follow, as while a slider is dragged. Together with the first one

@@ -50,7 +50,7 @@ use crate::wire::{Code, Envelope, RpcError};
 pub trait Method {
     /// Its name on the line.
     const NAME: &'static str;
-    /// What it does, for people.
+    /// Its description, for people.
     const ABOUT: &'static str;
     /// Its parameters.
     type Params: Serialize + DeserializeOwned;
@@ -63,7 +63,7 @@ pub trait Method {
 pub struct MethodInfo {
     /// Its name on the line.
     pub name: &'static str,
-    /// What it does, for people.
+    /// Its description, for people.
     pub about: &'static str,
 }
 
@@ -131,7 +131,7 @@ macro_rules! methods {
             /// The request as it is sent.
             ///
             /// # Errors
-            /// Where a parameter has no JSON form (a path that is not UTF-8).
+            /// A parameter has no JSON form (a path that is not UTF-8).
             pub fn envelope(&self, id: u64) -> serde_json::Result<Envelope> {
                 match self {
                     $(Request::$variant(p) => {
@@ -141,19 +141,19 @@ macro_rules! methods {
             }
         }
 
-        /// What answers requests: one function a method.
+        /// Handler of requests: one function per method.
         pub trait Handler {
             $($(#[doc = $about])+
             ///
             /// # Errors
-            /// Where it cannot be carried out; the text says why.
+            /// The request cannot be carried out; the text says why.
             fn $handler(&self, params: $params) -> Result<$reply, RpcError>;)+
         }
 
         /// Carries out a request.
         ///
         /// # Errors
-        /// What the handler refuses, and a reply that has no JSON form.
+        /// The error of the handler, or a reply that has no JSON form.
         pub fn answer<H: Handler + ?Sized>(
             handler: &H,
             request: Request,
@@ -188,7 +188,7 @@ methods! {
     "status" Status status(StatusParams) -> StatusReply;
     /// Changes the named settings of the brush, and answers with all.
     "brush" Brush brush(BrushSettings) -> BrushSettings;
-    /// Every brush, what it does, its settings, its own numbers.
+    /// Lists every brush: its description, its settings, its special numbers.
     "brushes" Brushes brushes(NoParams) -> BrushesReply;
     /// Loads a picture of heights (PNG, TIFF, EXR), for brushes with the alpha `picture`.
     "picture" Picture picture(PathParams) -> PictureReply;
@@ -206,10 +206,10 @@ methods! {
     "people" People people(NoParams) -> PeopleReply;
     /// Changes the named settings of the camera, and answers with all.
     "camera" Camera camera(CameraSettings) -> CameraSettings;
-    /// Takes back one step; of a shared sculpture the newest of the own person, unless somebody
-    /// else has changed the same since: `people` says who.
+    /// Undoes one step; of a shared sculpture the person's newest step, unless somebody else has
+    /// since changed the same part: `people` reports who.
     "undo" Undo undo(NoParams) -> SentReply;
-    /// Does the step that was taken back again; of a shared sculpture as `undo`.
+    /// Redoes the step that was undone last; of a shared sculpture as `undo`.
     "redo" Redo redo(NoParams) -> SentReply;
     /// Every node of the history, branches too, as the session file keeps them.
     "history" History history(NoParams) -> HistoryReply;
@@ -217,8 +217,7 @@ methods! {
     "jump" Jump jump(JumpParams) -> SentReply;
     /// Replaces the object by a mesh from a file of at most 1 GiB.
     "load" Load load(PathParams) -> LoadReply;
-    /// Writes the visible objects, or those that are named, to a file; the name's ending says the
-    /// format.
+    /// Writes the visible objects, or the named ones, to a file; the extension selects the format.
     "export" Export export(ExportParams) -> ExportReply;
     /// One number over all objects.
     "hash" Hash hash(NoParams) -> HashReply;
@@ -240,10 +239,10 @@ methods! {
     /// Gives the object quads that follow the shape, its creases and guide lines, or makes them the
     /// lowest of several levels: one step of undo. Masks and colours are carried over.
     "remesh.quads" RemeshQuads remesh_quads(RemeshQuadsParams) -> RemeshQuadsReply;
-    /// Gives triangles one size where the surface was stretched, or what is seen in a region: one
-    /// step of undo. What the mask protects, what is hidden and borders stay; face sets, masks and
-    /// colours are kept. An object with layers is refused. An `undo` meanwhile takes it back at
-    /// once, and is told as an error.
+    /// Gives triangles one size, either where the surface was stretched or in a region of the view:
+    /// one step of undo. Masked, hidden and border vertices stay; face sets, masks and colours are
+    /// kept. An object with layers is refused. An `undo` meanwhile cancels it at once, and it
+    /// returns an error.
     "remesh.local" RemeshLocal remesh_local(RemeshLocalParams) -> RemeshLocalReply;
     /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
     /// New crossings are undone where they can be and counted, and the border of the mask stays.
@@ -270,7 +269,7 @@ methods! {
     "scene.lock" SceneLock scene_lock(LockParams) -> ObjectReply;
     /// Gives a primitive other numbers, until its first stroke.
     "scene.reshape" SceneReshape scene_reshape(ReshapeParams) -> ObjectReply;
-    /// Places an object flush on a face of another: the two faces lie in one plane and face each
+    /// Places an object flush on a face of another: the two faces share a plane and face each
     /// other.
     "scene.snap" SceneSnap scene_snap(SnapParams) -> SnapReply;
     /// A Boolean of two objects, where they stand. The result is a new object.
@@ -285,7 +284,7 @@ methods! {
     "scene.group" SceneGroup scene_group(GroupParams) -> ObjectReply;
     /// Makes several objects one, whose parts may overlap.
     "scene.merge" SceneMerge scene_merge(MergeParams) -> CombineReply;
-    /// Makes each connected part of an object an object of its own.
+    /// Splits each connected part of an object into a separate object.
     "scene.split" SceneSplit scene_split(ObjectParams) -> CombineReply;
     /// The layers of the active object, from the lowest up.
     "layers.list" LayersList layers_list(NoParams) -> LayersReply;
@@ -315,7 +314,7 @@ methods! {
     "sets.list" SetsList sets_list(NoParams) -> FaceSetsReply;
     /// Makes face sets from the mask, from what is shown, or by the shape: one step of undo.
     "sets.make" SetsMake sets_make(FaceSetMakeParams) -> FaceSetReply;
-    /// No vertex is in a face set any more. What is hidden stays hidden.
+    /// Clears all face sets. Hidden vertices stay hidden.
     "sets.clear" SetsClear sets_clear(NoParams) -> FaceSetReply;
     /// Hides a face set, or what is masked: it is not drawn, not hit by pens and not changed by
     /// brushes. Exports keep it.
@@ -331,7 +330,7 @@ methods! {
     "sets.region" SetsRegion sets_region(FaceSetRegionParams) -> FaceSetReply;
     /// Adds an object: what is masked, or a face set, as a closed shell of a thickness.
     "sets.extract" SetsExtract sets_extract(FaceSetExtractParams) -> ObjectReply;
-    /// How far the Boolean is that is under way.
+    /// Reports the progress of the Boolean under way.
     "progress" Progress progress(NoParams) -> ProgressReply;
     /// Ends the Boolean that is under way; nothing is changed.
     "cancel" Cancel cancel(NoParams) -> CancelReply;
@@ -339,8 +338,8 @@ methods! {
     "reach" Reach reach(ReachParams) -> ReachReply;
     /// From now on sends a line for each change of mesh, history, brush, losses or session file.
     "subscribe" Subscribe subscribe(NoParams) -> SubscribeReply;
-    /// Opens a new window where there is none, or none any more. The daemon begins anew with the
-    /// same session, so its connections are closed and its socket is away for a moment.
+    /// Opens a new window if the daemon has none. The daemon restarts with the same session, so its
+    /// connections are closed and its socket is away for a moment.
     "window" Window window(WindowParams) -> WindowReply;
     /// Ends the daemon as a signal would.
     "shutdown" Shutdown shutdown(NoParams) -> ShutdownReply;

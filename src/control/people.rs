@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PeopleReply {
-    /// Whether the sculpture is shared: the daemon hosts one or has joined one.
+    /// True if the sculpture is shared: the daemon hosts one or has joined one.
     pub shared: bool,
     /// The number of the person of this daemon; 0: none, as nothing is shared.
     pub own: u8,
     /// All who ever came, in the order of their numbers.
     pub people: Vec<PersonInfo>,
-    /// What became of the input of this daemon's devices and commands; `null`: nothing is shared.
+    /// Counts of the input of this daemon's devices and commands; `null` if nothing is shared.
     #[serde(default)]
     pub own_input: Option<OwnInput>,
-    /// The newest undo or redo of the own person that was refused, as a step of somebody else is in
-    /// the way; `null`: none was.
+    /// The newest refused undo or redo of this daemon's person, blocked by a step of somebody else;
+    /// `null` if none was refused.
     #[serde(default)]
     pub undo_refused: Option<UndoRefused>,
 }
 
-/// What became of the own input: all of it is in the sculpture when `ordered` is `batches`.
+/// Counts of the local input: all of it is in the sculpture when `ordered` is `batches`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OwnInput {
@@ -60,18 +60,19 @@ pub struct PersonInfo {
     pub number: u8,
     /// As the person wants to be called.
     pub name: String,
-    /// What the person may do.
+    /// Permissions of the person.
     pub role: PersonRole,
     /// The person is connected.
     pub here: bool,
     /// The colour of the person in every window: `#` and six hexadecimal digits.
     pub colour: String,
-    /// Where the person's pens meet the clay, but for the own: `status` has those.
+    /// Contact points of the person's pens with the clay; empty for this daemon's person, whose
+    /// pens are in `status`.
     #[serde(default)]
     pub pens: Vec<PersonPen>,
 }
 
-/// What a person may do.
+/// Permissions of a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -88,7 +89,7 @@ pub enum PersonRole {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PersonPen {
-    /// Where it meets the clay, in the world.
+    /// Position on the clay, in the world.
     pub position: [f32; 3],
     /// The surface's normal there, of length 1.
     pub normal: [f32; 3],

@@ -23,7 +23,7 @@ impl Range {
 /// A coordinate of a point in space, in the mesh's unit.
 pub const COORDINATE: Range = Range { min: -1e6, max: 1e6 };
 /// A coordinate of a point in the view. (0, 0) is the top left and (1, 1) the bottom right; points
-/// outside lie beside the view.
+/// outside are beside the view.
 pub const VIEW: Range = Range { min: -10.0, max: 10.0 };
 /// A share: of pressure, or of a measure.
 pub const SHARE: Range = Range { min: 0.0, max: 1.0 };

@@ -50,11 +50,11 @@ pub struct RemeshQuadsReply {
     pub self_intersections: u64,
     /// Vertices of finer levels without a place on the old surface: these are smooth.
     pub without_detail: u64,
-    /// How long it took, seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     pub layers_baked: u64,
-    /// What was changed first, one sentence each.
+    /// Changes made beforehand, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -113,9 +113,9 @@ pub struct DecimateReply {
     pub volume: f64,
     /// Pairs of triangles that cross each other where none did before.
     pub new_self_intersections: u64,
-    /// How often it was computed again, more carefully, so that nothing crosses.
+    /// Number of more careful repetitions to avoid crossings.
     pub repeated: u64,
-    /// How long it took, seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     pub layers_baked: u64,

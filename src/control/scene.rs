@@ -8,12 +8,12 @@ use crate::edit::Operation;
 #[cfg(feature = "schema")]
 use crate::range::COORDINATE;
 
-/// Where an object stands: `world = shift + turn * (own * scale)`.
+/// Transform of an object: `world = shift + turn * (own * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
-    /// Where the origin of the object is; [`crate::range::COORDINATE`].
+    /// Position of the object's origin; [`crate::range::COORDINATE`].
     #[cfg_attr(
         feature = "schema",
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
@@ -72,14 +72,14 @@ pub struct AddParams {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: Option<PathBuf>,
-    /// What the hands hold, where they hold it; they hold nothing afterwards.
+    /// Adds the held object, at its current place; the hands hold nothing afterwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub held: bool,
     /// Its name; without it that of the file or the primitive.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
-    /// Where it stands.
+    /// Its transform.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transform: Option<Placement>,
 }
@@ -112,7 +112,7 @@ pub struct RenameParams {
 pub struct TransformParams {
     /// The object.
     pub id: u32,
-    /// Where it stands from now on; what is left out is no shift, no turn, the object's own size.
+    /// New transform; by default no shift, no turn, and the object's unscaled size.
     pub transform: Placement,
     /// The transform follows the one that the object has, instead of taking its place.
     #[serde(default)]
@@ -126,7 +126,7 @@ pub struct TransformParams {
 pub struct ShowParams {
     /// The object.
     pub id: u32,
-    /// Whether it is drawn, and reached by strokes.
+    /// True to show it: drawn, and reached by strokes.
     pub visible: bool,
 }
 
@@ -137,7 +137,7 @@ pub struct ShowParams {
 pub struct LockParams {
     /// The object.
     pub id: u32,
-    /// Whether it is protected from strokes, transforms and removal.
+    /// True to lock it: protected from strokes, transforms and removal.
     pub locked: bool,
 }
 
@@ -186,7 +186,7 @@ pub enum WorldAxis {
 pub struct MirrorParams {
     /// The object.
     pub id: u32,
-    /// The axis whose sign is turned: the mirror stands in the origin of the world, across it.
+    /// Mirror axis: the mirror plane goes through the origin of the world, perpendicular to it.
     pub axis: WorldAxis,
 }
 
@@ -210,7 +210,7 @@ pub struct ReshapeParams {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneBooleanParams {
-    /// What is made of the two.
+    /// Operation that combines the two.
     pub operation: Operation,
     /// The first operand.
     pub a: u32,
@@ -223,7 +223,7 @@ pub struct SceneBooleanParams {
     /// computed again, until it is changed itself or `scene.apply` is asked.
     #[serde(default)]
     pub live: bool,
-    /// All four results become objects, the named one first; those that are empty are left out.
+    /// Makes objects of all four results, the named one first; empty ones are left out.
     #[serde(default)]
     pub all: bool,
     /// Faces in which the two only touch belong to an intersection too, both sides of them.
@@ -251,7 +251,7 @@ pub struct MergeParams {
 pub struct ObjectReply {
     /// The object that was made, or that it was about.
     pub id: u32,
-    /// What was left out or guessed, one sentence each.
+    /// Data that was left out or guessed, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
@@ -262,11 +262,11 @@ pub struct ObjectReply {
 pub struct CombineReply {
     /// The new object; of several the first.
     pub id: u32,
-    /// How many new objects there are.
+    /// Number of new objects.
     pub objects: u64,
     /// Vertices of them all.
     pub vertices: u64,
-    /// How long it took, seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
     /// Layers of the operands: the new objects have their surfaces, baked.
     #[serde(default)]
@@ -295,13 +295,13 @@ pub struct ObjectInfo {
     pub id: u32,
     /// Its name for people.
     pub name: String,
-    /// Whether strokes and Booleans act on it.
+    /// True if strokes and Booleans act on it.
     pub active: bool,
-    /// Whether it is drawn, and reached by strokes.
+    /// True if it is drawn, and reached by strokes.
     pub visible: bool,
-    /// Whether it is protected from strokes, transforms and removal.
+    /// True if it is protected from strokes, transforms and removal.
     pub locked: bool,
-    /// Where it stands.
+    /// Its transform.
     pub transform: Placement,
     /// The numbers that it was made of, as long as they can be changed.
     pub primitive: Option<PrimitiveShape>,
@@ -323,7 +323,7 @@ pub struct ObjectInfo {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FollowedBoolean {
-    /// What is made of the two.
+    /// Operation that combines the two.
     pub operation: Operation,
     /// The first operand.
     pub a: u32,
@@ -339,13 +339,13 @@ pub struct ExportParams {
     /// An absolute path without `..`, not a symbolic link.
     #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: PathBuf,
-    /// Which objects; without it the visible ones. glTF keeps them as nodes with their names and
+    /// Objects to write; by default the visible ones. glTF keeps them as nodes with their names and
     /// transforms; the other formats hold one mesh, in which the transforms are applied.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub objects: Option<ExportObjects>,
 }
 
-/// Which objects are written.
+/// Objects to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

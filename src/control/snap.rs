@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::range::{COORDINATE, YAW};
 use crate::scene::Placement;
 
-/// How two faces lie on each other besides that they share a plane.
+/// Alignment of two faces within their shared plane.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -15,9 +15,9 @@ pub enum SnapAlignment {
     /// normal.
     #[default]
     Nearest,
-    /// The middles of the two faces lie on each other.
+    /// The middles of the two faces coincide.
     Centre,
-    /// The straight sides that are nearest to the two points lie on each other, middle on middle.
+    /// The straight sides nearest to the two points coincide, middle on middle.
     Edge,
 }
 
@@ -43,7 +43,7 @@ pub struct SnapParams {
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
     )]
     pub to_at: [f64; 3],
-    /// How the faces lie on each other.
+    /// Alignment of the faces.
     #[serde(default)]
     pub align: SnapAlignment,
     /// A further turn about the normal of the other object's face, radians.
@@ -58,10 +58,10 @@ pub struct SnapParams {
 pub struct SnapReply {
     /// The object that was moved.
     pub id: u32,
-    /// Where it stands now.
+    /// Its new transform.
     pub transform: Placement,
-    /// How far corners of the two faces lie from their common plane at most: what the rounding of
-    /// the vertices left.
+    /// Greatest distance of the two faces' corners from their common plane: the rounding error of
+    /// the vertices.
     pub off: f64,
     /// The areas of the moved object's face and of the other's.
     pub areas: [f64; 2],

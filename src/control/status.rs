@@ -26,7 +26,7 @@ pub struct Versions {
 }
 
 impl Versions {
-    /// What this build of the crate speaks.
+    /// Protocol versions of this build of the crate.
     pub const OURS: Versions = Versions { min: OLDEST_PROTOCOL, max: PROTOCOL };
 
     /// The newest version that both sides speak.
@@ -107,15 +107,15 @@ pub struct StatusReply {
     pub overruns: u64,
     /// Samples that were lost between a device and the loop.
     pub losses: Losses,
-    /// How long a tick takes, milliseconds.
+    /// Duration of a tick, in milliseconds.
     pub tick_ms: Percentiles,
     /// Vertices of the mesh.
     pub vertices: u64,
     /// Triangles of the mesh.
     pub triangles: u64,
-    /// Steps that can be taken back.
+    /// Number of steps that `undo` can reach.
     pub undo_steps: u64,
-    /// Steps that can be done again.
+    /// Number of steps that `redo` can reach.
     pub redo_steps: u64,
     /// The brush and all its settings.
     pub brush: BrushSettings,
@@ -133,7 +133,7 @@ pub struct StatusReply {
     /// Frames of the window that have shown a sample which none before them has.
     #[serde(default)]
     pub frames: u64,
-    /// How the window stands.
+    /// State of the window.
     #[serde(default)]
     pub window: WindowStatus,
     /// The path of the session file, where the daemon may open a window for it.
@@ -141,7 +141,7 @@ pub struct StatusReply {
     pub session: Option<String>,
 }
 
-/// Where a pen is.
+/// Position of a pen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PenStatus {
@@ -149,42 +149,41 @@ pub struct PenStatus {
     pub device: u16,
     /// Its place in the view: from the top left, in widths and heights of the view.
     pub view: [f32; 2],
-    /// Where its ring is drawn, in pixels of the desktop (of the window under Wayland); absent
-    /// without a window.
+    /// Position of its ring, in pixels of the desktop (of the window under Wayland); absent without
+    /// a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixel: Option<[f64; 2]>,
 }
 
-/// Where the desktop puts a tablet.
+/// Mapping of a tablet by the desktop.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TabletStatus {
     /// The number of its device.
     pub device: u16,
-    /// How far its place is known.
+    /// State of its mapping.
     pub place: TabletPlace,
-    /// Where its area lies: its top left corner, its upper edge from left to right, its left edge
-    /// from top to bottom, in pixels of the desktop (of the window under Wayland). Present once it
-    /// is learned.
+    /// Its area: the top left corner, the upper edge from left to right, the left edge from top to
+    /// bottom, in pixels of the desktop (of the window under Wayland). Present once it is learned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<[[f64; 2]; 3]>,
 }
 
-/// How far it is known where the desktop puts a tablet.
+/// State of knowledge about the desktop's mapping of a tablet.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum TabletPlace {
-    /// Its whole area lies over the view.
+    /// Its whole area covers the view.
     Area,
-    /// It is not known yet, or no longer: the pointer sculpts in the place of the pen.
+    /// It is not known yet, or no longer: the pointer sculpts instead of the pen.
     #[default]
     Unknown,
     /// It was learned from the desktop's pointer.
     Learned,
 }
 
-/// How the window of the daemon stands.
+/// State of the daemon's window.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -222,7 +221,7 @@ pub struct Percentiles {
     pub max: f64,
 }
 
-/// How the session file stands.
+/// State of the session file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JournalStatus {

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "schema")]
 use crate::range::{ASPECT, COORDINATE, DISTANCE, FIELD_OF_VIEW, PITCH, REACH_MM, TRACKER_MM, YAW};
 
-/// The camera: a turntable in a right-handed world, +y up. As parameters of `camera`, what is
-/// named changes and the rest stays; as its reply, everything is there.
+/// The camera: a turntable in a right-handed world, +y up. As parameters of `camera`, only the
+/// named settings change; a reply contains all.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]

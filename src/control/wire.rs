@@ -18,7 +18,7 @@ pub const IDLE_SECONDS: u64 = 60;
 /// Longest reply that the client of this crate reads, in bytes.
 pub const MAX_REPLY: u64 = 256 << 20;
 
-/// One request as it stands on the line, its parameters not yet read.
+/// One request as sent on the line, its parameters not yet read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Envelope {

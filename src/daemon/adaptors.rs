@@ -1,4 +1,4 @@
-//! Starting what the configuration asks for: one thread a device, each with its own sender.
+//! Starts the devices named in the configuration: one thread per device, each with its sender.
 
 use crate::config::DevicesConfig;
 use sculptd_devices::catalogue::Catalogue;
@@ -36,13 +36,13 @@ pub enum StandingKind {
     Tracker,
 }
 
-/// How a device stands.
+/// State of one device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceStanding {
     pub kind: StandingKind,
-    /// What it is, how it stands, what is wrong.
+    /// Description of the device, its state and any fault.
     pub text: String,
-    /// Samples can come from it.
+    /// True if samples can come from the device.
     pub connected: bool,
 }
 
@@ -52,8 +52,8 @@ impl DeviceStanding {
     }
 }
 
-/// Starts the adaptors. One that cannot be started does not hold up the others: it is told by
-/// [`Adaptors::describe`].
+/// Starts the adaptors. An adaptor that cannot start does not delay the others;
+/// [`Adaptors::describe`] reports it.
 pub fn start(
     config: &DevicesConfig,
     catalogue: Catalogue,
@@ -122,7 +122,7 @@ impl Adaptors {
         self.standing().into_iter().map(|device| device.text).collect()
     }
 
-    /// How each device stands.
+    /// Returns the state of each device.
     pub fn standing(&self) -> Vec<DeviceStanding> {
         let mut all = self.failed.clone();
         let mut put = |kind, connected, text| all.push(DeviceStanding::new(kind, connected, text));

@@ -1,9 +1,9 @@
-//! The thing in the hands and the work made one, on a thread of its own.
+//! Booleans of the held object with the sculpture, computed on a separate thread.
 //!
-//! A choice from the hands' menu (or a call on the control socket) asks; the joiner takes the
-//! newest snapshot, computes the Boolean and sends what came of it as commands. The loop never
-//! waits for it. Where the work was changed meanwhile elsewhere, a cut is made all the same; where
-//! it was changed there, it is computed again: nothing that was sculpted is lost.
+//! A choice from the hand menu (or a call on the control socket) requests a Boolean. The thread
+//! takes the newest snapshot, computes the Boolean and sends the result as commands. The loop never
+//! waits for it. A local cut still applies if the sculpture changed elsewhere meanwhile. If the
+//! sculpture changed within the cut, the Boolean is computed again, so that no stroke is lost.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -30,24 +30,24 @@ use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// Pages that a cut may concern: the tick that makes it waits for no more than this.
 const MOST_PAGES: usize = 64;
-/// What a Boolean with the active object gives.
+/// Result of a Boolean with the active object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Joined {
-    /// Computed and written only where the tool is.
+    /// True if only the surface near the tool was computed and written.
     pub local: bool,
-    /// Pages written anew, and pages that stayed as they were.
+    /// Number of pages rewritten, and of pages left unchanged.
     pub pages_written: usize,
     pub pages_shared: usize,
-    /// How often it was computed: again where the sculpture changed meanwhile.
+    /// Number of times it was computed: once more after each change of the sculpture meanwhile.
     pub tries: usize,
 }
 
-/// Computes the active object and a tool, in the world's frame, made one. Where the tool reaches
-/// little of the object, only that is computed and written; every other page stays as it is.
-/// `held`: the tool is the thing in the hands.
+/// Computes the Boolean of the active object with a tool given in the world's frame. If the tool
+/// reaches little of the object, only that part is computed and written; every other page stays
+/// unchanged. `held`: the tool is the held object.
 ///
 /// # Errors
-/// Where there is no result.
+/// Returns an error if the Boolean has no result.
 pub fn join(
     shown: &Published,
     tool: PolyMesh,
@@ -80,10 +80,11 @@ pub fn join(
     Ok(Computed { then, ..Computed::of_clay(shown, new, pages) })
 }
 
-/// Computes the active object one level finer or coarser. The result says which level of how many.
+/// Computes the active object one level finer or coarser. Returns the new level and the number of
+/// levels.
 ///
 /// # Errors
-/// Where there is no such level.
+/// Returns an error if there is no such level.
 pub fn level(
     now: &Published,
     finer: bool,
@@ -92,7 +93,7 @@ pub fn level(
     let work = Level { mesh: now.mesh.to_tri(), masks: now.mesh.masks() };
     let levels = now.mesh.levels().map(|l| &**l);
     let (level, levels) = match (finer, levels) {
-        // Where triangles were cut the levels end: what is there now is the lowest of new ones.
+        // Cutting triangles invalidates the levels: the current mesh becomes the lowest new level.
         (true, levels) => Levels::up(levels.filter(|l| l.fits(&work.mesh)), &work, job)?,
         (false, Some(levels)) => levels.down(&work, job)?,
         (false, None) => return Err(LevelError::Lowest.into()),
@@ -102,16 +103,16 @@ pub fn level(
     Ok(Computed::of_clay(now, queued, at))
 }
 
-/// What hands ask for.
+/// Request from tracked hands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HandRequest {
-    /// What they hold is joined with the object, or with an object of the scene.
+    /// Joins the held object with the active object, or with another object of the scene.
     Join(MenuItem),
-    /// An object of the scene that they have put down is laid flush on a face near it.
+    /// Lays an object of the scene that was put down flush on a nearby face.
     LayDown(ObjectId),
 }
 
-/// A running joiner; it ends when this is dropped and what it computes is done.
+/// The running Boolean thread. Once this is dropped, it ends after its current computation.
 #[derive(Debug)]
 pub struct BooleanJobs {
     asked: cc::Sender<HandRequest>,
@@ -124,7 +125,7 @@ impl BooleanJobs {
         let (asked, todo) = cc::bounded::<HandRequest>(1);
         std::thread::Builder::new().name("sculptd-join".into()).spawn(move || {
             for request in todo {
-                // A bug in one Boolean must not end those that follow.
+                // A panic in one Boolean must not stop the ones after it.
                 let to = Target { published: &shown, commands: &commands };
                 let join = || by_hand(to, request, &Job::default());
                 match catch_unwind(AssertUnwindSafe(join)) {

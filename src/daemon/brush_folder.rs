@@ -1,7 +1,6 @@
-//! The folder of a person's own brushes: one TOML file a brush
-//! ([`sculptd_clay::brush::own_brush`]), the picture of heights beside it. It is read when a run
-//! begins and again when a file in it changes. A file that cannot be used is told by its name and
-//! line; the others stay.
+//! The folder of user brushes: one TOML file per brush ([`sculptd_clay::brush::own_brush`]), with
+//! its height picture beside it. The folder is read when a run begins and again when a file in it
+//! changes. A file that cannot be used is reported by name and line; the other files still load.
 //!
 //! What a session uses is in the session: choosing a brush sends its settings and its picture as
 //! commands, and neither the folder nor this module matters to a replay.
@@ -22,13 +21,13 @@ const MOST: usize = 1000;
 const MAX_FILE: u64 = 1 << 20;
 /// Bytes of all pictures together, as they are kept.
 const MAX_PICTURES: usize = 512 << 20;
-/// How often a running program looks whether a file has changed.
+/// Interval at which a running program checks for changed files.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// One file as it was read.
 #[derive(Debug)]
 struct ReadFile {
-    /// Of the file itself, and of its picture.
+    /// Of the file, and of its picture.
     stamps: [Option<Stamp>; 2],
     picture: Option<PathBuf>,
     brush: Result<OwnBrush, String>,
@@ -89,7 +88,7 @@ fn read_both(path: &Path, presets: &Presets) -> (Option<PathBuf>, Result<OwnBrus
     }
 }
 
-/// What a brush in hand is saved as.
+/// Name, description and files under which the brush in hand is saved.
 #[derive(Debug, Clone, Default)]
 pub struct SavedBrush<'a> {
     /// Its name, one that [`own_brush::check_name`] allows.
@@ -98,16 +97,16 @@ pub struct SavedBrush<'a> {
     pub about: &'a str,
     /// Lower comes first in lists.
     pub order: i32,
-    /// The ending and the bytes of its picture's file, where it has one.
+    /// The extension and the bytes of its picture's file, if it has one.
     pub picture: Option<(&'a str, &'a [u8])>,
-    /// In the place of a brush that has this name.
+    /// True if it may replace a brush of the same name.
     pub replace: bool,
 }
 
-/// Keeps the settings of a brush in hand as a brush of its own in `folder`.
+/// Saves the settings of the brush in hand as a user brush in `folder`.
 ///
 /// # Errors
-/// As [`write()`]; and for a brush that presses a picture and is given none.
+/// As [`write()`]; also if the brush uses a picture and none is given.
 pub fn save(
     folder: &Path,
     settings: &BrushSettings,
@@ -132,8 +131,8 @@ pub fn save(
 /// beside it.
 ///
 /// # Errors
-/// A name that no brush may have, a file that is there and may not be replaced, and what the disk
-/// says.
+/// Returns an error if the name is not allowed, if the file exists and may not be replaced, or if
+/// the file system reports one.
 pub fn write(
     folder: &Path,
     brush: &OwnBrush,
@@ -161,12 +160,12 @@ impl BrushFolder {
         BrushFolder { path, presets, files: BTreeMap::new(), pictures: BrushPictures::default() }
     }
 
-    /// Where it is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Reads what has changed since the last time. Whether anything has.
+    /// Reads the files that changed since the last call. Returns true if any file changed.
     pub fn refresh(&mut self) -> bool {
         let mut found: Vec<PathBuf> = std::fs::read_dir(&self.path)
             .map(|all| all.filter_map(|e| e.ok().map(|e| e.path())).collect())
@@ -216,17 +215,17 @@ impl BrushFolder {
         }
     }
 
-    /// What is wrong with files that cannot be used, each with its name.
+    /// Returns the error message of each file that cannot be used, with the file's name.
     pub fn problems(&self) -> Vec<String> {
         let of_brushes = self.files.values().filter_map(|f| f.brush.as_ref().err());
         of_brushes.chain(self.pictures.problems()).cloned().collect()
     }
 
-    /// Looks after the folder on a thread of its own until `stop` is raised: what changes is read,
-    /// and what is wrong with it is logged.
+    /// Watches the folder on a separate thread until `stop` is set: reads changed files and logs
+    /// their errors.
     ///
     /// # Errors
-    /// Where no thread can be had.
+    /// Returns an error if the thread cannot start.
     pub fn watch(mut self, stop: Arc<AtomicBool>) -> std::io::Result<()> {
         let thread = std::thread::Builder::new().name("sculptd-brushes".into());
         thread
@@ -363,7 +362,7 @@ mod tests {
             ("kind = 'texture'\n[extra]\nflor = 0.5\n", 3, "floor"),
             ("kind = 'texture'\npicture = '../x.png'\n", 2, "beside"),
         ] {
-            // Of a length of its own each time: the clock of files may be coarse.
+            // Of a different length each time: the file system's clock may be coarse.
             std::fs::write(&broken, text).expect("written");
             folder.files.remove(&broken);
             assert!(folder.refresh(), "{text}");

@@ -18,7 +18,7 @@ const MAX_BYTES: usize = 256 << 20;
 /// Longest file of a picture, bytes.
 const MAX_PICTURE_FILE: u64 = 64 << 20;
 
-/// What tells one version of a file from another: its length, and when it was written.
+/// Identity of one version of a file: its length and modification time.
 pub type Stamp = (u64, Option<SystemTime>);
 
 pub fn stamp(path: &Path) -> Option<Stamp> {
@@ -46,14 +46,14 @@ pub struct BrushPictures {
 }
 
 impl BrushPictures {
-    /// Whether a file is a picture, by its name.
+    /// Returns true if the file name has the extension of a picture.
     pub fn is_one(path: &Path) -> bool {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         ending.is_some_and(|e| ENDINGS.contains(&e.as_str()))
     }
 
-    /// Reads of these files what has changed since the last time, and gives them to the presets.
-    /// Whether anything has.
+    /// Reads the files of `found` that changed since the last call, and passes them to the presets.
+    /// Returns true if any file changed.
     pub fn refresh(&mut self, mut found: Vec<PathBuf>, presets: &Presets) -> bool {
         found.sort();
         found.truncate(MOST);
@@ -81,7 +81,7 @@ impl BrushPictures {
         changed
     }
 
-    /// What is wrong with files that cannot be read, each with its name.
+    /// Returns the error message of each file that cannot be read, with the file's name.
     pub fn problems(&self) -> impl Iterator<Item = &String> {
         self.files.values().filter_map(|file| file.1.as_ref().err())
     }

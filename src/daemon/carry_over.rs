@@ -9,9 +9,9 @@ use sculptd_geometry::job::{Cancelled, Job};
 /// A place on the old surface: its triangle, and how much of each corner is in it.
 #[derive(Debug, Clone, Copy)]
 pub struct OldPlace {
-    /// Where it is.
+    /// Position on the old surface.
     pub point: DVec3,
-    /// The triangle that it is on.
+    /// Index of the triangle that contains the point.
     pub triangle: usize,
     weights: [f64; 3],
 }

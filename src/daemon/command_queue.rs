@@ -1,5 +1,5 @@
-//! The bounded queue of commands on their way to the loop, each with what it needs besides its own
-//! data and with where its answer goes.
+//! The bounded queue of commands to the loop. Each command carries its payload and the channel for
+//! its answer.
 
 use std::time::Duration;
 
@@ -14,25 +14,25 @@ use sculptd_engine::world::World;
 /// A command on its way to the loop.
 #[derive(Debug)]
 pub struct QueuedCommand {
-    /// What is asked.
+    /// The command to carry out.
     pub command: Command,
-    /// What the command needs, built or fetched already.
+    /// Data that the command needs, built or fetched in advance.
     pub payload: Option<Payload>,
-    /// Where the answer goes. It is sent once the state that shows the effect is published; the
-    /// loop never waits for whoever listens.
+    /// Channel for the answer. It is sent once the published state shows the effect. The loop never
+    /// waits for the receiver.
     pub answer: Option<cc::Sender<CommandAnswer>>,
 }
 
-/// What came of a command, and the tick of its effect.
+/// Result of a command, and the tick of its effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandAnswer {
-    /// The tick that carried the command out, or refused it.
+    /// The tick that carried out or refused the command.
     pub tick: u64,
-    /// What came of it.
+    /// Result of the command, or the reason for refusing it.
     pub result: CommandResult,
 }
 
-/// Why no answer came.
+/// Reason that no answer came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoAnswer {
     /// The queue stayed full: nothing was sent.
@@ -77,13 +77,13 @@ pub struct QueueClosed;
 #[derive(Debug, Clone)]
 pub struct CommandSender {
     queue: cc::Sender<QueuedCommand>,
-    /// Where answers go that nobody waits for.
+    /// Channel for the answers that no caller waits for.
     answers: Option<cc::Sender<CommandAnswer>>,
 }
 
 impl CommandSender {
-    /// Returns a sender whose commands report what came of them to `answers`, so that no refusal
-    /// is lost where nobody waits for it.
+    /// Returns a sender whose commands report their results to `answers`, so that no refusal is
+    /// lost if the caller does not wait.
     pub fn reporting_to(&self, answers: cc::Sender<CommandAnswer>) -> CommandSender {
         CommandSender { answers: Some(answers), ..self.clone() }
     }
@@ -97,7 +97,7 @@ impl CommandSender {
     /// Sends a command; waits while the queue is full.
     ///
     /// # Errors
-    /// When the loop has ended.
+    /// Returns [`QueueClosed`] if the loop has ended.
     pub fn send(&self, command: impl Into<QueuedCommand>) -> Result<(), QueueClosed> {
         self.queue.send(self.with_answer(command)).map_err(|_| QueueClosed)
     }
@@ -106,7 +106,7 @@ impl CommandSender {
     /// effect. Waits for at most `patience` for room in the queue, and as long for the answer.
     ///
     /// # Errors
-    /// Where no answer came. That the command was refused is an answer.
+    /// Returns [`NoAnswer`] if no answer came. A refusal counts as an answer.
     pub fn carry_out(
         &self,
         command: impl Into<QueuedCommand>,
@@ -127,7 +127,7 @@ impl CommandSender {
     /// Sends a command without waiting.
     ///
     /// # Errors
-    /// When the queue is full or the loop has ended.
+    /// Returns [`QueueClosed`] if the queue is full or the loop has ended.
     pub fn try_send(&self, command: impl Into<QueuedCommand>) -> Result<(), QueueClosed> {
         self.queue.try_send(self.with_answer(command)).map_err(|e| {
             if let cc::TrySendError::Full(QueuedCommand { answer: Some(answer), .. }) = e {
@@ -140,7 +140,7 @@ impl CommandSender {
     /// Sends a command; waits for at most `patience` while the queue is full.
     ///
     /// # Errors
-    /// When the queue is still full then, or the loop has ended.
+    /// Returns [`QueueClosed`] if the queue is still full after `patience`, or the loop has ended.
     pub fn send_timeout(
         &self,
         command: impl Into<QueuedCommand>,

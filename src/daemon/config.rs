@@ -1,8 +1,8 @@
-//! What was written -> what it means, resolved once, with the origin of every value.
+//! Resolves the configuration from its layers, once, and records the origin of every value.
 //!
 //! Layers, weakest first: the defaults of the code, the system's file, the user's file, `--config`,
-//! the command line. A layer is checked alone and strictly (an unknown key, a value out of range
-//! and a wrong type each name file and line) before it is laid over the others.
+//! the command line. Each layer is checked strictly before it is merged over the others. An error
+//! (unknown key, value out of range, wrong type) names file and line.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub struct Config {
     pub r#loop: LoopConfig,
     pub channel: ChannelConfig,
     pub brush: BrushSettings,
-    /// What each brush begins with; not written in files of configuration.
+    /// Presets of each brush; not written to configuration files.
     #[serde(skip)]
     pub presets: Presets,
     pub camera: CameraConfig,
@@ -198,7 +198,7 @@ pub fn usual_files() -> Vec<PathBuf> {
     files
 }
 
-/// Where sessions are kept unless they are named with a folder: the user's state folder.
+/// Returns the user's state folder, where sessions named without a folder are stored.
 pub fn state_dir() -> PathBuf {
     let dirs = directories::ProjectDirs::from("", "", "sculptd");
     dirs.map_or_else(
@@ -235,7 +235,7 @@ impl Resolver {
         let mut alone: Config = toml::from_str(text).map_err(|e| invalid(e.to_string()))?;
         let table: toml::Table =
             text.parse().map_err(|e: toml::de::Error| invalid(e.to_string()))?;
-        // Numbers of its own that the text does not give are those of the brush's preset.
+        // Brush-specific numbers that the text omits come from the brush's preset.
         if table.get("brush").is_none_or(|b| b.get("extra").is_none()) {
             alone.brush.extra = self.presets.of(alone.brush.kind).extra;
         }
@@ -258,7 +258,7 @@ impl Resolver {
         }
     }
 
-    /// The brush's own file lies under what a person wrote, over the defaults.
+    /// Merges the brush's preset under the user's values and over the defaults.
     fn lay_brush(&mut self) {
         let kind = self.table.get("brush").and_then(|b| b.get("kind")).and_then(|k| k.as_str());
         let Some(kind) = kind.and_then(|k| k.parse::<BrushKind>().ok()) else { return };
@@ -278,7 +278,7 @@ impl Resolver {
         // Every layer was read alone before it was laid; keys do not depend on each other.
         let text = to_toml(&self.table).unwrap_or_default();
         let mut config: Config = toml::from_str(&text).unwrap_or_default();
-        // The brush may be from one layer and its own numbers from another.
+        // The brush and its specific numbers may come from different layers.
         config.brush = config.brush.clamped();
         config.presets = self.presets;
         Resolved { config, origins: self.origins }

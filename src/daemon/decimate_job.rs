@@ -17,7 +17,7 @@ pub const LEAST: usize = 4;
 /// From here on a vertex is masked, for the border of the mask.
 const MASKED: f32 = 0.5;
 
-/// What is wanted.
+/// Target of a decimation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecimateWanted {
     /// Stop at this many triangles.
@@ -26,25 +26,25 @@ pub struct DecimateWanted {
     pub max_error: Option<f32>,
 }
 
-/// What came of it. Volumes are in the mesh's unit.
+/// Result of a decimation. Volumes are in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecimateMade {
     pub vertices: usize,
-    /// More than wanted where the error or the shape allow no fewer.
+    /// More than requested if the error bound or the shape allows no fewer.
     pub triangles: usize,
     pub triangles_before: usize,
     /// Before and after.
     pub volume: [f64; 2],
     /// Pairs of triangles that cross where none did before.
     pub new_crossings: usize,
-    /// How often it was computed again, more carefully, because of crossings.
+    /// Number of repeated, more careful computations because of crossings.
     pub repeated: usize,
 }
 
-/// Computes the decimated object: one step of undo.
+/// Computes the decimated object as one step of undo.
 ///
 /// # Errors
-/// A target out of range, a cancelled job, and an object that is changed again and again.
+/// Returns an error for a target out of range, a cancelled job, or an object that keeps changing.
 pub fn decimated(
     now: &Published,
     wanted: &DecimateWanted,

@@ -17,9 +17,9 @@ const HANDS: DeviceId = DeviceId(502);
 /// The tablet that the ghost holds: a common one with tilt, hover distance and an eraser.
 const MODEL: &str = "Wacom PTK-440";
 
-/// How long an adaptor may take to find its simulated device on a loaded machine.
+/// Time limit for an adaptor to find its simulated device on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// After the journal's last act: long enough for a silent pen to be seen to have left.
+/// Time after the journal's last act: long enough to detect that a silent pen has left.
 const AFTER_US: u64 = 200_000;
 
 #[derive(Debug, thiserror::Error)]

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-/// Bytes that may still be written where a folder is, or will be: those of its nearest parent that
-/// is there. An empty path stands for the current folder. `None`: the system does not tell.
+/// Returns the bytes available to write in a folder, which need not exist: those of its nearest
+/// existing parent. An empty path means the current folder. `None` if the system does not report
+/// it.
 #[cfg(unix)]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let here = Path::new(".");

@@ -1,7 +1,7 @@
-//! What stands in the way of sculpting on this machine, and the line that mends it.
+//! Finds what prevents sculpting on this machine, and reports how to fix it.
 //!
-//! Every check says what it looked at, what it found, and, unless all is well, the exact repair. A
-//! check never changes anything that outlives it.
+//! Every check reports the subject, the finding and, if something is wrong, the exact repair. A
+//! check makes no lasting change.
 
 #[cfg(target_os = "linux")]
 mod kernel_drivers;
@@ -30,14 +30,14 @@ pub const ROOM: u64 = 1 << 30;
 pub const ROOM_LEAST: u64 = 64 << 20;
 /// Vertices of the ball that the rate is measured on.
 const PROBE_VERTICES: usize = 20_000;
-/// How long the rate is measured, microseconds.
+/// Duration of the rate measurement, in microseconds.
 const PROBE_US: u64 = 500_000;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     Pass,
-    /// Works, with less than it could.
+    /// Works, but not as well as it could.
     Warn,
     Fail,
     /// Not looked at, for the reason given.
@@ -48,9 +48,9 @@ pub enum Verdict {
 pub struct Check {
     pub name: &'static str,
     pub verdict: Verdict,
-    /// What was found, and why that is bad if it is.
+    /// The finding, and its consequence if it is bad.
     pub cause: String,
-    /// The line to type or to write; absent where nothing is to be done.
+    /// The line to type or to write; absent if nothing needs to be done.
     pub repair: Option<String>,
 }
 
@@ -72,12 +72,12 @@ impl Check {
     }
 }
 
-/// The places that are looked at; a test gives its own.
+/// The paths to inspect; a test passes different ones.
 #[derive(Debug, Clone)]
 pub struct Places {
-    /// Where `hidraw*` stand.
+    /// Folder of the `hidraw*` nodes.
     pub dev: PathBuf,
-    /// Where sessions are kept.
+    /// Folder of the sessions.
     pub state: PathBuf,
     /// The control socket.
     pub socket: PathBuf,
@@ -105,7 +105,7 @@ pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     checks
 }
 
-/// Every tablet must open for reading, on its own node.
+/// Checks that every tablet opens for reading on its separate node.
 fn pen_tablets(config: &Config, dev: &Path) -> Check {
     const NAME: &str = "pen tablets";
     if !config.devices.hid {
@@ -179,7 +179,7 @@ impl OpenPort for std::fs::OpenOptions {
     }
 }
 
-/// Whether something listens where the tracker should be.
+/// Checks that something listens at the tracker's address.
 fn tracker(url: &str) -> Check {
     const NAME: &str = "hand tracking";
     if url.is_empty() {
@@ -313,7 +313,7 @@ fn room(state: &Path, history: u64) -> Check {
 
 fn scheduling() -> Check {
     const NAME: &str = "scheduling";
-    // On a thread of its own: this one keeps its place in the queue.
+    // In a separate thread, so that this thread's scheduling stays unchanged.
     let got = std::thread::spawn(raise_priority).join().unwrap_or("normal");
     if got.starts_with("real-time") {
         return Check::pass(NAME, got);

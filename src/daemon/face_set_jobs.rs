@@ -1,5 +1,5 @@
-//! What is computed of the face sets of the active object on the thread of whoever asks: which set
-//! is seen at a place, and a part of the surface as a new object.
+//! Computations on the face sets of the active object, in the caller's thread: finding the set at a
+//! view position, and extracting a part of the surface as a new object.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -25,10 +25,10 @@ pub fn set_seen(shown: &Published, at: Vec2) -> Option<u16> {
     Some(shown.mesh.set_at(&hit))
 }
 
-/// Computes face sets of the active object by its shape. The result is how many there are.
+/// Computes face sets of the active object from its shape. Returns the number of sets.
 ///
 /// # Errors
-/// Where there are more parts than numbers of sets.
+/// Returns an error if there are more parts than face set numbers.
 pub fn parted(shown: &Published, by: Partition) -> Result<Computed<u64>, OperationError> {
     let edit = face_sets::partition(&shown.mesh, by)?;
     let SetsEdit::Assign { pages, .. } = &edit else {
@@ -39,12 +39,11 @@ pub fn parted(shown: &Published, by: Partition) -> Result<Computed<u64>, Operati
     Ok(Computed::of_scene(SceneCommand::Sets(edit), None, made))
 }
 
-/// Computes a part of the active object as a new one that stands where it does. The result is how
-/// many vertices it has. `thickness` is in the unit
-/// of the scene.
+/// Extracts a part of the active object as a new object at the same place. Returns its number of
+/// vertices. `thickness` is in scene units.
 ///
 /// # Errors
-/// Where there is no such part, or the thickness makes no solid.
+/// Returns an error if the part does not exist, or if the thickness produces no solid.
 pub fn extract(
     shown: &Published,
     part: FaceSetPart,

@@ -59,7 +59,7 @@ impl GarbageThread {
         GarbageSink::new(self.0.clone())
     }
 
-    /// How often the bounded queue was full.
+    /// Returns the number of times that the bounded queue was full.
     pub fn overflowed(&self) -> u64 {
         self.0.overflowed.load(Relaxed)
     }

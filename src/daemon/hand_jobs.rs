@@ -1,5 +1,6 @@
-//! What hands ask of workers: a held object joined with another, or laid flush on a face near it.
-//! What comes of it is a command, which the loop carries out only where nothing has changed.
+//! Jobs that tracked hands request from workers: joining a held object with another, or laying it
+//! flush on a nearby face. The result is a command, which the loop carries out only if nothing has
+//! changed.
 
 use sculptd_engine::hand::MenuItem;
 use sculptd_engine::scene::{ObjectId, ObjectView, SceneError};
@@ -11,12 +12,12 @@ use crate::published::Published;
 use crate::scene_jobs::{self, CombineError, SceneBoolean};
 use crate::snap_jobs::{NearFace, Placed, onto_what_is_near};
 
-/// How near a face must be to be laid on, mm of the hand: a little more than a hand is steady.
+/// Distance within which a face is near, in mm of the hand: slightly more than a hand's tremor.
 const NEAR_MM: f32 = 15.0;
-/// Faces are laid on each other that are within 20 degrees of it.
+/// Least cosine between faces that are laid on each other: 20 degrees.
 const COSINE: f64 = 0.94;
 
-/// What a choice from the menu means for an object and the held one.
+/// Returns the Boolean operation of a menu choice, applied to an object and the held object.
 pub fn operation(choice: MenuItem) -> Option<Operation> {
     match choice {
         MenuItem::Add => Some(Operation::Union),
@@ -26,10 +27,10 @@ pub fn operation(choice: MenuItem) -> Option<Operation> {
     }
 }
 
-/// The command that lays an object that was put down on the face near it; `None`: none is near.
+/// Returns the command that lays a put-down object on a nearby face; `None` if no face is near.
 ///
 /// # Errors
-/// Where the object is gone or locked.
+/// Returns an error if the object does not exist or is locked.
 pub fn lay_down(
     shown: &Published,
     id: ObjectId,

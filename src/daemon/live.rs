@@ -1,9 +1,8 @@
-//! The loop on the wall's clock: a thread of its own, fed by the adaptors' threads, read by the
-//! viewer.
+//! The loop in real time: a separate thread that adaptors feed and the viewer reads.
 //!
-//! Laws kept here: the tick thread never waits for anybody. It takes what the channel holds, steps,
-//! publishes, sleeps. While nothing is under way it sleeps until input comes: idle means idle. It
-//! leaves out the same ticks as a replay does, so both give the same bits.
+//! Laws kept here: the tick thread never waits for anyone. It takes the content of the channel,
+//! steps, publishes, sleeps. While no work is left it sleeps until input comes: idle means idle. It
+//! leaves out the same ticks as a replay, so both give the same bits.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -37,11 +36,11 @@ use sculptd_engine::payload::PayloadStore;
 use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
 
-/// Commands waiting for the loop; a sender beyond it is told so and tries again.
+/// Commands waiting for the loop; a sender beyond this limit gets an error and retries.
 pub const COMMANDS: usize = 1024;
 /// Commands taken a tick: the store beside the world has room for the payload of each.
 const COMMANDS_PER_TICK: usize = PayloadStore::CAPACITY;
-/// Ticks after the stop for what the adaptors sent before it.
+/// Ticks after the stop for the samples that adaptors sent before it.
 const LAST_TICKS: u32 = 8;
 /// Ticks without input or work before the loop sleeps.
 const QUIET_TICKS: u32 = 8;
@@ -53,7 +52,7 @@ const LONGEST_SLEEP: Duration = Duration::from_secs(1);
 pub struct Live {
     pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
-    /// Where the pens of tablets were, for the window.
+    /// Positions of tablet pens over time, for the window.
     pub pen_trail: PenTrail,
     /// The loop stops when this is dropped.
     running: cc::Sender<Infallible>,
@@ -91,10 +90,10 @@ impl Live {
         Live::start_with(world, receiver, clock, config, (drain_per_tick, None), journal)
     }
 
-    /// As [`Live::start`], with the controls of tablets at work.
+    /// As [`Live::start`], with active tablet controls.
     ///
     /// # Errors
-    /// Where a thread cannot be started.
+    /// Returns [`LiveError::Start`] if a thread cannot start.
     pub fn start_with(
         world: World,
         receiver: Receiver,
@@ -106,10 +105,10 @@ impl Live {
         Live::start_shared(world, receiver, clock, config, drain, journal, None)
     }
 
-    /// As [`Live::start_with`]; with `shared`, the world steps what that gives, and nothing else.
+    /// As [`Live::start_with`]; with `shared`, the world steps only that input.
     ///
     /// # Errors
-    /// Where a thread cannot be started.
+    /// Returns [`LiveError::Start`] if a thread cannot start.
     pub fn start_shared(
         mut world: World,
         receiver: Receiver,
@@ -186,27 +185,27 @@ struct Ticking {
     trail: PenTrailSender,
 }
 
-/// Where the answer of a command goes; `None`: nobody waits for it.
+/// Channel for the answer of a command; `None` if no caller waits for it.
 type AnswerSender = Option<cc::Sender<CommandAnswer>>;
 
-/// What the loop keeps from tick to tick.
+/// State that the loop keeps between ticks.
 struct TickBuffers {
     samples: Vec<Sample>,
     commands: Vec<Command>,
-    /// Where the answer of each command of this tick goes.
+    /// Channel for the answer of each command of this tick.
     senders: Vec<AnswerSender>,
-    /// Where the answer goes of an edit whose pages are still to follow.
+    /// Channel for the answer of an edit whose pages are still pending.
     late: AnswerSender,
-    /// Answers that are sent once the state that shows them is published.
+    /// Answers to send once the state that shows them is published.
     answers: Vec<(cc::Sender<CommandAnswer>, CommandAnswer)>,
-    /// Commands that wait until such an edit is done, in their order, and ahead of the inbox.
+    /// Commands that wait for the end of such an edit, in order; they precede the inbox.
     held: VecDeque<QueuedCommand>,
-    /// Of a shared sculpture: where those of the own commands go that are on their way.
+    /// For a shared sculpture: channels for the answers of local commands still in transit.
     waiting: VecDeque<AnswerSender>,
-    /// What hands asked workers for, to be told once the state that it is about is published.
+    /// Requests of hands to workers, sent once the state that they refer to is published.
     asked: Vec<HandRequest>,
     figures: TickStatistics,
-    /// How long the last step took, ns.
+    /// Duration of the last step, in ns.
     stepped: u64,
     /// The newest sample's time, its tick, and how long it took to the snapshot, ms.
     newest: (u64, u64, f64),
@@ -249,13 +248,14 @@ impl Ticking {
             self.receiver.drain(self.drain_per_tick, &mut now.samples);
             in_order_of_time(&mut now.samples);
             self.trail.send(&now.samples);
-            // What needs the surface would finish in this tick what an edit of all of it has left.
+            // A command that needs the surface would finish the whole pending edit within this
+            // tick.
             let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
             let mut begins = false;
             for _ in 0..COMMANDS_PER_TICK {
                 let next = now.held.pop_front().or_else(|| self.inbox.try_recv().ok());
                 let Some(mut queued) = next else { break };
-                // An edit that begins in this tick is there to be taken back in the next one.
+                // An edit that begins in this tick can be undone in the next one.
                 if edits && !begins && self.world.is_taken_back_by(&queued.command) {
                     edits = false;
                 }

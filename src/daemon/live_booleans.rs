@@ -28,12 +28,12 @@ const EVERY: Duration = Duration::from_millis(50);
 /// The same while no object is live.
 const EVERY_WITHOUT: Duration = Duration::from_millis(250);
 
-/// What was seen of stale results, and what was tried.
+/// Stale results seen, and results already tried.
 #[derive(Debug, Default)]
 pub struct Follower {
-    /// The operands of each at the last look.
+    /// The operands of each result at the last look.
     seen: BTreeMap<ObjectId, [Operand; 2]>,
-    /// Those that it was computed for, whatever came of it.
+    /// The operands for which each was computed, with or without success.
     tried: BTreeMap<ObjectId, [Operand; 2]>,
 }
 
@@ -69,10 +69,10 @@ fn stale_of(shown: &Published, id: ObjectId) -> Option<[Operand; 2]> {
     shown.scene.object(id)?.settings.live.as_ref().map(|live| live.operands)
 }
 
-/// Follows what is published until `stop`.
+/// Follows the published state until `stop` is set.
 ///
 /// # Errors
-/// Where there is no thread for it.
+/// Returns an error if the thread cannot start.
 pub fn start(
     commands: CommandSender,
     published: Arc<ArcSwap<Published>>,

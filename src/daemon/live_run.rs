@@ -37,38 +37,38 @@ use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
-/// What makes one live run different from another.
+/// Options of a live run.
 #[derive(Debug, Default)]
 pub struct LiveOptions {
-    /// What each brush begins with.
+    /// Presets of each brush.
     pub presets: Presets,
-    /// A person's own brushes: read by now, and looked after while the run lasts.
+    /// The user's brushes, already read; the folder is watched during the run.
     pub brushes: Option<BrushFolder>,
-    /// What the screen of an installation says, by the language's code.
+    /// Texts of an installation's screen, by language code.
     pub languages: LanguageTexts<'static>,
-    /// Visitors come and go.
+    /// Settings of an installation; `None`: no visitors.
     pub kiosk: Option<KioskConfig>,
-    /// Simulated devices perform the demo.
+    /// True if simulated devices perform the demo.
     pub demo_devices: bool,
-    /// Real devices are listened to.
+    /// True to listen to real devices.
     pub devices: bool,
     /// Recordings that are played at their own speed, and the part of the tablet that each uses.
     pub players: Vec<(Player, Option<Area>)>,
     /// The run ends after so many seconds.
     pub limit_s: Option<f64>,
-    /// What a person has bound to the controls of tablets, and binds while the run lasts.
+    /// The user's bindings of tablet controls, which may change during the run.
     pub controls: TabletControls,
     /// The file of `--config`, for reading it again on SIGHUP.
     pub settings: Option<PathBuf>,
-    /// Where the figures are served, if anywhere.
+    /// Address at which metrics are served; `None`: not served.
     #[cfg(unix)]
     pub metrics: Option<std::net::SocketAddr>,
-    /// Figures and the log go to a collector.
+    /// Options for exporting metrics and logs to a collector.
     #[cfg(unix)]
     pub telemetry: Option<crate::telemetry::TelemetryOptions>,
-    /// How the window stands; without a session no window can follow a lost one.
+    /// State of the window. Without a session a lost window cannot be replaced.
     pub window: WindowLink,
-    /// The sculpture is shared with others.
+    /// The shared sculpture; `None`: not shared.
     pub shared: Option<Box<dyn SharedInput>>,
 }
 
@@ -100,13 +100,13 @@ pub struct LiveRun {
     pub stop: Arc<AtomicBool>,
     /// The session's history, if one is kept.
     pub history: Option<Handle>,
-    /// The screen of an installation, in the place of the panels.
+    /// The screen of an installation, which replaces the panels.
     pub kiosk: Option<keeper::Screen>,
-    /// What is bound to the controls of tablets.
+    /// The user's bindings of tablet controls.
     pub controls: TabletControls,
-    /// How the window stands.
+    /// State of the window.
     pub window: WindowLink,
-    /// One sentence each: what a person should know of how the run began.
+    /// Notices about how the run began, one sentence each.
     pub notices: Vec<String>,
     demo: Option<Playing>,
     writing: Option<WriterThread>,
@@ -129,7 +129,7 @@ pub struct FinishedRun {
 impl FinishedRun {
     /// Waits for the session's last group. `Some`: the disk did not take it, and why.
     pub fn close_session(self) -> Option<String> {
-        // What the world holds is freed before the last wait.
+        // The world's memory is freed before the last wait.
         drop(self.world);
         let troubles: Vec<String> =
             self.writing.into_iter().filter_map(WriterThread::finish).collect();
@@ -137,17 +137,18 @@ impl FinishedRun {
     }
 }
 
-/// How often a run looks whether it should end: a signal's handler may only raise a flag.
+/// Interval at which a run checks whether to end: a signal handler may only set a flag.
 const LOOK: Duration = Duration::from_millis(200);
-/// How often recordings are looked at.
+/// Interval at which recordings are checked.
 const PLAY: Duration = Duration::from_millis(2);
 
 impl LiveRun {
-    /// Starts everything. `stop`: raised by whoever wants the run to end.
+    /// Starts everything. `stop`: set by the caller to end the run.
     ///
     /// # Errors
-    /// Where a thread, a socket or a port cannot be had, and where the installation's settings
-    /// cannot be used. A device that cannot be opened is no error: [`Adaptors::describe`] tells.
+    /// Returns an error if a thread, a socket or a port is unavailable, or if the installation's
+    /// settings are invalid. A device that cannot be opened is no error: [`Adaptors::describe`]
+    /// reports it.
     pub fn start(
         mut options: LiveOptions,
         config: &Config,
@@ -251,12 +252,13 @@ impl LiveRun {
         })
     }
 
-    /// When the demo's devices end, on the clock; 0 without them.
+    /// Returns the time at which the demo's devices end, in microseconds on the clock; 0 without
+    /// them.
     pub fn demo_ends_us(&self) -> u64 {
         self.demo.as_ref().map_or(0, |d| d.ends_us)
     }
 
-    /// Waits until something raises `stop`, or the loop ends.
+    /// Waits until `stop` is set or the loop ends.
     pub fn wait(&self) {
         let quiet = crossbeam_channel::never::<()>();
         while self.live.is_running() && !self.stop.load(Relaxed) {
@@ -264,8 +266,8 @@ impl LiveRun {
         }
     }
 
-    /// The window is gone without a word of its own: what it had set is taken back, and every
-    /// stroke ends as by a lifted pen. The run goes on.
+    /// Handles the unexpected loss of the window: reverts the window's settings and ends every
+    /// stroke as if the pen were lifted. The run continues.
     pub fn window_lost(&self) {
         self.window.set_standing(WindowStanding::Lost);
         let claims = self.window.claims();
@@ -287,10 +289,10 @@ impl LiveRun {
         sender.flush();
     }
 
-    /// Stops the devices, then the loop, and gives what was sculpted.
+    /// Stops the devices, then the loop, and returns the sculpture.
     ///
     /// # Errors
-    /// Where the tick thread ended by a bug.
+    /// Returns an error if the tick thread panicked.
     pub fn finish(self) -> Result<FinishedRun, LiveError> {
         drop((self.demo, self.adaptors));
         let ended = self.live.stop()?;
@@ -306,7 +308,7 @@ impl LiveRun {
     }
 }
 
-/// What others reach the run by; closed when dropped.
+/// Servers through which others reach the run; closed when dropped.
 #[cfg(unix)]
 #[derive(Debug)]
 struct Served {
@@ -390,7 +392,7 @@ fn screen(
     Ok(keeper::Screen { desk: keeper.desk, words, staff, show })
 }
 
-/// What visitors of an installation begin with: the brush of its settings, or the world's own.
+/// Returns the brush that visitors start with: that of the installation's settings, or the world's.
 fn first_brush(options: &LiveOptions, now: BrushSettings) -> BrushSettings {
     let Some(kiosk) = &options.kiosk else { return now };
     let mut brush = match kiosk.brush_kind() {

@@ -6,17 +6,16 @@ use sculptd_clay::measured_mask::{MaskMeasure, MeasuredMask};
 use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::job::Job;
 
-/// What is at most so thick, `below` in the unit of the scene.
+/// Returns the measure that masks everything at most `below` thick, in scene units.
 pub fn thin(shown: &Published, below: f64) -> MaskMeasure {
     let scale = shown.scene.active().map_or(1.0, |o| o.settings.transform.scale);
     MaskMeasure::Thin((below / scale) as f32)
 }
 
-/// Computes the mask of the active object by a measure. The result is how many vertices it
-/// protects.
+/// Computes a mask of the active object from a measure. Returns the number of protected vertices.
 ///
 /// # Errors
-/// Where nothing would be masked, or the job was cancelled.
+/// Returns an error if nothing would be masked, or if the job was cancelled.
 pub fn measured(
     shown: &Published,
     by: MaskMeasure,

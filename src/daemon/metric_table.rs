@@ -7,7 +7,7 @@ use crate::present_latency::{CLASSES_US, PresentLatency, STAGES};
 use crate::systemd::Watched;
 use sculptd_devices::latency::Latency;
 
-/// How a figure behaves.
+/// Kind of a metric.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MetricKind {
     /// Counts from the start of the daemon, and never falls. Its name ends with `_total`.
@@ -19,30 +19,30 @@ pub enum MetricKind {
 /// One figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Metric {
-    /// As Prometheus has it, without the program's name: a unit other than 1 is in it.
+    /// Name in Prometheus, without the program's prefix; it includes any unit other than 1.
     pub name: &'static str,
-    /// How it behaves.
+    /// Kind of the metric.
     pub kind: MetricKind,
-    /// For people.
+    /// Description for people.
     pub help: &'static str,
-    /// Its value now.
+    /// Current value.
     pub value: f64,
 }
 
-/// How long samples took to the screen, at one stage.
+/// Histogram of the time from a sample to the screen, at one stage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageHistogram {
     /// One of [`STAGES`].
     pub stage: &'static str,
-    /// Upper bounds in seconds, counted in, and how many were at most so long.
+    /// Inclusive upper bounds in seconds, each with the number of samples within it.
     pub at_most: Vec<(f64, u64)>,
-    /// All of them, in seconds.
+    /// Sum of all times, in seconds.
     pub sum_s: f64,
-    /// How many there were.
+    /// Number of samples.
     pub count: u64,
 }
 
-/// The histograms' name, as Prometheus has it, without the program's, and what they are.
+/// Name of the histograms in Prometheus, without the program's prefix.
 pub const STAGES_NAME: &str = "sample_to_present_seconds";
 /// See [`STAGES_NAME`].
 pub const STAGES_HELP: &str = "From a sample to the frame that shows it, by stage.";

@@ -1,8 +1,8 @@
 //! The daemon's figures for Prometheus (text format 0.0.4) over HTTP, off unless asked for.
 //!
-//! A web page must not read them: a request with an `Origin`, or with a `Host` that is a name other
-//! than `localhost` (a page that had its own name pointed here), is refused. What is asked for in
-//! `Host` must be an address, with our port.
+//! A web page must not read them. A request with an `Origin` is refused, and so is a `Host` with a
+//! name other than `localhost`, which a page could have pointed here. An address in `Host` must
+//! have our port.
 
 use std::fmt::Write as _;
 use std::net::SocketAddr;
@@ -54,7 +54,7 @@ fn presented(stages: &[StageHistogram], out: &mut String) {
     }
 }
 
-/// Where to listen: `PORT` or `ADDRESS:PORT`; a port alone is on the loopback.
+/// Parses a listening address: `PORT` or `ADDRESS:PORT`. A port alone means the loopback.
 pub fn address(text: &str) -> Result<SocketAddr, String> {
     let text = text.trim();
     if let Ok(port) = text.trim_start_matches(':').parse::<u16>() {
@@ -71,7 +71,7 @@ impl Metrics {
     /// Listens.
     ///
     /// # Errors
-    /// What the system says of the address.
+    /// Returns the system's error for the address.
     pub fn start(at: SocketAddr, watched: Watched) -> std::io::Result<Self> {
         let answer = |at, table: Arc<ConnectionTable>| {
             move |request: &Request<()>| answer(request, at, &watched, table.count())
@@ -79,7 +79,7 @@ impl Metrics {
         HttpServer::start(at, "sculptd-metrics", answer).map(Metrics)
     }
 
-    /// Where it listens; the port that was found free, if 0 was asked for.
+    /// Returns the listening address, with the port that the system chose if 0 was requested.
     pub fn address(&self) -> SocketAddr {
         self.0.address()
     }

@@ -25,12 +25,12 @@ use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::quads::QuadError;
 use sculptd_geometry::remesh::RemeshError;
 
-/// How often a result is computed before a sculpture that never rests is told so.
+/// Number of attempts before an operation fails because the sculpture keeps changing.
 pub const TRIES: usize = 3;
-/// For the loop to answer.
+/// Time limit for the loop's answer.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Why an operation changed nothing.
+/// Reason that an operation changed nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum OperationError {
     #[error("nothing is in the hands")]
@@ -94,27 +94,27 @@ impl OperationError {
 /// A result, ready to be installed.
 #[derive(Debug)]
 pub struct Computed<T> {
-    /// Carried out only where the objects that it was computed from are as they were.
+    /// Carried out only if the objects that it was computed from have not changed.
     pub edit: QueuedCommand,
-    /// Carried out after it.
+    /// Carried out after `edit`.
     pub then: Option<Command>,
-    /// What the result is.
+    /// The result.
     pub made: T,
 }
 
 impl<T> Computed<T> {
-    /// Returns a result in the place of the active object's clay, which must still be the one that
+    /// Returns a result that replaces the active object's clay, which must still be the one that
     /// `shown` shows.
     pub fn of_clay(shown: &Published, queued: QueuedCommand, made: T) -> Computed<T> {
         let (clay, revision) = shown.clay_revision();
-        // A local cut says itself whether it still fits.
+        // A local cut itself checks whether it still fits.
         let revision = (!matches!(queued.command, Command::Cut(_))).then_some(revision);
         let command = queued.command;
         let command = Command::OfClay(Box::new(OfClay { clay, revision, command }));
         Computed { edit: QueuedCommand { command, ..queued }, then: None, made }
     }
 
-    /// Returns the commands, for a loop that waits for nobody.
+    /// Returns the commands, for a loop that waits for no result.
     pub fn into_commands(self) -> Vec<QueuedCommand> {
         std::iter::once(self.edit).chain(self.then.map(QueuedCommand::from)).collect()
     }
@@ -133,16 +133,16 @@ impl Computed<Placed> {
     }
 }
 
-/// What an operation did.
+/// Outcome of an operation.
 #[derive(Debug, Clone, Copy)]
 pub struct Installed<T> {
-    /// What the result is.
+    /// The result.
     pub made: T,
-    /// What the world answered.
+    /// Answer of the world.
     pub answer: Answer,
     /// The tick that installed it.
     pub tick: u64,
-    /// How often it was computed.
+    /// Number of times that the result was computed.
     pub tries: usize,
 }
 

@@ -19,7 +19,7 @@ pub struct Pacer {
     pub overruns: u64,
 }
 
-/// What the pacer says of the moment.
+/// Time until the next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Due {
     Now { late_us: u64 },

@@ -21,14 +21,14 @@ const CAPACITY: usize = 4096;
 /// Pads whose keys are followed.
 const PADS: usize = 16;
 
-/// Where a pen was at one time, or that a key of a pad was pressed.
+/// Position of a pen at one time, or the press of a pad's key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrailPoint {
     /// The tablet.
     pub device: DeviceId,
-    /// When, on the daemon's clock, microseconds.
+    /// Time on the daemon's clock, in microseconds.
     pub t_us: u64,
-    /// Shares of the tablet's area; `None`: the pen has left the tablet's range.
+    /// Position as shares of the tablet's area; `None`: the pen has left the tablet's range.
     pub share: Option<Vec2>,
     /// The tip touches.
     pub tip: bool,
@@ -74,7 +74,7 @@ impl PenTrailSender {
         }
     }
 
-    /// Whether another key of a pad is down than before.
+    /// Returns true if a key of a pad is newly down.
     fn presses(&mut self, device: DeviceId, keys: u32) -> bool {
         let at = self.keys.iter().position(|k| k.0 == device);
         if at.is_none() && self.keys.len() >= PADS {
@@ -89,7 +89,7 @@ impl PenTrailSender {
 }
 
 impl PenTrail {
-    /// What has come since the last call, the oldest first.
+    /// Returns the points since the last call, oldest first.
     pub fn take(&self) -> impl Iterator<Item = TrailPoint> + '_ {
         self.0.try_iter().take(CAPACITY)
     }

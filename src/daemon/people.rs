@@ -1,6 +1,6 @@
-//! Who shares a sculpture: what is told of each person beside what is in the world.
+//! People who share a sculpture: the facts about each person that the world does not contain.
 
-/// What a person may do in a shared sculpture.
+/// Role of a person in a shared sculpture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PersonRole {
     /// Sculpts and sees.
@@ -18,52 +18,52 @@ pub struct Person {
     pub number: u8,
     /// As the person wants to be called.
     pub name: String,
-    /// What the person may do.
+    /// Role of the person.
     pub role: PersonRole,
-    /// The person is connected.
+    /// True while the person is connected.
     pub here: bool,
 }
 
-/// All who ever came, in the order of their numbers.
+/// Everyone who ever joined, in the order of their numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PeopleHere {
-    /// The number of the person of this daemon; 0 before the first entry.
+    /// Number of this daemon's person; 0 before the first entry.
     pub own: u8,
-    /// Everybody.
+    /// Every person.
     pub all: Vec<Person>,
 }
 
-/// What became of the own input.
+/// Counts of this daemon's input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OwnInput {
-    /// Samples of the own devices that did more than move.
+    /// Samples of the local devices that did more than move.
     pub transitions: u64,
-    /// Batches that they, and the commands, were put in: at most one for each tick.
+    /// Batches of these samples and of the commands: at most one per tick.
     pub batches: u64,
-    /// Batches that are in the order that all step.
+    /// Batches in the order that every replica steps.
     pub ordered: u64,
-    /// Batches that are in it, and that another replica has too.
+    /// Ordered batches that another replica has received too.
     pub acknowledged: u64,
-    /// Samples that only moved and were left out, as too much waited.
+    /// Samples that only moved, dropped because too many were waiting.
     pub dropped: u64,
-    /// Batches that were acknowledged and are in no order that is left.
+    /// Acknowledged batches that no remaining order contains.
     pub lost: u64,
 }
 
 impl PeopleHere {
-    /// What is known of a person.
+    /// Returns the facts about a person, if known.
     pub fn person(&self, number: u8) -> Option<&Person> {
         self.all.iter().find(|p| p.number == number)
     }
 
-    /// The name of a person; `?` where it is not known yet.
+    /// Returns the name of a person; `?` if unknown.
     pub fn name(&self, number: u8) -> &str {
         self.person(number).map_or("?", |p| &p.name)
     }
 }
 
-/// Colours that are told apart on clay, on a dark ground and on a light one; none of them is that
-/// of the own brush ring, which is pale.
+/// Colours that can be distinguished on clay, on a dark and on a light background. None of them
+/// resembles the pale ring of the local brush.
 const COLOURS: [[u8; 3]; 12] = [
     [86, 180, 233],
     [230, 97, 60],

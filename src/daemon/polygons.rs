@@ -29,15 +29,15 @@ const MOST_BYTES: usize = 1 << 30;
 /// The faces of a file.
 #[derive(Debug)]
 pub struct FileFaces {
-    /// The hash of the triangles, by which they are found.
+    /// The hash of the triangles, used to find them.
     pub key: u64,
-    /// The list that they were cut into.
+    /// The list of triangles that the faces were cut into.
     triangles: Vec<[u32; 3]>,
     /// The mesh of the file.
     mesh: PolyMesh,
 }
 
-/// The same as it lies in a session.
+/// The faces of a file as stored in a session.
 #[derive(Debug, Serialize, Deserialize)]
 struct StoredFaces {
     triangles: Vec<[u32; 3]>,
@@ -178,9 +178,9 @@ impl PolygonStore {
 }
 
 impl PolygonStore {
-    /// Of an object whose triangles are others now: the faces of the file of which it still has
-    /// most, each where all triangles of it are still in their place, then what is left of the
-    /// triangles, in a group of their own. `None`: no face of any file is there.
+    /// Restores the faces of a file for an object whose triangles have changed. It uses the file
+    /// with the most surviving faces: those whose triangles are all unchanged. The remaining
+    /// triangles form a separate group. `None`: no face of any file survives.
     fn untouched(&self, plain: &TriMesh) -> Option<PolyMesh> {
         let files: Vec<Arc<FileFaces>> = {
             let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
@@ -245,12 +245,12 @@ impl TrianglesByPlace {
         Some(self.triangles[at].1)
     }
 
-    /// What each vertex of a file is here.
+    /// Returns the index here of each vertex of a file, if it exists.
     fn names(&self, file: &FileFaces) -> Vec<Option<u32>> {
         file.mesh.positions.iter().map(|p| self.vertex(p.as_vec3())).collect()
     }
 
-    /// The faces of a file that are here.
+    /// Returns the faces of a file that exist here.
     fn faces(&self, file: &FileFaces) -> Vec<FoundFace> {
         let names = self.names(file);
         let here = |t: &[u32; 3]| {
@@ -308,7 +308,7 @@ impl TrianglesByPlace {
             }
             let mut names = own.groups.clone();
             if !names.is_empty() {
-                // What was made anew has a name too, so that it does not go on in the last group.
+                // New faces need a group name too; otherwise they would continue the last group.
                 let group = "new".into();
                 names.push(GroupName { group, ..GroupName::default() });
             }

@@ -11,7 +11,7 @@ use sculptd_devices::latency::{Latency, Quantiles};
 
 /// The stages, in order, and at last their sum.
 pub const STAGES: [&str; 5] = ["tick", "wait", "draw", "present", "total"];
-/// What each stage is, for people.
+/// Description of each stage, for people.
 pub const ABOUT: [&str; 5] = [
     "read to the end of the tick that took it",
     "the end of that tick to the begin of a frame",
@@ -19,8 +19,8 @@ pub const ABOUT: [&str; 5] = [
     "handed over to presented",
     "read to presented",
 ];
-/// Bounds of the histogram's classes, microseconds, both ends counted in; the last class is without
-/// bound. They lie on the steps of [`Latency`], where counting is exact.
+/// Inclusive bounds of the histogram's classes, in microseconds; the last class is unbounded. They
+/// are steps of [`Latency`], so the counts are exact.
 pub const CLASSES_US: [u64; 11] =
     [255, 511, 1_023, 2_047, 4_095, 8_191, 16_383, 32_767, 65_535, 131_071, 262_143];
 
@@ -54,7 +54,7 @@ pub struct StageQuantiles {
     pub quantiles: Quantiles,
 }
 
-/// What a run says of it at its end.
+/// Summary at the end of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PresentSummary {
     /// Frames that showed a new sample.

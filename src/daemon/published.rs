@@ -34,9 +34,9 @@ pub struct Published {
     pub scene: Arc<SceneView>,
     pub camera: Camera,
     pub brush: BrushSettings,
-    /// What each brush was set to when it was last exchanged for another.
+    /// The last settings of each brush that another one replaced.
     pub kept_brushes: Arc<Vec<BrushSettings>>,
-    /// The picture of heights of the alpha `picture`, where one was loaded.
+    /// The height picture of the alpha `picture`, if one was loaded.
     pub picture: Option<Arc<Picture>>,
     /// Brush radius at full pressure, world units.
     pub brush_radius: f32,
@@ -47,27 +47,27 @@ pub struct Published {
     /// The tracked volume over the work.
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
-    /// Where each pen that draws made its last dab, and its normal there; see
-    /// [`World::last_dabs`].
+    /// Position and normal of the last dab of each drawing pen; see [`World::last_dabs`].
     pub last_dabs: [Option<(DeviceId, [Vec3; 2])>; SHOWN_PENS],
-    /// Where on its own tablet each pen in range is: shares of the tablet's area.
+    /// Position of each pen in range, as shares of its tablet's area.
     pub tablets: [Option<(DeviceId, glam::Vec2)>; SHOWN_PENS],
     /// The curve that a pen has laid; empty: none.
     pub draft: CurveStroke,
     pub hands: Option<Hands>,
-    /// What each hand that is followed is doing.
+    /// Pose of each tracked hand.
     pub poses: [Option<Pose>; MAX_HANDS],
-    /// Whose hands they are, of those who share the sculpture; `None`: nothing is shared.
+    /// Number of the person whose hands these are; `None`: the sculpture is not shared.
     pub hands_of: Option<u8>,
-    /// The tracker of each.
+    /// The tracker of each hand.
     pub hand_devices: [Option<DeviceId>; MAX_HANDS],
-    /// What the hands hold, and where.
+    /// The held object and its placement.
     pub thing: Option<HeldObject>,
-    /// Pinches pick up objects of the scene.
+    /// True if pinches pick up objects of the scene.
     pub picking: bool,
-    /// The object of the scene that hands hold, or held last.
+    /// The object of the scene that hands hold or held last.
     pub object_in_hand: Option<ObjectId>,
-    /// The ball of the hands' menu that a fingertip is in, and 0 to 1 how far its ring has closed.
+    /// The ball of the hand menu that a fingertip is in, and how far its ring has closed, from 0 to
+    /// 1.
     pub menu: Option<(usize, f32)>,
     /// 0 fresh to 1 spent; and whether a lower plane of work should be offered.
     pub fatigue: (f32, bool),
@@ -75,17 +75,17 @@ pub struct Published {
     pub calibrating: bool,
     /// Dabs, or triangles under them, still wait for a tick that has time for them.
     pub is_behind: bool,
-    /// Steps that an undo can take back, with the edit under way where it is one.
+    /// Number of undo steps, including an edit in progress.
     pub undo_steps: usize,
     pub redo_steps: usize,
-    /// Who shares the sculpture; `None`: nothing is shared.
+    /// The people who share the sculpture; `None`: it is not shared.
     pub people: Option<Arc<PeopleHere>>,
-    /// What became of the own input, where anything is shared.
+    /// Counts of the local input, if the sculpture is shared.
     pub own_input: OwnInput,
-    /// The newest undo or redo of the own person that was refused: a step of somebody else is in
-    /// the way.
+    /// The newest undo or redo of the local person that was refused because another person's step
+    /// blocks it.
     pub undo_refused: Option<UndoRefusal>,
-    /// Where the pens of the others meet the clay.
+    /// Contact points of the other people's pens with the clay.
     pub others: [Option<OthersPen>; MAX_OTHERS],
     pub figures: PublishedFigures,
 }
@@ -99,7 +99,7 @@ pub struct PublishedFigures {
     pub overruns: u64,
     /// Balls in which dynamic topology was still to be done and was given up.
     pub topology_dropped: u64,
-    /// How often the queue of memory to be freed was full, and a second one took it.
+    /// Number of times that the garbage queue was full and the overflow queue was used.
     pub garbage_overflows: u64,
     pub tick_ms: Percentiles,
     pub losses: Losses,
@@ -189,7 +189,7 @@ impl Published {
         }
     }
 
-    /// Shows what a world that runs ahead has of its own: the active clay, pens, brush and view.
+    /// Shows the local state of a world that runs ahead: the active clay, pens, brush and view.
     pub fn show_ahead(&mut self, ahead: &mut World) {
         self.mesh = ahead.snapshot();
         (self.camera, self.brush) = (*ahead.camera(), *ahead.brush());
@@ -199,23 +199,23 @@ impl Published {
         (self.pens, self.last_dabs, self.tablets) = shown_pens(ahead);
     }
 
-    /// Whose hands are followed, where they are another person's than the own.
+    /// Returns the person whose hands are tracked, if not the local person.
     pub fn others_hands(&self) -> Option<u8> {
         let own = self.people.as_ref()?.own;
         self.hands_of.filter(|of| *of != own && *of != 0)
     }
 
-    /// Where the active object stands.
+    /// Returns the transform of the active object.
     pub fn transform(&self) -> ObjectTransform {
         self.scene.active().map_or(ObjectTransform::NONE, |o| o.settings.transform)
     }
 
-    /// Names the active clay and its state.
+    /// Returns the object id and the revision of the active clay.
     pub fn clay_revision(&self) -> (u32, u64) {
         (self.mesh.object_id(), self.mesh.revision())
     }
 
-    /// The nearest place of the active object on a ray of the world, in the world.
+    /// Returns the nearest point of the active object on a ray, both in the world's frame.
     pub fn pick(&self, ray: Ray) -> Option<Hit> {
         let transform = self.transform();
         if transform.is_none() {
@@ -239,12 +239,12 @@ impl Published {
         if all.0.cmple(all.1).all() { all } else { self.transform().bounds(self.mesh.bounds()) }
     }
 
-    /// One number over all objects; costs as much as they are large.
+    /// Returns one hash of all objects; the cost grows with their size.
     pub fn hash(&self) -> u64 {
         self.scene.hash(&self.mesh)
     }
 
-    /// Whether this state holds memory that `newer` does not share.
+    /// Returns true if this state holds memory that `newer` does not share.
     fn holds_other(&self, newer: &Published) -> bool {
         let people = |state: &Published| state.people.as_ref().map(Arc::as_ptr);
         let held = |state: &Published| state.thing.as_ref().map(|held| Arc::as_ptr(&held.plain));

@@ -22,12 +22,12 @@ use sculptd_geometry::{TriMesh, self_intersection};
 /// Finer levels at most.
 pub const MOST_LEVELS: u32 = 6;
 
-/// What is wanted.
+/// Parameters of a quad remesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuadsWanted {
-    /// About how many quads.
+    /// Approximate number of quads.
     pub quads: usize,
-    /// Edges whose faces turn by more than this many degrees are kept; `None`: none.
+    /// Edges whose faces meet at more than this angle, in degrees, are kept; `None`: none.
     pub creases: Option<f64>,
     /// Polylines on the surface, in the mesh's unit, that the quads follow.
     pub guides: Vec<Vec<DVec3>>,
@@ -41,7 +41,7 @@ impl Default for QuadsWanted {
     }
 }
 
-/// What came of it. Volumes are in the mesh's unit.
+/// Result of a quad remesh. Volumes are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuadsMade {
     /// Faces of four corners and of three, on the lowest level.
@@ -57,15 +57,15 @@ pub struct QuadsMade {
     /// Vertices of finer levels that have no place on the old surface with its side facing the same
     /// way: they are as smooth as the level below leaves them.
     pub without_detail: usize,
-    /// What was changed first.
+    /// Changes made before remeshing.
     pub warnings: Vec<String>,
 }
 
-/// The command that puts the quads in place, as one step of undo, and what they are.
+/// Returns the command that installs the quads as one step of undo, and their figures.
 ///
 /// # Errors
-/// Numbers out of range, a surface that [`quad_remesh`] refuses, a cancelled job, and an object
-/// that is changed again and again.
+/// Returns an error for numbers out of range, a surface that [`quad_remesh`] refuses, a cancelled
+/// job, or an object that keeps changing.
 pub fn quads(
     now: &Published,
     wanted: &QuadsWanted,

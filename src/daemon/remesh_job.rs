@@ -1,5 +1,5 @@
-//! Voxel remeshing of the object: one closed surface of even triangles, on the thread of whoever
-//! asks. What was sculpted meanwhile is not lost: then it is computed again.
+//! Voxel remeshing of the object in the caller's thread: one closed surface of even triangles. If
+//! the object changes meanwhile, it is computed again, so that no stroke is lost.
 
 use std::sync::Arc;
 
@@ -20,16 +20,16 @@ use sculptd_geometry::remesh::{LostParts, Remade, RemeshSettings, remesh};
 /// Voxels along the longest side of the object, least and greatest.
 pub const SIDE: (usize, usize) = (8, 1024);
 
-/// What is wanted.
+/// Parameters of a voxel remesh.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Wanted {
-    /// Edge of a voxel in the mesh's unit; `None`: the mean edge of the triangles as they are.
+    /// Edge of a voxel in the mesh's unit; `None`: the mean edge of the current triangles.
     pub voxel: Option<f32>,
-    /// Edges stay sharp.
+    /// True to keep edges sharp.
     pub sharp: bool,
 }
 
-/// What came of it. Lengths and volumes are in the mesh's unit.
+/// Result of a voxel remesh. Lengths and volumes are in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Remeshed {
     /// Edge of a voxel: the one wanted, but for what makes the longest side a whole number of them.
@@ -40,7 +40,7 @@ pub struct Remeshed {
     pub volume: [f64; 2],
     /// Pairs of triangles that cross each other.
     pub crossings: usize,
-    /// What of the old surface is further than a voxel from the new one.
+    /// Parts of the old surface further than a voxel from the new one.
     pub lost: Option<LostParts>,
 }
 
@@ -93,8 +93,8 @@ pub fn remeshed(
     Ok(Computed::of_clay(now, queued, found))
 }
 
-/// The command that puts these triangles, with masks and levels, in the place of the object's. Its
-/// pages are built here.
+/// Returns the command that replaces the object's triangles, with masks and levels. The pages are
+/// built here.
 pub fn in_place(
     new: Arc<TriMesh>,
     masks: Option<Vec<f32>>,

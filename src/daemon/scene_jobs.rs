@@ -1,6 +1,6 @@
-//! What is computed of whole objects: Booleans between two, merging, splitting, and what a file of
-//! a scene holds. It runs on the thread of whoever asks, against immutable snapshots; the result is
-//! a command that the loop carries out only where no operand has changed meanwhile.
+//! Computations on whole objects: Booleans between two, merging, splitting, and collecting the
+//! objects for a file. They run in the caller's thread on immutable snapshots. The result is a
+//! command that the loop carries out only if no operand has changed meanwhile.
 
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ pub struct Combined {
 }
 
 impl Combined {
-    /// What is asked of the scene, and the clays that it needs.
+    /// Returns the scene command and the clays that it needs.
     pub fn command(self) -> (SceneCommand, Payload) {
         let command = match self.live {
             Some(live) => SceneCommand::ExchangeLive(Box::new((self.exchange, live))),
@@ -61,7 +61,7 @@ impl Combined {
     }
 }
 
-/// Which objects go into a file.
+/// Selection of objects for a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Selection {
     Active,
@@ -95,10 +95,10 @@ pub fn layers_of(targets: &[MorphTarget]) -> Option<LayerEdit> {
     (!layers.is_empty()).then(|| LayerEdit::Import(Arc::new(layers)))
 }
 
-/// The objects of a selection as meshes with names and places.
+/// Returns the selected objects as meshes with names and transforms.
 ///
 /// # Errors
-/// Where none is selected.
+/// Returns an error if no object is selected.
 pub fn selected(
     scene: &SceneView,
     active: &Snapshot,
@@ -166,20 +166,21 @@ const ALL_FOUR: [Operation; 4] = [
     Operation::ReverseDifference,
 ];
 
-/// A Boolean of two objects, as it is asked for.
+/// A requested Boolean of two objects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBoolean {
-    /// What is made of the two.
+    /// The Boolean operation.
     pub operation: Operation,
-    /// The operands stay, hidden.
+    /// Keeps the operands, hidden.
     pub keep: bool,
-    /// So they do, and the result follows them.
+    /// Keeps the operands, and recomputes the result when they change.
     pub live: bool,
-    /// All four results, from one arrangement, the asked one first. They follow nothing.
+    /// Computes all four results from one arrangement, the requested one first. None of them is
+    /// live.
     pub all: bool,
-    /// Faces in which the two only touch belong to an intersection too.
+    /// Includes faces in which the two objects only touch in an intersection.
     pub keep_contact: bool,
-    /// Length in the world within which places are one; `None`: what the vertices resolve.
+    /// World distance within which points count as one; `None`: the resolution of the vertices.
     pub tolerance: Option<f64>,
 }
 
@@ -212,16 +213,16 @@ fn tolerance([a, b]: [&PolyMesh; 2], own: &PolyMesh, ratio: f64) -> f64 {
     found.max(resolved)
 }
 
-/// What a Boolean of two objects gives, in the frame of the first.
+/// Result of a Boolean of two objects, in the frame of the first.
 struct ComputedBoolean {
-    /// Those that are not empty, each with its operation; at least one.
+    /// The results that are not empty, each with its operation; at least one.
     results: Vec<(Operation, TriMesh, Clay)>,
     names: [String; 2],
     transform: ObjectTransform,
     operands: [Operand; 2],
 }
 
-/// What a result is called where all four are made.
+/// Returns the name of a result if all four are computed.
 fn result_name(operation: Operation, [a, b]: &[String; 2]) -> String {
     let name = match operation {
         Operation::Union => format!("{a} + {b}"),
@@ -308,7 +309,7 @@ pub fn boolean(
     Ok(Combined { exchange, clays, live })
 }
 
-/// Which results of live Booleans are no longer of what their operands are.
+/// Returns the live Boolean results whose operands have changed, with the current operands.
 pub fn stale(shown: &Published) -> Vec<(ObjectId, [Operand; 2])> {
     let all = || shown.scene.each(&shown.mesh);
     let now = |was: &Operand| {
@@ -434,7 +435,7 @@ pub fn merge(shown: &Published, ids: &[ObjectId], job: &Job) -> Result<Combined,
     Ok(Combined { exchange, clays: vec![clay], live: None })
 }
 
-/// Each connected part of an object as an object of its own, the largest first.
+/// Splits each connected part of an object into a separate object, the largest first.
 ///
 /// # Errors
 /// [`CombineError`]

@@ -15,7 +15,7 @@ use crate::systemd::{Notifier, Watchdog, Watched, watchdog_us};
 use sculptd_devices::Clock;
 use sculptd_engine::command::Command;
 
-/// How often it looks.
+/// Interval of the checks.
 const LOOK: Duration = Duration::from_millis(250);
 
 /// Settings that can be read again while the loop runs.
@@ -88,7 +88,7 @@ impl Service {
 }
 
 impl Drop for Service {
-    /// Waits until the manager was told.
+    /// Waits until the manager has been notified.
     fn drop(&mut self) {
         self.stop = None;
         let _ = self.thread.take().map(JoinHandle::join);

@@ -1,5 +1,5 @@
-//! The loop's door to a shared sculpture: the own input goes out, the ordered input of all comes
-//! back, and the world steps nothing else. Who implements it orders the input over a network.
+//! The loop's interface to a shared sculpture: local input goes out, the ordered input of everyone
+//! comes back, and the world steps only that. An implementation orders the input over a network.
 
 use std::sync::Arc;
 
@@ -20,42 +20,44 @@ pub struct SharedTick {
     pub samples: Vec<Sample>,
     /// In the order in which they are stepped.
     pub commands: Vec<Command>,
-    /// The places of the own commands among them, in order.
+    /// Indices of the local commands among them, in order.
     pub own: Vec<usize>,
 }
 
-/// A session that records a shared world from where it was taken over.
+/// A session that records a shared world from the state at which this replica joined.
 pub type SharedJournal = Box<(SessionWriter, WriterThread)>;
 
-/// What the loop does next.
+/// Next action of the loop.
 #[derive(Debug)]
 pub enum NextTick {
-    /// Nothing more has come.
+    /// No further input has arrived.
     Wait,
-    /// A tick is stepped.
+    /// Step this tick.
     Step(SharedTick),
-    /// Another world takes the place of this one: the replica has joined anew. Where the session
-    /// is written, it goes on in another file, which begins with that world.
+    /// Replace the world: the replica has joined again. If the session is recorded, it continues in
+    /// another file, which begins with that world.
     World(Box<World>, Option<SharedJournal>),
 }
 
-/// A sculpture that several daemons share. Called by the tick thread; nothing of it waits.
+/// A sculpture shared by several daemons. The tick thread calls it; no method waits.
 pub trait SharedInput: Send + std::fmt::Debug {
-    /// Whether a command of this daemon cannot be shared; it is told, and goes no further.
+    /// Returns true if a command of this daemon cannot be shared; it is then not submitted.
     fn refuses(&mut self, command: &QueuedCommand) -> bool;
-    /// The own input of one tick, once a tick; both lists are taken. `world`: the loop's.
+    /// Submits the local input of one tick, once a tick, and empties both lists. `world`: the
+    /// loop's.
     fn submit(&mut self, world: &World, samples: &mut Vec<Sample>, commands: &mut Vec<Command>);
-    /// What is next.
+    /// Returns the next action.
     fn next(&mut self, world: &World) -> NextTick;
-    /// The tick of [`NextTick::Step`] was stepped.
+    /// Called after the tick of [`NextTick::Step`].
     fn after_step(&mut self, world: &mut World);
-    /// The world that is shown in the place of the loop's, as it has the own input that is still on
-    /// its way; once a tick, after all of its steps.
+    /// Returns the world to show instead of the loop's: it includes the local input still in
+    /// transit. Called once a tick, after all of its steps.
     fn ahead(&mut self, world: &World) -> Option<&mut World>;
-    /// Who shares the sculpture; the same list as before, where nobody came or went.
+    /// Returns the people who share the sculpture; the same list as before if nobody came or went.
     fn people(&self) -> Arc<PeopleHere>;
-    /// What became of the own input.
+    /// Returns the counts of the local input.
     fn own_input(&self) -> OwnInput;
-    /// Whether this daemon orders the input. It alone starts what a step asks for once.
+    /// Returns true if this daemon orders the input. Only that daemon starts the one-time jobs of a
+    /// step.
     fn hosts(&self) -> bool;
 }

@@ -31,7 +31,7 @@ pub trait Feed {
     fn finished(&self) -> bool;
 }
 
-/// How fast a stepped loop goes.
+/// Speed of a stepped loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Pace {
     /// One second of input takes one second.
@@ -65,7 +65,7 @@ pub enum SimulatedError {
     Broken { tick: u64, text: String },
 }
 
-/// How long bytes may take through a pseudo-terminal or a loopback socket on a loaded machine.
+/// Time limit for bytes to pass a pseudo-terminal or a loopback socket on a loaded machine.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Everything a stepped run needs.
@@ -97,8 +97,8 @@ impl SimulatedLoop<'_> {
         let mut figures = TickStatistics::default();
         let mut samples: Vec<Sample> = Vec::with_capacity(options.drain_per_tick);
         let mut commands = Vec::new();
-        // What a hand's wish to join gave: put in place at the next tick, so that a stepped run has
-        // no race in it.
+        // Boolean results that hands requested. They are installed in the next tick, so that a
+        // stepped run has no race.
         let mut joined: Vec<QueuedCommand> = Vec::new();
         let mut script = self.script.iter().peekable();
         let first = self.world.tick();
@@ -164,7 +164,7 @@ impl SimulatedLoop<'_> {
 }
 
 impl SimulatedLoop<'_> {
-    /// What hands ask about objects of the scene, carried out at once.
+    /// Carries out at once the jobs that hands request for objects of the scene.
     fn of_hands(&mut self, report: &StepReport) -> Vec<QueuedCommand> {
         let join = report.join.zip(self.world.object_in_hand());
         if join.is_none() && report.put_down.is_none() {
@@ -211,7 +211,7 @@ fn await_arrival(
     }
 }
 
-/// What a finished run says of itself.
+/// Returns the summary of a finished run.
 pub fn summary(
     figures: &TickStatistics,
     world: &World,

@@ -37,13 +37,13 @@ pub struct PickedFace {
     pub at: DVec3,
 }
 
-/// What a placing came to.
+/// Result of a placement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
-    /// For the loop.
+    /// The command for the loop.
     pub placing: FlushPlacing,
-    /// How far corners of the two faces lie from their common plane at most, world units: what
-    /// their rounding to single precision left.
+    /// Greatest distance of the two faces' corners from their common plane, in world units: the
+    /// error of rounding to single precision.
     pub off: f64,
     /// The areas of the moved face and of the target, in the square of the world's unit.
     pub areas: [f64; 2],
@@ -115,7 +115,7 @@ pub fn face_to_face(
     Ok(Placed { placing, off: own_off + other_off, areas: [own_area, other_area] })
 }
 
-/// How near a held object's face must be to another's to be laid on it when it is let go.
+/// Limits within which the face of a released object snaps to the face of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearFace {
     /// From the middle of its face to the plane of the other, and from the middle of one beside the
@@ -128,7 +128,7 @@ pub struct NearFace {
 /// Faces of at least this share of their object's area are what hands lay on each other.
 const FACE_SHARE: f64 = 0.01;
 
-/// A face in its object's frame, and what is told of it.
+/// A face in its object's frame, with its measures.
 struct Candidate {
     face: FlatFace,
     /// Its triangles.
@@ -150,7 +150,8 @@ fn candidates(of: &Found) -> Vec<Candidate> {
     large_faces(&mesh, FACE_SHARE).iter().map(candidate).collect()
 }
 
-/// How far a point in the plane of a face that stands at `at` is beside it; 0 within the face.
+/// Returns the distance from `p`, in the plane of a face placed at `at`, to the face, in world
+/// units; 0 within the face.
 fn beside(face: &Candidate, at: &ObjectTransform, p: DVec3) -> f64 {
     let own = at.inverse().apply(p);
     let distance = |c: &[DVec3; 3]| nearest_on_triangle(own, *c).0.distance_squared(own);
@@ -164,11 +165,11 @@ fn boxes_are_near(a: &Found, b: &Found, distance: f64) -> bool {
     (alo - slack).cmple(bhi).all() && (blo - slack).cmple(ahi).all()
 }
 
-/// The placing of a held object on the nearest face that faces one of its own; `None` where none is
-/// near enough.
+/// Returns the placement of a held object on the nearest face opposite one of its faces; `None` if
+/// no face is near enough.
 ///
 /// # Errors
-/// Where there is no such object, or it is locked.
+/// Returns an error if the object does not exist or is locked.
 pub fn onto_what_is_near(
     shown: &Published,
     id: ObjectId,

@@ -78,10 +78,10 @@ pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, Startup
     Ok(Loaded { targets: loaded.targets, ..built })
 }
 
-/// Makes clay of a mesh that was read; `path` names it in an error.
+/// Builds clay from a mesh; `path` names it in an error.
 ///
 /// # Errors
-/// Where it can be no clay, and where the job is cancelled.
+/// Returns an error if the mesh cannot be clay, or if the job is cancelled.
 pub fn build(
     plain: TriMesh,
     mut warnings: Vec<String>,
@@ -104,7 +104,7 @@ pub fn world(mesh: Clay, config: &Config) -> World {
     World::new(mesh, config.camera.camera(), config.brush, workers, options)
 }
 
-/// What a fresh session keeps of a configuration.
+/// Returns the part of a configuration that a new session stores.
 pub fn session_settings(config: &Config) -> Settings {
     Settings {
         rate_hz: config.r#loop.rate_hz,
@@ -136,7 +136,7 @@ pub enum BeginError {
     Create(#[from] CreateError),
 }
 
-/// What an object that is read from a file is called: the file's name without its ending.
+/// Returns the name of an object loaded from a file: the file's name without its extension.
 pub fn object_name(path: &Path) -> String {
     let stem = path.file_stem().map(|s| s.to_string_lossy());
     stem.and_then(|s| clean_name(&s.chars().take(MAX_NAME).collect::<String>()))
@@ -157,9 +157,9 @@ pub fn begin(
     begin_with(&meshes, session, config, job)
 }
 
-/// Begins with meshes, each an object in its true size and place, and, where `session` names a
-/// file, records into it. A session that exists is replayed to its end and goes on from there; it
-/// brings its own start, so no mesh must be given beside it.
+/// Begins with meshes, each an object at its true size and place. If `session` names a file, the
+/// run is recorded into it. An existing session is replayed to its end and continued; it contains
+/// its start, so no mesh may be given with it.
 ///
 /// # Errors
 /// [`BeginError`]
@@ -225,7 +225,8 @@ pub fn begin_with(
         }
         let (mut writer, mut thread) = session::resume(&path)?;
         let world = &mut replayed.world;
-        // What was open ends as a lifted pen; what can be taken back is in the file from here on.
+        // Open strokes end as if the pen were lifted. From here on the file contains the undo
+        // history.
         let tick = replayed.ticks + 1;
         let mut reopened = vec![Command::Reopened];
         if world.has_people() {

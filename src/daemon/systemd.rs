@@ -53,8 +53,8 @@ impl Notifier {
     }
 }
 
-/// How often the manager wants to hear from this process (`WATCHDOG_USEC`, for us if `WATCHDOG_PID`
-/// says so), microseconds.
+/// Returns the interval in which the manager expects a message, in microseconds: `WATCHDOG_USEC`.
+/// `None` if it is unset or `WATCHDOG_PID` names another process.
 pub fn watchdog_us() -> Option<u64> {
     let number = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<u64>().ok());
     match number("WATCHDOG_PID") {
@@ -75,13 +75,13 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// `limit_us`: the manager's patience. It is told four times in that time.
+    /// `limit_us`: the manager's time limit. It is notified four times within it.
     pub fn new(limit_us: u64, now_us: u64) -> Self {
         Watchdog { every_us: limit_us / 4, next_us: now_us, seen: (0, 0), moved: (false, false) }
     }
 
-    /// `tick`: the loop's last; `turns`: the journal's, `None` without one. True when it is time to
-    /// tell and both have moved since they were last vouched for.
+    /// Returns true if a notification is due, and both the loop and the journal have advanced since
+    /// the last one. `tick`: the loop's last; `turns`: the journal's, `None` without one.
     pub fn look(&mut self, now_us: u64, tick: u64, turns: Option<u64>) -> bool {
         self.moved.0 |= tick != self.seen.0;
         self.moved.1 |= turns.is_none_or(|t| t != self.seen.1);
@@ -95,7 +95,7 @@ impl Watchdog {
     }
 }
 
-/// What is watched.
+/// State that the watchdog observes.
 #[derive(Debug, Clone)]
 pub struct Watched {
     pub published: Arc<ArcSwap<Published>>,

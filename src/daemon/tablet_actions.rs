@@ -23,7 +23,7 @@ use crate::tablet_controls::TabletControls;
 use crate::tablet_models::DeviceTables;
 use crate::tablet_vocabulary::{Meaning, meaning};
 
-/// Ids of tablets, serial pens and recordings of such; a pointer has its own buttons.
+/// Ids of tablets, serial pens and their recordings; a pointer has separate buttons.
 const TABLETS: [std::ops::Range<u16>; 2] = [0..200, 300..400];
 /// Tablets whose controls are followed.
 const MOST: usize = 16;
@@ -38,10 +38,10 @@ const CLICK_US: u64 = 250_000;
 /// The pointer, as far as it tells a mouse's press from the click that a pad's key makes.
 #[derive(Debug, Default)]
 struct PointerPress {
-    /// When a pad's key was pressed that no press of the pointer has followed yet, microseconds.
+    /// Time of a pad key's press that no pointer press has followed yet, in microseconds.
     key_us: Option<u64>,
     down: bool,
-    /// This press is a key's.
+    /// True if a key caused this press.
     of_key: bool,
 }
 
@@ -64,13 +64,13 @@ struct Tablet {
     /// Its model, once that is known.
     model: Option<String>,
     state: ActionState,
-    /// What its pen's motion does while a button is held.
+    /// Effects of the pen's motion while buttons are held.
     held: Vec<Meaning>,
-    /// Where its pen was, shares of its area.
+    /// Last position of its pen, as shares of its area.
     last: Option<Vec2>,
-    /// It is in the middle of a stroke, which a button does not break.
+    /// True during a stroke, which a button does not interrupt.
     sculpts: bool,
-    /// Its pad's keys.
+    /// The pressed keys of its pad.
     keys: u32,
 }
 
@@ -82,12 +82,12 @@ pub struct TabletActions {
     /// Of single models.
     models: DeviceTables,
     controls: TabletControls,
-    /// What the person has bound, as the tablets have it now.
+    /// The user's bindings, as the tablets use them now.
     own: Arc<ActionTable>,
     presets: Presets,
     tablets: Vec<Tablet>,
     pointer: PointerPress,
-    /// The brush as it was before a held button changed it.
+    /// The brush before a held button changed it.
     before: Option<BrushSettings>,
 }
 
@@ -138,7 +138,7 @@ impl TabletActions {
     /// over the tablet's file, and that over the defaults.
     fn table(&self, model: Option<&str>) -> ActionTable {
         let mut table = self.models.table(model, &self.table).over(ActionTable::defaults());
-        // Which entry is a ring is not known of every tablet: a strip's binding serves both.
+        // Some tablets do not report which entry is a ring, so a strip's binding serves both.
         for n in 1..=2 {
             if let Some(binding) = table.controls.get(&Control::Strip(n)).cloned() {
                 table.controls.entry(Control::Ring(n)).or_insert(binding);
@@ -147,7 +147,7 @@ impl TabletActions {
         ActionTable::clone(&self.own).over(table)
     }
 
-    /// Takes over what the person has bound since the last tick. What is held is released.
+    /// Applies bindings that the user changed since the last tick. Held controls are released.
     fn follow_controls(&mut self, asked: &mut Asked<'_>) {
         let own = self.controls.own();
         if Arc::ptr_eq(&own, &self.own) {
@@ -254,7 +254,8 @@ impl TabletActions {
                 self.tablets[tablet].held.retain(|m| Some(*m) != what);
                 let lends = matches!(what, Some(Meaning::Brush(_) | Meaning::Invert));
                 if let Some(before) = self.before.take_if(|_| lends) {
-                    // First the lent one as it was before: the world remembers what it puts away.
+                    // Restore the lent brush first: the world remembers the settings of the brush
+                    // it replaces.
                     let lent = asked.brush.key();
                     if lent != before.key() {
                         let kept = asked.world.kept_brushes();
@@ -298,7 +299,7 @@ impl TabletActions {
                     Meaning::Brush(kind) => {
                         let kept = asked.world.kept_brushes();
                         let now = self.presets.recalled(&asked.brush, kept, kind);
-                        // What is lent while a button is held works at the size in hand.
+                        // A brush lent while a button is held keeps the current radius.
                         let radius = if held { asked.brush.radius } else { now.radius };
                         BrushSettings { radius, ..now }
                     }
@@ -456,7 +457,7 @@ mod tests {
         assert_eq!(press(&mut actions, &mut world), (1, true, before), "the table of all tablets");
         known.store(true, Relaxed);
         assert_eq!(press(&mut actions, &mut world), (1, false, BrushKind::Clay));
-        // What the model's table leaves out is as with every tablet.
+        // Controls missing from the model's table act as on every tablet.
         assert!(matches!(step(&mut actions, &mut world, vec![pad(1, 0)]).0[..], [Command::Undo]));
     }
 
@@ -508,7 +509,7 @@ mod tests {
         let before = *world.brush();
         step(&mut actions, &mut world, vec![pad(1, 0)]);
         assert_eq!(world.brush().kind, BrushKind::Clay);
-        // Bound anew while it is held: what it lent is given back.
+        // Rebinding a held control returns the brush that it lent.
         let _ = controls.bind(Control::Key(1), None);
         step(&mut actions, &mut world, vec![]);
         assert_eq!(*world.brush(), before);

@@ -91,7 +91,7 @@ impl TabletControls {
         Some(folders.config_dir().join("tablet-actions.toml"))
     }
 
-    /// What the person has bound.
+    /// Returns the user's bindings.
     pub fn own(&self) -> Arc<ActionTable> {
         self.0.own.load_full()
     }

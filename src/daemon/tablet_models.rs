@@ -14,13 +14,13 @@ use sculptd_devices::pad_actions::ActionTable;
 use crate::adaptors::{Adaptors, SERIAL_IDS};
 use crate::config::DevicesConfig;
 
-/// Who says which model a device is.
+/// Function that returns the model of a device.
 type ModelOf = Arc<dyn Fn(DeviceId) -> Option<String> + Send + Sync>;
 
-/// The tables by model: those of the tablets' own files, and the settings' over them.
+/// The tables by model: those of the tablets' files, and those of the settings over them.
 #[derive(Debug, Clone, Default)]
 pub struct ModelTables {
-    /// Of the tablet's file: below what the settings say of all tablets.
+    /// From the tablet's file: weaker than the settings for all tablets.
     files: BTreeMap<String, ActionTable>,
     /// Of the settings: over what they say of all tablets.
     settings: BTreeMap<String, ActionTable>,
@@ -78,7 +78,7 @@ impl DeviceTables {
         (device.0 < SERIAL_IDS).then(|| (self.model_of)(device)).flatten()
     }
 
-    /// What the settings say of all tablets, with what is said of this model alone.
+    /// Returns the settings for all tablets, combined with those for this model.
     pub fn table(&self, model: Option<&str>, all: &ActionTable) -> ActionTable {
         let of = |tables: &BTreeMap<String, ActionTable>| {
             model.and_then(|m| tables.get(m)).cloned().unwrap_or_default()

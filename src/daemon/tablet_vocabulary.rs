@@ -3,7 +3,7 @@
 use sculptd_clay::brush::BrushKind;
 use sculptd_devices::pad_actions::{ActionTable, Binding, Control};
 
-/// What a name in a table means here.
+/// Meaning of a name in a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Meaning {
     Undo,
@@ -44,8 +44,8 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     })
 }
 
-/// What a person may choose for a control, with its words. Keys and buttons press, hold, or take
-/// one step; what turns takes steps.
+/// Returns the user's choices for a control, with their labels. Keys and buttons press, hold, or
+/// take one step; rotating controls take steps.
 pub fn choices(control: Control) -> Vec<(String, Binding)> {
     let turn = |words: &str, value: &str, step| {
         let value = value.to_owned();
@@ -87,10 +87,10 @@ pub fn choices(control: Control) -> Vec<(String, Binding)> {
     all
 }
 
-/// Whether every name of a table is one that this program knows.
+/// Checks that every name of a table is known.
 ///
 /// # Errors
-/// The control, the name that is not known, and those that are.
+/// Returns an error that names the control, the unknown name and the known names.
 pub fn check(table: &ActionTable) -> Result<(), String> {
     table.check()?;
     for (control, binding) in table.controls.iter().chain(table.modes.iter().flatten()) {

@@ -7,7 +7,7 @@ use sculptd_devices::queue::Receiver;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
-/// What a tick gave, for the journal: everything that changed the world.
+/// Receives the input of each tick for the journal: everything that changed the world.
 pub trait Journal: Send {
     /// Called on the tick thread after every tick that had input; must not wait.
     fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World);
@@ -18,8 +18,8 @@ pub trait Journal: Send {
     }
 }
 
-/// By time, ties by device, equal ones as they came. Samples arrive nearly sorted, so an insertion
-/// sort is the quick one, and it needs no memory.
+/// Sorts by time, then by device; equal samples keep their order. Samples arrive nearly sorted, so
+/// an insertion sort is fast, and it needs no memory.
 pub fn in_order_of_time(samples: &mut [Sample]) {
     for i in 1..samples.len() {
         let mut j = i;

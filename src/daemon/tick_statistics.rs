@@ -62,13 +62,13 @@ pub struct Summary {
     pub triangles: u64,
     /// Of the world's clay at the end, 16 hexadecimal digits.
     pub hash: String,
-    /// Where the mesh was written, if it was.
+    /// Path of the exported mesh, if one was written.
     pub export: Option<String>,
-    /// How long samples of devices took to the end of their tick, on the way to the clay; absent in
-    /// a simulated run, which has no clock of its own.
+    /// Time from device samples to the end of their tick; absent in a simulated run, which has no
+    /// clock.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_to_tick_ms: Option<Percentiles>,
-    /// How long samples took to the screen, where there was a window.
+    /// Time from samples to the screen, if there was a window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_to_present: Option<PresentSummary>,
 }

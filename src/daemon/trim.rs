@@ -18,7 +18,7 @@ use sculptd_geometry::{PolyMesh, TriMesh};
 pub enum Part {
     /// Two opposite corners: x, y, x, y.
     Box([f32; 4]),
-    /// What lies to the left of the way from the first point to the second.
+    /// The part left of the direction from the first point to the second.
     Line([f32; 4]),
 }
 
@@ -46,7 +46,8 @@ impl Part {
     }
 }
 
-/// What is seen of space within a part of the view, from before a ball to behind it, as a solid.
+/// Returns the solid that is visible within a part of the view, from in front of a ball to behind
+/// it.
 pub fn trim_solid(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Option<TriMesh> {
     let corners = part.corners(camera.aspect)?;
     let back = camera.backward();
@@ -90,15 +91,15 @@ pub fn trim_solid(camera: &Camera, part: &Part, middle: Vec3, radius: f32) -> Op
 /// # Errors
 /// Why nothing was changed.
 pub fn carry_out(to: Target<'_>, part: &Part, job: &Job) -> Result<Joined, OperationError> {
-    // What the hands hold stays in them.
+    // The held object is not trimmed.
     boolean_jobs::carry_out(to, |now| tool(now, part), false, Operation::Difference, job)
 }
 
-/// Returns what is cut off, in the world's frame: a solid around all of the active object that is
-/// seen there.
+/// Returns the solid to cut off, in the world's frame. It encloses every visible point of the
+/// active object in that part.
 ///
 /// # Errors
-/// Where nothing is seen there.
+/// Returns an error if nothing is visible there.
 pub fn tool(now: &Published, part: &Part) -> Result<PolyMesh, OperationError> {
     let (lo, hi) = now.transform().bounds(now.mesh.bounds());
     let (middle, radius) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);

@@ -1,14 +1,13 @@
-//! What a run and its window know of each other, so that the run survives the loss of the window.
+//! State shared by a run and its window, so that the run survives the loss of the window.
 //!
 //! Laws kept here:
-//! * A window that is lost, by the end of its X server or compositor or by an error of its own,
-//!   costs the window alone: the loop, the devices, the session and the control socket go on.
-//! * What the window had set for as long as it was there is taken back: strokes end as by a lifted
-//!   pen, a brush that was lent is given back, and no pen of a tablet begins a stroke that nobody
-//!   sees.
-//! * One process can make one window. A new window therefore opens after the run has ended and its
-//!   process has begun anew, with the same session; a run without a session has nothing to carry
-//!   the sculpture over and refuses.
+//! * Losing the window, by the end of its X server or compositor or by an error in the window,
+//!   affects nothing else: the loop, the devices, the session and the control socket continue.
+//! * The window's temporary settings are reverted: strokes end as if the pen were lifted, a lent
+//!   brush is returned, and no tablet pen begins an unseen stroke.
+//! * One process can create one window. A new window therefore opens after the run has ended and
+//!   the process has restarted with the same session. A run without a session cannot keep the
+//!   sculpture and refuses.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -23,13 +22,13 @@ use sculptd_engine::desktop_layout::{DesktopLayout, PenPlace};
 /// Environment variables that name a screen, and their values.
 pub type DisplayVariables = BTreeMap<String, String>;
 
-/// How the window of a run stands.
+/// State of a run's window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WindowStanding {
-    /// None was asked for, or it could not be opened.
+    /// No window was requested, or it could not be opened.
     #[default]
     Headless,
-    /// It is being made; nothing is drawn yet.
+    /// The window is being created; nothing is drawn yet.
     Opening,
     /// It is shown.
     Open,
@@ -37,17 +36,17 @@ pub enum WindowStanding {
     Lost,
 }
 
-/// What a window has set in the world for as long as it is there.
+/// Temporary settings of a window in the world.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WindowClaims {
-    /// The desktop as the window last told it.
+    /// The desktop as last reported by the window.
     pub desktop: DesktopLayout,
-    /// The brush to go back to, while a key lends another.
+    /// The brush to restore while a key lends another.
     pub lent: Option<BrushSettings>,
 }
 
 impl WindowClaims {
-    /// The desktop of a window that is lost: every pen stays where it is, and none begins a stroke.
+    /// The desktop after the window is lost: every pen stays where it is, and none begins a stroke.
     /// `in_range`: tablets that no desktop may know yet.
     pub fn desktop_without_window(
         &self,
@@ -134,12 +133,12 @@ impl WindowLink {
         self.state().presented.record(frame);
     }
 
-    /// How long samples took to the screen.
+    /// Returns the latency from samples to the screen.
     pub fn present_latency(&self) -> PresentLatency {
         self.state().presented.clone()
     }
 
-    /// The window has lent another brush, or given it back.
+    /// Records that the window has lent another brush, or returned it.
     pub fn claim_lent(&self, lent: Option<BrushSettings>) {
         self.state().claims.lent = lent;
     }

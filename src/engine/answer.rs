@@ -1,13 +1,13 @@
-//! What came of a command. Each command of a step has one answer, at the same place in
+//! Results of commands. Each command of a step has one answer, at the same index in
 //! [`crate::world::World::answers`].
 
 use crate::scene::{ObjectId, SceneError};
 use sculptd_clay::Grafted;
 
-/// What a command that was carried out came to.
+/// Result of a command that succeeded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer {
-    /// It was carried out.
+    /// The command was carried out.
     Done,
     /// A command to the scene was carried out: the object that it made or was about, see
     /// [`crate::world::SceneResult`].
@@ -16,7 +16,8 @@ pub enum Answer {
     Cut(Grafted),
     /// There was nothing in memory to undo or redo. The history of the session may hold more.
     NothingInMemory,
-    /// Its pages follow in later ticks; [`crate::world::World::late_answer`] tells what came of it.
+    /// Its pages follow in later ticks; [`crate::world::World::late_answer`] returns the final
+    /// result.
     UnderWay,
 }
 
@@ -30,5 +31,5 @@ impl Answer {
     }
 }
 
-/// What came of a command. After an error the world is as it was.
+/// Result of a command. After an error the world is unchanged.
 pub type CommandResult = Result<Answer, SceneError>;

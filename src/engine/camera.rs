@@ -15,7 +15,7 @@ use sculptd_geometry::portable::PortableMath;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// What the camera turns about.
+    /// Point that the camera orbits.
     pub target: Vec3,
     /// Radians about +y; 0 looks along -z.
     pub yaw: f32,
@@ -57,7 +57,7 @@ impl Camera {
         Vec3::new(sy * cp, sp, cy * cp)
     }
 
-    /// Where the eye is, world units.
+    /// Returns the position of the eye, in world units.
     pub fn eye(&self) -> Vec3 {
         self.target + self.backward() * self.distance
     }
@@ -69,7 +69,7 @@ impl Camera {
         (right, back.cross(right))
     }
 
-    /// What a brush needs to know of it.
+    /// Returns the view data that a brush needs.
     pub fn lens(&self) -> Lens {
         let (right, up) = self.axes();
         let (back, half) = (self.backward(), self.half_height(1.0));
@@ -103,7 +103,7 @@ impl Camera {
         }
     }
 
-    /// Where a world point is seen; `None` behind the eye.
+    /// Projects a world point into the view; returns `None` behind the eye.
     pub fn project(&self, p: Vec3) -> Option<Vec2> {
         self.projection().project(p)
     }
@@ -208,7 +208,7 @@ impl Camera {
     }
 }
 
-/// How a camera sees points, made ready for many of them.
+/// Projection of a camera, precomputed for many points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
     eye: Vec3,
@@ -223,7 +223,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Where a world point is seen; `None` behind the eye.
+    /// Projects a world point into the view; returns `None` behind the eye.
     pub fn project(&self, p: Vec3) -> Option<Vec2> {
         let d = p - self.eye;
         let depth = -d.dot(self.back);

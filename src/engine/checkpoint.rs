@@ -61,7 +61,7 @@ struct ObjectHead {
 }
 
 impl Captured {
-    /// What a world is now; `None` while anything is under way.
+    /// Captures the current world; returns `None` while anything is under way.
     pub fn of(world: &mut World) -> Option<Captured> {
         let saved = world.save()?;
         let (scene, active, options) = (world.scene_view(), world.snapshot(), *world.options());
@@ -113,7 +113,7 @@ impl Captured {
 /// Makes a world of the bytes of a checkpoint, as they come.
 #[derive(Default)]
 pub struct Restoring {
-    /// What came and is no whole part yet.
+    /// Bytes received that do not yet complete a part.
     rest: Vec<u8>,
     head: Option<Head>,
     /// Parts that are whole, compressed.
@@ -135,7 +135,7 @@ impl Restoring {
     pub fn take(&mut self, bytes: &[u8]) -> Result<(), BadCheckpoint> {
         self.rest.extend_from_slice(bytes);
         let mut used = 0;
-        // What is not whole yet is read again with what follows.
+        // An incomplete part is read again together with the bytes that follow.
         while let Some((length, rest)) = self.rest[used..].split_first_chunk::<4>()
             && let Some(part) = rest.get(..u32::from_le_bytes(*length) as usize)
         {
@@ -249,7 +249,7 @@ fn compressed(bytes: &[u8]) -> Vec<u8> {
     zstd::bulk::compress(bytes, LEVEL).unwrap_or_default()
 }
 
-/// Memory grows with what comes, not with what is told.
+/// Memory grows with the bytes received, not with the announced size.
 fn inflated(bytes: &[u8], most: u64) -> Result<Vec<u8>, BadCheckpoint> {
     let mut out = Vec::new();
     let from = zstd::stream::read::Decoder::with_buffer(bytes).map_err(|_| BadCheckpoint)?;

@@ -2,10 +2,10 @@
 //! control-socket call, a finished Boolean, an undo.
 //!
 //! A command is plain data and serialises whole: no lock, channel or thread handle is part of one.
-//! What takes long to make (built clay, pages of the session file) is named by a
-//! [`PayloadId`] and lies in the store beside the world, see [`crate::payload`]. What came of a
-//! command is told by [`crate::world::World::answers`]. [`crate::world::World::step`] is the only
-//! reader.
+//! Data that takes long to build (built clay, pages of the session file) is named by a
+//! [`PayloadId`] and kept in a store beside the world, see [`crate::payload`].
+//! [`crate::world::World::answers`] reports the results. Only [`crate::world::World::step`] reads
+//! commands.
 
 use std::sync::Arc;
 
@@ -29,9 +29,9 @@ pub enum Command {
     Brush(BrushSettings),
     /// The view that pens draw in. A camera with values that are not finite is ignored.
     Camera(Camera),
-    /// Ends every open stroke as a lifted pen does, then takes back the last step.
+    /// Ends every open stroke as a lifted pen does, then undoes the last step.
     Undo,
-    /// Does again the step that was taken back last.
+    /// Redoes the step that was undone last.
     Redo,
     /// Ends every open stroke as a lifted pen does; of several people, those of whoever asks, where
     /// the others' can be told apart from them.
@@ -50,7 +50,7 @@ pub enum Command {
     CalibrateReach,
     /// This part of the tracked space is mapped to the space around the object.
     Reach(ReachBox),
-    /// Another person begins: the world is made anew, and nothing of what was before stays.
+    /// Starts a new person with a new world; nothing of the previous one remains.
     Begin(Box<Beginning>),
     /// The object in the hands is placed here.
     Place(Similarity),
@@ -59,14 +59,14 @@ pub enum Command {
     Cut(Carving),
     /// The object becomes what it was at another node of its history, as the session file keeps it.
     Jump(Box<Jump>),
-    /// The session was opened again: what could be taken back or done again is in the file alone.
+    /// The session was reopened: steps to undo or redo exist only in the file.
     Reopened,
     /// As [`Command::Replace`], with a mask for each vertex, so that what was protected stays so.
     ReplaceMasked(NewClay, Arc<Vec<f32>>),
     /// To the curve that a pen has laid with the method `curve`: drawn, put away, a handle less.
     CurveStroke(CurveAction),
-    /// Where the tablets' pens are in the view, as a window has learned it, and what lies over the
-    /// view. A desktop with values that are not finite is ignored.
+    /// Position of the tablets' pens in the view, as a window has learned it, and the areas that
+    /// cover the view. A layout with values that are not finite is ignored.
     DesktopLayout(DesktopLayout),
     /// Objects are added, removed, moved, made active.
     Scene(SceneCommand),
@@ -89,7 +89,7 @@ pub enum Command {
 pub struct OfPerson {
     /// The person's number; 0 is the one whom every world has.
     pub person: u8,
-    /// What is asked; no [`Command::OfPerson`] itself.
+    /// Wrapped command; never a [`Command::OfPerson`].
     pub command: Command,
 }
 
@@ -100,7 +100,7 @@ pub struct OfClay {
     pub clay: u32,
     /// The revision that it must still have; `None`: whatever it has.
     pub revision: Option<u64>,
-    /// What is asked; no [`Command::OfClay`] itself.
+    /// Wrapped command; never a [`Command::OfClay`].
     pub command: Command,
 }
 
@@ -128,7 +128,7 @@ pub struct JumpObject {
     pub settings: ObjectSettings,
     /// Every page of its clay, and its revision.
     pub pages: Vec<(u32, u64)>,
-    /// What else its clay is.
+    /// State of its clay besides the pages.
     pub clay: OtherWork,
 }
 
@@ -140,8 +140,8 @@ impl SceneJump {
 }
 
 impl Command {
-    /// Whether the command owns or shares memory beyond its own size. Freeing such a command may
-    /// take long.
+    /// Returns true if the command owns or shares memory outside its struct. Freeing such a command
+    /// may take long.
     pub fn owns_memory(&self) -> bool {
         match self {
             Command::Picture(_)
@@ -187,11 +187,11 @@ impl Command {
         }
     }
 
-    /// Whether it needs or changes the surface of objects, or the list of them: while an edit of
-    /// the whole mask or of face sets is under way, it finishes that within its tick. Who feeds a
-    /// world that must keep its time lets such commands, and all that follow them, wait until
-    /// [`crate::world::World::is_in_surface_edit`] is false, but for one by which
-    /// [`crate::world::World::is_taken_back_by`] the edit is taken back.
+    /// Returns true if the command reads or changes the surface of objects, or their list. While an
+    /// edit of the whole mask or of face sets is under way, such a command finishes that edit
+    /// within its tick. A caller that must meet a deadline holds back such commands, and all that
+    /// follow them, until [`crate::world::World::is_in_surface_edit`] is false. The exception is a
+    /// command that undoes the edit, see [`crate::world::World::is_taken_back_by`].
     pub fn needs_surface(&self) -> bool {
         match self {
             Command::Brush(_)
@@ -206,7 +206,8 @@ impl Command {
         }
     }
 
-    /// Whether it may begin an edit of the whole mask, of face sets or of all triangles.
+    /// Returns true if the command may begin an edit of the whole mask, of face sets or of all
+    /// triangles.
     pub fn begins_surface_edit(&self) -> bool {
         match self {
             Command::Mask(_) | Command::MaskRegion(_) => true,
@@ -236,7 +237,7 @@ pub struct Jump {
     pub object_id: u32,
     /// Pages that differ, and their revisions; all of them for another object.
     pub pages: Vec<(u32, u64)>,
-    /// What another object than the one in place brings along.
+    /// State of another object than the one in place, if the jump leads to one.
     pub other: Option<OtherWork>,
 }
 
@@ -247,10 +248,10 @@ impl Jump {
     }
 }
 
-/// What an object brings along besides its pages.
+/// State of an object besides its pages.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct OtherWork {
-    /// How many pages it has, its revision and the numbers that it gives out next.
+    /// Page count, revision and the next free numbers of the clay.
     pub rest: ObjectState,
     /// The centre of its bounding box when it was put in place.
     pub middle: glam::Vec3,
@@ -263,13 +264,13 @@ pub struct OtherWork {
 /// A cut to be made in the clay.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Carving {
-    /// What is removed and what is put in its place.
+    /// Triangles removed and the triangles that replace them.
     pub cut: Arc<Cut>,
     /// The object in the hands is the tool, and gone once the cut is made.
     pub put_down: bool,
 }
 
-/// What a new person's world begins with.
+/// Initial state of a new person's world.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Beginning {
     /// The object.
@@ -280,9 +281,9 @@ pub struct Beginning {
     pub brush: BrushSettings,
 }
 
-/// A new object. Its pages are built by whoever asks, on a thread of its own, and sent as the
-/// payload `built`; without that payload the world builds them again from the triangles, which
-/// takes as long as the mesh is large.
+/// A new object. The sender builds its pages on a separate thread and sends them as the payload
+/// `built`. Without that payload the world rebuilds them from the triangles, which takes time
+/// proportional to the mesh.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct NewClay {
     /// The triangles.

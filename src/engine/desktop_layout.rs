@@ -1,11 +1,11 @@
-//! Where the pen of a tablet is in the view, and where it may begin a stroke, as a desktop has it.
+//! Position of a tablet's pen in the view, and where it may begin a stroke, as a desktop maps it.
 //!
-//! A desktop moves its pointer by the same pen that the daemon reads, over whatever part of its
-//! screens it likes, and other things than the view lie under that pointer. A window learns the map
-//! and says it with [`crate::command::Command::DesktopLayout`]. Laws kept here:
+//! A desktop moves its pointer with the same pen that the daemon reads. It may map the pen to any
+//! part of its screens, where other windows can cover the view. A window learns the map and sends
+//! it with [`crate::command::Command::DesktopLayout`]. Laws kept here:
 //! * The desktop is plain data and part of the input, so a replay finds every pen where it was.
-//! * Without a window's word a pen covers the view with its whole area and may begin a stroke
-//!   anywhere: a headless daemon has no desktop.
+//! * Without a layout from a window, a pen covers the view with its whole area and may begin a
+//!   stroke anywhere: a headless daemon has no desktop.
 
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
@@ -16,10 +16,11 @@ use sculptd_devices::DeviceId;
 pub const MAX_TABLETS: usize = 4;
 /// Surfaces over the view that a desktop knows: menus, dialogs, floating panels.
 pub const MAX_COVERS: usize = 8;
-/// Beyond the view by at most its own size: there is nothing to hit, and nothing to overflow.
+/// Clamp for view coordinates, one view size beyond each border: nothing is hit there, and nothing
+/// overflows.
 const FARTHEST: (f32, f32) = (-1.0, 2.0);
 
-/// Where the pen of one tablet is.
+/// Mapping of one tablet's pen to the view.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum PenPlace {
     /// The whole area of the tablet lies over the whole view.
@@ -45,14 +46,15 @@ pub enum PenPlace {
 pub struct DesktopLayout {
     /// The tablets that a desktop's pointer follows.
     pub tablets: [Option<(DeviceId, PenPlace)>; MAX_TABLETS],
-    /// What lies over the view and takes presses: least and greatest corner, shares of the view.
+    /// Areas over the view that take presses: least and greatest corner, in shares of the view.
     pub covers: [Option<[Vec2; 2]>; MAX_COVERS],
     /// The window is behind others, or not the one that is worked in: no stroke begins.
     pub away: bool,
 }
 
 impl PenPlace {
-    /// Where a share of the tablet's area lies in the view; clamped to what can be computed with.
+    /// Maps a share of the tablet's area to the view, clamped to a range that is safe to compute
+    /// with.
     pub fn view(&self, share: Vec2) -> Vec2 {
         let at = match *self {
             PenPlace::Area | PenPlace::Unknown => share,
@@ -61,7 +63,7 @@ impl PenPlace {
         at.clamp(Vec2::splat(FARTHEST.0), Vec2::splat(FARTHEST.1))
     }
 
-    /// Whether all numbers are finite and within a hundred views.
+    /// Returns true if all numbers are finite and within a hundred views.
     fn is_sane(&self) -> bool {
         match *self {
             PenPlace::Area | PenPlace::Unknown => true,
@@ -77,12 +79,13 @@ impl PenPlace {
 }
 
 impl DesktopLayout {
-    /// What is known of one pen; `None`: no desktop follows it.
+    /// Returns the mapping of one pen; `None` if no desktop maps it.
     pub fn place(&self, device: DeviceId) -> Option<PenPlace> {
         self.tablets.iter().flatten().find(|t| t.0 == device).map(|t| t.1)
     }
 
-    /// Whether a stroke of a pen with this place may begin here. Without a place: anywhere.
+    /// Returns true if a pen with this mapping may begin a stroke here. Without a mapping it may
+    /// begin anywhere.
     pub fn is_free(&self, place: Option<PenPlace>, view: Vec2) -> bool {
         let inside = |[lo, hi]: [Vec2; 2]| view.cmpge(lo).all() && view.cmplt(hi).all();
         match place {

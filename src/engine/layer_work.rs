@@ -1,4 +1,4 @@
-//! What is still to be done to pages after an edit of layers, or after a stroke on a layer.
+//! Pending page work after an edit of layers, or after a stroke on a layer.
 //!
 //! Laws kept here:
 //! * The list of layers is the new one at once; the pages follow in portions, so that no tick takes
@@ -29,7 +29,7 @@ enum Cause {
     Edit { live: Option<LayerId> },
 }
 
-/// What is still to be done.
+/// Page work that remains.
 #[derive(Debug)]
 pub(crate) struct LayerWork {
     cause: Cause,
@@ -55,12 +55,12 @@ impl LayerWork {
         }
     }
 
-    /// Whether the open step is an edit of layers.
+    /// Returns true if the open step is an edit of layers.
     pub(crate) fn is_edit(&self) -> bool {
         matches!(self.cause, Cause::Edit { .. })
     }
 
-    /// Whether an edit is under way to which this one belongs.
+    /// Returns true if this edit continues the one under way.
     pub(crate) fn goes_on_with(&self, edit: &LayerEdit) -> bool {
         match (self.cause, edit) {
             (Cause::Edit { live }, LayerEdit::Set { id, .. }) => live == Some(*id),
@@ -68,12 +68,12 @@ impl LayerWork {
         }
     }
 
-    /// Whether pages are still to be worked through.
+    /// Returns true while pages remain.
     pub(crate) fn is_pending(&self) -> bool {
         self.left > 0
     }
 
-    /// Whether the edit under way can be closed.
+    /// Returns true if the edit under way can be closed.
     pub(crate) fn is_complete(&self) -> bool {
         self.left == 0 && self.cause == Cause::Edit { live: None }
     }

@@ -1,9 +1,9 @@
-//! The world: what a device said and what was asked come in, clay comes out.
+//! The world: device samples and commands come in, clay comes out.
 //!
 //! Law kept here: two things change the world, a [`sculptd_devices::Sample`] and a
 //! [`command::Command`], both plain data, and [`world::World::step`] is the only writer. It has no
-//! clock, no IO, no threads of its own making, and never fails. So live running, replay, recovery,
-//! golden tests, fuzzing and bug reports are one mechanism.
+//! clock and no IO, starts no threads, and never fails. So live running, replay, recovery, golden
+//! tests, fuzzing and bug reports are one mechanism.
 //!
 //! Read first: [`command`] and [`payload`], then [`world`] and [`scene`], then [`stroke`] and
 //! [`hand`].

@@ -1,4 +1,4 @@
-//! What is asked of the triangles of a part of an object; `remesh_work` does it.
+//! Settings of a remesh of part of an object; `remesh_work` carries it out.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,10 +14,10 @@ pub enum WantedEdge {
     OfUsual(f32),
 }
 
-/// What is asked of the triangles of the active object.
+/// Remesh of triangles of the active object.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalRemesh {
-    /// How long edges are to be.
+    /// Target length of edges.
     pub edge: WantedEdge,
     /// Only edges that are too long are changed, and what they leave badly shaped.
     pub stretched_only: bool,

@@ -18,7 +18,7 @@ pub struct MaskRegion {
 }
 
 impl MaskRegion {
-    /// Whether every number is finite and in range.
+    /// Returns true if every number is finite and in range.
     pub fn is_sane(&self) -> bool {
         self.region.is_sane() && (0.0..=1.0).contains(&self.mask)
     }

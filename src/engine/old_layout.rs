@@ -2,10 +2,10 @@
 //!
 //! Postcard stores a struct as its fields in order, without their names or their number. A file
 //! that was written when a struct had fewer fields is therefore decoded with a table of the number
-//! of fields that each struct had then ([`FieldCounts`]): the decoder reads so many, and the fields
-//! that were appended since take their defaults. The struct must say so with `#[serde(default)]`,
-//! on itself or on each appended field. Fields are only ever appended; a struct that must change in
-//! another way keeps its old definition beside the new one.
+//! of fields that each struct had then ([`FieldCounts`]). The decoder reads that many fields, and
+//! the fields appended since take their defaults. The struct must declare this with
+//! `#[serde(default)]`, on itself or on each appended field. Fields are only ever appended; a
+//! struct that must change in another way keeps its old definition beside the new one.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,10 +20,10 @@ use serde::{Deserialize, de};
 /// table has as many as it has today.
 pub type FieldCounts = [(&'static str, usize)];
 
-/// Decodes one value; the bytes that follow it are returned with it.
+/// Decodes one value and returns it with the bytes that follow it.
 ///
 /// # Errors
-/// Where the bytes are not those of such a value.
+/// Fails if the bytes are not a valid encoding of the value.
 pub fn take_from_bytes<'de, T: Deserialize<'de>>(
     bytes: &'de [u8],
     counts: &FieldCounts,
@@ -37,7 +37,7 @@ pub fn take_from_bytes<'de, T: Deserialize<'de>>(
 /// Decodes one value.
 ///
 /// # Errors
-/// Where the bytes are not those of such a value.
+/// Fails if the bytes are not a valid encoding of the value.
 pub fn from_bytes<'de, T: Deserialize<'de>>(
     bytes: &'de [u8],
     counts: &FieldCounts,
@@ -49,7 +49,7 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(
 /// structs of one name must have the same number: the larger one is noted.
 ///
 /// # Errors
-/// Where the bytes are not those of such a value.
+/// Fails if the bytes are not a valid encoding of the value.
 pub fn note_counts<'de, T: Deserialize<'de>>(
     bytes: &'de [u8],
     counts: &mut BTreeMap<String, usize>,

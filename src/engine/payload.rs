@@ -1,19 +1,19 @@
-//! Payloads: what a command needs besides its own data, because making it takes too long for the
+//! Payloads: data that a command needs besides its fields, because making it takes too long for the
 //! thread that steps the world.
 //!
 //! A [`Command`](crate::command::Command) is plain data and names its payload by a [`PayloadId`];
-//! the payload itself lies in the [`PayloadStore`] beside the world. Whoever sends a command builds
-//! or fetches its payload first and sends both; the owner of the world puts the payload into the
+//! the [`PayloadStore`] beside the world keeps the payload itself. The sender of a command builds
+//! or fetches its payload first and sends both. The owner of the world puts the payload into the
 //! store with [`World::deliver`](crate::world::World::deliver) before the step that reads the
-//! command. A command that was read from a session has no payload: the world builds clay again from
-//! the triangles that the command holds, and a replay fetches the pages of a jump from the session
+//! command. A command that was read from a session has no payload: the world rebuilds clay from the
+//! triangles that the command holds, and a replay fetches the pages of a jump from the session
 //! file.
 
 use std::sync::Arc;
 
 use sculptd_clay::{Clay, GarbageSink, Page};
 
-/// What a command needs besides its own data.
+/// Data that a command needs besides its fields.
 #[derive(Debug)]
 pub enum Payload {
     /// The clay of a new object, or of another object that a jump leads to.
@@ -79,12 +79,12 @@ impl PayloadStore {
         Some(self.entries.swap_remove(at).1)
     }
 
-    /// How many payloads lie in the store.
+    /// Returns the number of payloads in the store.
     pub fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Whether no payload lies in the store.
+    /// Returns true if the store has no payload.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }

@@ -36,7 +36,8 @@ impl RegionSeen {
         RegionSeen { region, bands, projection, camera: *camera, transform, front_faces }
     }
 
-    /// Whether a vertex of the object, place and normal, is seen in the region.
+    /// Returns true if a vertex of the object, with this position and normal, is seen in the
+    /// region.
     pub(crate) fn holds(&self, p: Vec3, normal: Vec3) -> bool {
         let camera = &self.camera;
         let p = self.transform.point(p);
@@ -51,8 +52,8 @@ impl RegionSeen {
         (!self.front_faces || facing()) && self.projection.project(p).is_some_and(within)
     }
 
-    /// Whether a vertex within a box of the object may be seen in the region: false only where none
-    /// is.
+    /// Returns true if a vertex within a box of the object may be seen in the region. False means
+    /// that none is.
     pub(crate) fn may_hold(&self, lo: Vec3, hi: Vec3) -> bool {
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for corner in 0..8u32 {
@@ -71,33 +72,33 @@ impl RegionSeen {
             ViewRegion::Polygon(corners) => ends(corners),
             ViewRegion::Line(_) => return true,
         };
-        // What rounds: a place on the box may be projected a little beyond its corners.
+        // Margin for rounding: a point of the box may project slightly beyond its corners.
         let slack = (high - low) * 1e-3 + 1e-4;
         (low - slack).cmple(to).all() && (high + slack).cmpge(from).all()
     }
 
-    /// What a vertex costs, as a multiple of what writing it does.
+    /// Returns the cost of testing a vertex, as a multiple of the cost of writing it.
     pub(crate) fn cost(&self) -> u64 {
         PROJECTED + self.bands.as_ref().map_or(0, |b| b.most() as u64 / TESTED)
     }
 }
 
-/// What it costs to find where a vertex is seen, as a multiple of what writing it costs.
+/// Cost of projecting a vertex, as a multiple of the cost of writing it.
 const PROJECTED: u64 = 3;
-/// Edges of a polygon that a place is compared with in the time that writing a vertex takes.
+/// Edges of a polygon that can be tested in the time that writing a vertex takes.
 const TESTED: u64 = 16;
-/// Bands that a polygon is parted into, from top to bottom.
+/// Number of bands that divide a polygon from top to bottom.
 const BANDS: usize = 128;
 
-/// The edges of a polygon by the bands of the view that they touch, so that a place is compared
-/// with those of its own band alone.
+/// The edges of a polygon, grouped by the bands of the view that they touch. A point is tested only
+/// against the edges of its band.
 #[derive(Debug)]
 struct Bands {
     top: f32,
     /// Bands per height of the view.
     scale: f32,
     edges: Vec<[Vec2; 2]>,
-    /// Where the edges of each band begin, and where those of the last one end.
+    /// Start of each band's edges, and the end of the last one.
     starts: Vec<u32>,
     order: Vec<u16>,
 }

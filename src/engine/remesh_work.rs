@@ -4,8 +4,8 @@
 //! Laws kept here:
 //! * The pages follow in counted portions, as those of every edit of an object do
 //!   ([`crate::surface_edit`]); strokes wait until the last one has followed.
-//! * What is protected by the mask, hidden or on a border stays, and the triangles inside join what
-//!   stays edge by edge: there is no rim.
+//! * Masked, hidden and border vertices stay. The new triangles join the kept ones edge by edge:
+//!   there is no rim.
 //! * No vertex that is kept moves but where two become one, which then lies between both: the
 //!   surface stays where it was to within the square of an edge over the radius of its curvature.
 
@@ -16,22 +16,22 @@ use crate::region_seen::RegionSeen;
 use crate::scene::SceneError;
 use sculptd_clay::{Clay, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
 
-/// How far from the usual length of edges the wanted one may be, as a factor: a slip of a digit
-/// would make a hundred times the triangles.
+/// Greatest ratio between the requested edge length and the usual one. A typing error could
+/// otherwise make a hundred times the triangles.
 const EDGE_RANGE: f32 = 16.0;
-/// Triangles that an object may come to, at most: some 5 GB of clay.
+/// Most triangles that an object may have afterwards: about 5 GB of clay.
 const MOST_TRIANGLES: f32 = 1e8;
-/// Triangles that may be made of a whole object, at most: strokes wait meanwhile, half a minute.
+/// Most triangles that may be made of a whole object. Strokes wait meanwhile, up to half a minute.
 const MOST_NEW: f32 = 8e6;
 /// Counted work of a tick, in the units of dynamic topology: some three milliseconds on two cores.
 /// Strokes wait, so it is more than they leave.
 const TICK_BUDGET: usize = 24_000;
 /// Vertices that are looked at in the time of one operation.
 const LOOKED: u64 = 10;
-/// What finding out about a vertex costs, as [`RegionSeen::cost`] says it, where a pass takes twice
-/// the time that it counts.
+/// Cost of testing a vertex, as in [`RegionSeen::cost`], from which on a pass takes twice the time
+/// that it counts.
 const COSTLY: u64 = 8;
-/// Pages that one pass works on, each by a task.
+/// Number of pages that one pass works on, one task each.
 const TOGETHER: usize = 3;
 /// Pages that are known to have something to do, at most: among them some lie apart.
 const KNOWN: usize = 32;
@@ -39,14 +39,14 @@ const KNOWN: usize = 32;
 /// length, then to half of that, until all have it: where fine triangles meet coarse ones at once,
 /// vertices come to have as many neighbours as they may, and then nothing about them can be split.
 const COARSEST: u32 = 3;
-/// Rounds over the pages at the wanted length, at most, each over those that the one before has
-/// changed. Each operation brings edges nearer to their length or makes an angle wider, so they end
-/// by themselves; the bound is for numbers that round.
+/// Most rounds over the pages at the target length. Each round visits the pages changed by the
+/// previous one. Each operation brings edges nearer to their length or widens an angle, so the
+/// rounds end by themselves; the bound guards against rounding.
 const ROUNDS: u32 = 12;
-/// Edges that are looked at for the usual length, at most.
+/// Most edges sampled to estimate the usual length.
 const SAMPLED: usize = 4096;
 
-/// What is still to be done.
+/// Remesh work that remains.
 #[derive(Debug)]
 pub(crate) struct RemeshWork {
     seen: Option<RegionSeen>,
@@ -72,11 +72,11 @@ pub(crate) struct RemeshWork {
 }
 
 impl RemeshWork {
-    /// What is asked for, of this clay.
+    /// Prepares the requested remesh of this clay.
     ///
     /// # Errors
-    /// [`SceneError::Edge`] for an edge out of range, [`SceneError::Fine`] where it would make too
-    /// many triangles, [`SceneError::KeptByVertex`] where the clay has layers.
+    /// [`SceneError::Edge`] if the edge length is out of range, [`SceneError::Fine`] if it would
+    /// make too many triangles, [`SceneError::KeptByVertex`] if the clay has layers.
     pub(crate) fn new(
         asked: &LocalRemesh,
         seen: Option<RegionSeen>,
@@ -183,7 +183,7 @@ impl RemeshWork {
         false
     }
 
-    /// Whether a page is to be looked at in this round.
+    /// Returns true if a page is visited in this round.
     fn concerns(&self, clay: &Clay, page: u32) -> bool {
         match self.round {
             0 | 1 => self.region.get(page as usize).is_none_or(|r| *r),

@@ -5,8 +5,8 @@
 //!   object is. Strokes wait until the last page has followed.
 //! * The portion is counted in vertices, and in what finding out about one costs, so that a replay
 //!   stops at the same page.
-//! * What is written follows from what the edit found: neighbours that were written in an earlier
-//!   portion do not show.
+//! * The result depends only on the state before the edit: neighbours written in an earlier portion
+//!   have no influence.
 //! * An edit is one step of undo. None is under way whenever the world is at rest: it is no part of
 //!   a saved state.
 
@@ -22,14 +22,14 @@ use sculptd_clay::{Clay, GarbageSink, Workers};
 /// Vertices written in a tick, in time: about two milliseconds on one core.
 const TICK_BUDGET: u64 = 80_000;
 
-/// What is done.
+/// Kind of edit.
 #[derive(Debug)]
 pub(crate) enum SurfaceEdit {
     /// Something to the whole mask.
     Mask(MaskAll),
     /// The mask of what is seen in a region becomes this one.
     MaskSeen(RegionSeen, f32),
-    /// What was measured is masked.
+    /// Masks the measured vertices.
     MaskMeasured(MeasuredMask),
     /// Something to the face sets; where to a part, to what is seen in a region.
     Sets(SetsWork, Option<RegionSeen>),
@@ -37,10 +37,10 @@ pub(crate) enum SurfaceEdit {
     Remesh(Box<RemeshWork>),
 }
 
-/// Where the result of an edit goes.
+/// Destination of an edit's result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Asked {
-    /// Nobody waits for one.
+    /// Nobody waits for the result.
     Untold,
     /// To this place among the results of the tick.
     Now(usize),
@@ -48,7 +48,7 @@ pub(crate) enum Asked {
     Earlier,
 }
 
-/// What is still to be done.
+/// Edit work that remains.
 #[derive(Debug)]
 pub(crate) struct SurfaceWork {
     edit: Option<SurfaceEdit>,
@@ -63,17 +63,17 @@ impl SurfaceWork {
         SurfaceWork { edit: None, asked: Asked::Untold, next: 0, batch: Vec::with_capacity(256) }
     }
 
-    /// Whether an edit is under way.
+    /// Returns true while an edit is under way.
     pub(crate) fn is_under_way(&self) -> bool {
         self.edit.is_some()
     }
 
-    /// Whether it is one that gives triangles another size.
+    /// Returns true if the edit resizes triangles.
     pub(crate) fn is_remesh(&self) -> bool {
         matches!(self.edit, Some(SurfaceEdit::Remesh(_)))
     }
 
-    /// What the edit under way is called in the history.
+    /// Returns the history event of the edit under way.
     pub(crate) fn event(&self) -> SceneEvent {
         match self.edit {
             Some(SurfaceEdit::Sets(..)) => SceneEvent::Sets,
@@ -82,7 +82,7 @@ impl SurfaceWork {
         }
     }
 
-    /// Where its result goes.
+    /// Returns the destination of its result.
     pub(crate) fn asked(&self) -> Asked {
         self.asked
     }

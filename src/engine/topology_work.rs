@@ -7,8 +7,8 @@
 //! * The work of a tick is bounded by counted work, looking through pages and writing them
 //!   included, so that a replay stops at the same operation. What does not fit is carried over to
 //!   the next tick, the newest ball first.
-//! * What follows a stroke finds its topology done: [`TopologyWork::finish`] does what waits within
-//!   a bound of its own. What is dropped because of a bound is counted.
+//! * Work that follows a stroke finds its topology done: [`TopologyWork::finish`] does the waiting
+//!   work within a separate bound. Work dropped because of a bound is counted.
 //! * The list is empty whenever the world is at rest: it is no part of a saved state.
 
 use sculptd_clay::{Clay, Cuts, Detail, LEAST_TOPOLOGY_BUDGET, Workers};
@@ -20,8 +20,8 @@ const TICK_BUDGET: u64 = 8_000;
 const FINISH_BUDGET: usize = 80_000;
 /// Vertices that dabs visit in the time of one operation.
 const VISITS: u64 = 16;
-/// Balls that one pass looks at together: those that a few ticks of a stroke leave, so that pages
-/// which they share are looked through once.
+/// Number of balls that one pass handles together: about what a few ticks of a stroke leave, so
+/// that shared pages are searched once.
 const TOGETHER: usize = 8;
 /// Balls that wait, at most. They lie a quarter of a radius apart, so a stroke of 250 radii fits;
 /// beyond it the oldest is dropped, and its triangles keep their size until the next stroke there.
@@ -29,7 +29,7 @@ const MOST: usize = 1024;
 /// A ball that lies so near another, as a share of its radius, adds nothing to it.
 const APART: f32 = 0.25;
 
-/// What is still to be done.
+/// Topology work that remains.
 #[derive(Debug, Default)]
 pub(crate) struct TopologyWork {
     balls: Vec<Detail>,
@@ -43,7 +43,7 @@ impl TopologyWork {
         TopologyWork { balls: Vec::with_capacity(MOST), dropped: 0 }
     }
 
-    /// Whether nothing waits.
+    /// Returns true if no ball waits.
     pub(crate) fn is_empty(&self) -> bool {
         self.balls.is_empty()
     }

@@ -15,28 +15,27 @@ pub const MOST_CORNERS: usize = 1000;
 pub enum ViewRegion {
     /// Between two opposite corners.
     Box([Vec2; 2]),
-    /// What lies to the left of the line from the first point to the second, as it is seen.
+    /// The left side of the line from the first point to the second, as seen in the view.
     Line([Vec2; 2]),
-    /// A closed polygon, as a lasso draws it freely or a polyline sets it point by point; 3 to
-    /// [`MOST_CORNERS`] corners. Where it crosses itself, what lies inside an odd number of times.
+    /// A closed polygon, from a lasso or a polyline; 3 to [`MOST_CORNERS`] corners. If it crosses
+    /// itself, a point is inside by the even-odd rule.
     Polygon(Arc<Vec<Vec2>>),
 }
 
-/// What is done with the face sets of what is seen in a region, all the way through the active
-/// object.
+/// Edit of the face sets seen in a region, all the way through the active object.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SetsRegion {
-    /// Where.
+    /// The region.
     pub region: ViewRegion,
-    /// What is done with it.
+    /// Edit of the faces inside.
     pub edit: PartEdit,
     /// Only what faces the eye.
     pub front_faces: bool,
 }
 
 impl ViewRegion {
-    /// Whether it is a region: a line has a length, a polygon as many corners as it may have, and
-    /// every number is finite.
+    /// Returns true if the region is valid: a line has a length, a polygon has an allowed number of
+    /// corners, and every number is finite.
     pub fn is_sane(&self) -> bool {
         match self {
             ViewRegion::Box(ends) => ends.iter().all(|p| p.is_finite()),
@@ -47,7 +46,8 @@ impl ViewRegion {
         }
     }
 
-    /// Whether a place of the view lies in it. `aspect`: the view's width over its height.
+    /// Returns true if the region contains a point of the view. `aspect`: the view's width over its
+    /// height.
     pub(crate) fn holds(&self, at: Vec2, aspect: f32) -> bool {
         match self {
             ViewRegion::Box([a, b]) => at.cmpge(a.min(*b)).all() && at.cmple(a.max(*b)).all(),
@@ -64,7 +64,7 @@ impl ViewRegion {
     }
 }
 
-/// Whether an edge of a polygon crosses the level line from a place to the right.
+/// Returns true if an edge of a polygon crosses the horizontal ray from a point to the right.
 pub(crate) fn crosses(at: Vec2, a: Vec2, b: Vec2) -> bool {
     (a.y > at.y) != (b.y > at.y) && at.x < a.x + (b.x - a.x) * ((at.y - a.y) / (b.y - a.y))
 }

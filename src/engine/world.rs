@@ -2,8 +2,8 @@
 //!
 //! Laws kept here:
 //! * Two things change the world: a `Sample` and a `Command`. Both are plain data.
-//! * `step` has no clock, no IO, no threads of its own making, and cannot fail: same start, same
-//!   samples and commands, same bits, with any number of workers.
+//! * `step` has no clock and no IO, starts no threads, and cannot fail: same start, same samples
+//!   and commands, same bits, with any number of workers.
 //! * One step is bounded: dabs stop at the budget and go on in the next step, and so does dynamic
 //!   topology, whose budget is what dabs leave. Edits of layers, of the whole mask, of face sets
 //!   and of triangles in place go through the pages in portions.
@@ -57,10 +57,10 @@ use sculptd_devices::{Body, DeviceId, Hands, Sample};
 /// `StepReport::ignored` counts it.
 pub const MAX_PENS: usize = 16;
 
-/// What one step did. Reused from step to step.
+/// Result of one step. Reused from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StepReport {
-    /// Samples that the step was given.
+    /// Number of samples passed to the step.
     pub samples: u64,
     /// Dabs that moved a vertex.
     pub dabs: u64,
@@ -77,8 +77,8 @@ pub struct StepReport {
     pub join: Option<MenuItem>,
     /// A hand has put an object of the scene down: a worker may lay it flush on a face near it.
     pub put_down: Option<ObjectId>,
-    /// How often undo (counted below 0) or redo (above) was asked for, and nothing in memory
-    /// answers to it: for whoever keeps the history outside.
+    /// Number of undo requests (negative) or redo requests (positive) that no step in memory could
+    /// serve: for a caller that keeps the history outside.
     pub missed: i32,
     /// Balls in which dynamic topology was still to be done and was given up: more waited than the
     /// list holds, or than could be done before a command that ends strokes.
@@ -96,7 +96,7 @@ pub struct WorldOptions {
     pub dab_budget: u64,
     /// Bytes that undo may hold; the oldest steps go first.
     pub undo_bytes: u64,
-    /// How hands are read.
+    /// Settings of the hand recognition.
     pub hands: HandSettings,
 }
 
@@ -117,14 +117,14 @@ pub struct World {
     workers: Workers,
     options: WorldOptions,
     brush: BrushSettings,
-    /// What each brush was set to when it was last exchanged for another.
+    /// Settings of each brush at the time another replaced it.
     kept_brushes: Arc<Vec<BrushSettings>>,
     camera: Camera,
     pens: Vec<PenSlot>,
-    /// Where the pens are in the view, and where they may begin.
+    /// Mapping of the pens to the view, and where they may begin.
     desktop: DesktopLayout,
     scratch: Scratch,
-    /// Where triangles are still to be brought to their size.
+    /// Areas whose triangles are still to be resized.
     topology: TopologyWork,
     /// Pages that are still to follow an edit of layers, or a stroke on one.
     layers: LayerWork,
@@ -134,26 +134,26 @@ pub struct World {
     strokes: u32,
     hands: HandTools,
     last_hands: Option<Hands>,
-    /// What the hands hold.
+    /// Object held by the hands.
     thing: Option<HeldObject>,
     /// The object of the scene that they carry.
     in_hand: ObjectsInHand,
     report: StepReport,
-    /// Steps that can be taken back, over all objects.
+    /// Steps to undo and redo, over all objects.
     timeline: Timeline,
     /// Takes what is no longer needed: clay that was replaced, payloads that no command took.
     garbage: GarbageSink,
     /// Gives pages that dynamic topology needs.
     pages: PageSupply,
     payloads: PayloadStore,
-    /// What came of the commands of this tick, each at its command's place.
+    /// Results of the commands of this tick, each at its command's index.
     answers: Vec<CommandResult>,
     late_answer: Option<CommandResult>,
-    /// Clays put in place so far: each has a number of its own.
+    /// Number of clays put in place so far; each gets a unique number.
     lineages: u32,
     /// The object that is dragged, and the step that the drag is.
     dragged: Option<(ObjectId, u64)>,
-    /// What was done in this tick, for the session's history; `None`: no history is kept.
+    /// Changes of this tick, for the session's history; `None`: no history is kept.
     moments: Option<Vec<HistoryEntry>>,
     /// The settings of those who share the world; nobody in a world of one person.
     people: People,
@@ -301,7 +301,7 @@ impl World {
             Command::JumpScene(jump) => return self.jump_scene(jump),
             Command::Reopened => {
                 self.lift_all();
-                // It was of a window that is gone: who opens the session says its own.
+                // The layout came from a window that is gone; a new window sends another.
                 self.forget_desktops();
                 self.forget_steps();
             }
@@ -379,9 +379,9 @@ impl World {
         Ok(Answer::Cut(made))
     }
 
-    /// Every pen is lifted and every waiting dab is done, whatever the budget: what follows must
-    /// see the strokes ended. So is topology that was carried over, as a part of the stroke's undo
-    /// step: a stroke that is taken back and done again is whole.
+    /// Lifts every pen and does every waiting dab, whatever the budget: the next command must see
+    /// the strokes ended. Finishes carried-over topology too, as a part of the stroke's undo step:
+    /// an undone and redone stroke is complete.
     fn lift_all(&mut self) {
         self.author(None);
         self.end_surface_edit();
@@ -543,7 +543,7 @@ impl World {
     }
 }
 
-/// Whether dabs go on while a pen rests.
+/// Returns true if the brush lays dabs while a pen rests.
 fn goes_on_by_time(brush: &BrushSettings) -> bool {
     let path = &brush.path;
     let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);

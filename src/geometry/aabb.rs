@@ -36,7 +36,7 @@ impl Aabb {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether the boxes have a point in common; a shared face counts.
+    /// Returns true if the boxes have a point in common; a shared face counts.
     pub fn meets(&self, other: &Aabb) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
@@ -46,7 +46,7 @@ impl Aabb {
         Aabb { min: self.min - by, max: self.max + by }
     }
 
-    /// Whether the box holds no point, or has a coordinate that is not a number.
+    /// Returns true if the box holds no point, or has a coordinate that is not a number.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }

@@ -6,8 +6,9 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use super::silhouette::{Chain, PlaneRegion};
 
-/// Polygons and area of the shape of `points`, which are finite. Of random points the area is low
-/// by about the perimeter times half their spacing: they rarely lie on the border.
+/// Returns the polygons and the area of the shape of `points`, which must be finite. For random
+/// points the area is low by about the perimeter times half their spacing: they are rarely on the
+/// border.
 pub fn alpha_shape(points: &[DVec2], alpha: f64) -> (Vec<PlaneRegion>, f64) {
     let (lo, hi) = points
         .iter()

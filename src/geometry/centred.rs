@@ -1,16 +1,16 @@
-//! A mesh in its own frame: about the middle of its box, in single precision.
+//! A mesh in a local frame: about the middle of its box, in single precision.
 //!
-//! Single precision has 24 bits whatever the distance from the origin. A part of 100 mm that lies
-//! a kilometre away keeps steps of 60 micrometres there, but steps of 6 nanometres about its own
-//! middle. So every analysis that works in single precision works in this frame, and gives
-//! positions back through [`CentredMesh::to_file`] in double precision.
+//! Single precision has 24 bits whatever the distance from the origin. A part of 100 mm at a
+//! distance of a kilometre has steps of 60 micrometres there, but steps of 6 nanometres about its
+//! centre. So every analysis in single precision works in this frame, and converts positions back
+//! through [`CentredMesh::to_file`] in double precision.
 
 use glam::{DVec3, Vec3};
 
 use crate::boolean::resolution;
 use crate::{Aabb, PolyMesh, TriMesh};
 
-/// A file's mesh about its own centre, scaled.
+/// A file's mesh about its centre, scaled.
 ///
 /// ```
 /// use glam::DVec3;
@@ -30,7 +30,7 @@ pub struct CentredMesh {
     pub counts: [usize; 2],
     /// Added to the mesh's coordinates, gives the file's, scaled.
     pub centre: DVec3,
-    /// How far a coordinate of the file may be off by its own rounding, scaled.
+    /// The greatest rounding error of the file's coordinates, scaled.
     pub grain: f64,
 }
 

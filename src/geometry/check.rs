@@ -11,15 +11,16 @@ use crate::self_intersection;
 /// The facts of a mesh, as `sculptd info --json` prints them. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshReport {
-    /// All vertices, those that no face uses too.
+    /// All vertices, including any that no face uses.
     pub vertices: usize,
-    /// Polygons, those without area too.
+    /// Polygons, including those without area.
     pub faces: usize,
     /// After cutting polygons into triangles.
     pub triangles: usize,
-    /// Sets of faces that hang together, by a vertex at least.
+    /// Sets of faces connected by at least a vertex.
     pub components: usize,
-    /// Every edge is used by exactly two faces, in opposite directions, and there is one.
+    /// True if there is an edge and every edge is used by exactly two faces, in opposite
+    /// directions.
     pub closed: bool,
     /// No edge has more than two faces, and the faces around each vertex form one fan.
     pub manifold: bool,
@@ -122,7 +123,7 @@ pub fn report(mesh: &PolyMesh, crossings: bool, job: &Job) -> Result<MeshReport,
     })
 }
 
-/// What the edges say.
+/// The facts derived from the edges.
 struct EdgeFacts {
     boundary: usize,
     nonmanifold: usize,
@@ -137,7 +138,7 @@ struct EdgeFacts {
 
 fn topology(mesh: &PolyMesh, job: &Job) -> Result<EdgeFacts, Cancelled> {
     let mut together = DisjointSets::new(mesh.positions.len());
-    // Nearly every mesh is a closed manifold, and that is told sooner than the rest.
+    // Nearly every mesh is a closed manifold, which is the faster test.
     if let Some(degrees) = fans::degrees(mesh, mesh.positions.len(), job)? {
         for f in mesh.faces() {
             f.windows(2).for_each(|w| together.join(w[0], w[1]));

@@ -2,16 +2,16 @@
 //! that it makes (Garland and Heckbert, "Surface simplification using quadric error metrics",
 //! 1997).
 //!
-//! A collapse is refused if it would break the surface (link condition: the edge's ends share
+//! A collapse is rejected if it would break the surface (link condition: the edge's ends share
 //! exactly the vertices opposite the edge), turn a triangle by more than about 75 degrees or make a
-//! needle of it, or move the surface by more than the bound. Borders hold by planes set upright on
-//! them, and so do the borders between regions. What was closed and manifold stays so.
+//! needle of it, or move the surface by more than the bound. Planes perpendicular to the borders
+//! preserve them, and likewise the borders between regions. A closed manifold stays one.
 //!
-//! A collapse looks at its own triangles only, so the result may cross itself where the surface is
-//! thin or two parts are near each other. Such crossings are looked for when all is done. Where
-//! there are any that the mesh did not have, all is done again with a bound on how many vertices
-//! one near them may stand for, a quarter each time, until there are none: a bound of one leaves
-//! the surface there as it was.
+//! A collapse considers its triangles only, so the result may cross itself where the surface is
+//! thin or two parts are near each other. At the end, crossings that the mesh did not have are
+//! searched for. If there are any, everything is repeated with a bound on the number of vertices
+//! that one near them may represent, a quarter each time, until there are none. A bound of one
+//! leaves the surface there unchanged.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -23,7 +23,7 @@ use super::edges::EdgeTable;
 use super::self_intersection;
 use crate::job::{Cancelled, Job};
 
-/// When to stop.
+/// The stopping criteria.
 #[derive(Debug, Clone, Copy)]
 pub struct DecimationTarget {
     /// Stop at this many triangles.
@@ -46,7 +46,7 @@ pub struct Decimated {
     pub mesh: PolyMesh,
     /// Pairs of triangles that cross each other where none did before.
     pub new_crossings: usize,
-    /// How often all was done again, more carefully, because of crossings.
+    /// The number of more careful repetitions because of crossings.
     pub repeated: usize,
 }
 
@@ -113,7 +113,7 @@ struct CollapseSurface {
     border: Vec<bool>,
     /// The region of each triangle.
     regions: Vec<u32>,
-    /// How many vertices of the input each stands for, and may at most.
+    /// The number of input vertices that each vertex represents, and its maximum.
     members: Vec<u32>,
     most_members: Vec<u32>,
     /// The vertex that each was joined with.
@@ -167,7 +167,7 @@ pub fn decimate(
         let mut found = self_intersection::pairs(&s.positions, &left, job)?;
         let all: Vec<u32> = (0..s.joined.len() as u32).map(|v| s.stands_for(v)).collect();
         if !found.is_empty() {
-            // What crossed before may go on crossing.
+            // Old crossings may remain.
             let old = match &old_crossings {
                 Some(old) => old,
                 None => old_crossings.insert(crossing_vertices(mesh, &triangles, job)?),
@@ -338,9 +338,9 @@ impl CollapseSurface {
                 }
             }
         }
-        // Where sheets only touch, a collapse might join them: such vertices stay.
+        // A collapse might join sheets that only touch, so such vertices stay.
         for v in 0..n {
-            // Where three regions meet or a border between two ends, the place stays.
+            // Vertices where three regions meet, or where a border between two regions ends, stay.
             if !s.one_fan(v as u32) || !matches!(s.region_borders(v as u32), 0 | 2) {
                 s.fixed[v] = true;
             }
@@ -368,7 +368,7 @@ impl CollapseSurface {
         v
     }
 
-    /// How many edges between two regions end at `v`.
+    /// Returns the number of edges between two regions that end at `v`.
     fn region_borders(&self, v: u32) -> usize {
         let around = &self.around[v as usize];
         let own = |t: u32| self.regions[t as usize];
@@ -385,13 +385,13 @@ impl CollapseSurface {
         each.count()
     }
 
-    /// Whether triangles of several regions meet at `v`.
+    /// Returns true if triangles of several regions meet at `v`.
     fn between_regions(&self, v: u32) -> bool {
         let around = &self.around[v as usize];
         around.iter().any(|&t| self.regions[t as usize] != self.regions[around[0] as usize])
     }
 
-    /// Whether the triangles around `v` hang together by edges at `v`.
+    /// Returns true if the triangles around `v` are connected by edges at `v`.
     fn one_fan(&self, v: u32) -> bool {
         let around = &self.around[v as usize];
         let Some(&first) = around.first() else { return true };
@@ -448,7 +448,7 @@ impl CollapseSurface {
         heap.push(Reverse((cost.to_bits(), a, b, self.stamp[a as usize], self.stamp[b as usize])));
     }
 
-    /// Whether the edge may go to `to` without breaking or folding the surface.
+    /// Returns true if the edge can be collapsed to `to` without breaking or folding the surface.
     fn allowed(&self, a: u32, b: u32, to: DVec3) -> bool {
         let ring = |v: u32| {
             let mut r: Vec<u32> = self.around[v as usize]
@@ -505,7 +505,8 @@ impl CollapseSurface {
         })
     }
 
-    /// Moves both ends to `to`, the higher into the lower; returns how many triangles went.
+    /// Moves both ends to `to`, merging the higher into the lower; returns the number of triangles
+    /// removed.
     fn collapse(&mut self, a: u32, b: u32, to: DVec3) -> usize {
         let mut gone = 0;
         let moved = std::mem::take(&mut self.around[b as usize]);

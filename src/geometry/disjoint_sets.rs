@@ -5,7 +5,7 @@
 //! by size: the lowest member is the root of its set, so that the outcome does not depend on the
 //! order of the unions.
 
-/// Disjoint sets over the elements `0..n`. Initially each element is a set of its own.
+/// Disjoint sets over the elements `0..n`. Initially each element is a separate set.
 ///
 /// ```
 /// use sculptd_geometry::disjoint_sets::DisjointSets;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A corner without a texture coordinate.
 pub const NO_UV: u32 = u32::MAX;
 
-/// What a group of faces is called in OBJ; each may be empty.
+/// The names of a group of faces in OBJ; each may be empty.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct GroupName {
     /// `o`.
@@ -32,7 +32,7 @@ pub struct FaceAttributes {
 }
 
 impl FaceAttributes {
-    /// Whether there is nothing in it.
+    /// Returns true if there are no attributes.
     pub fn is_empty(&self) -> bool {
         self.uv_corners.is_empty() && self.groups.is_empty() && self.libraries.is_empty()
     }

@@ -12,7 +12,7 @@ const NONE: u32 = u32::MAX;
 /// Vertices that one thread looks at before it asks whether to go on.
 const BLOCK: usize = 1 << 14;
 
-/// How many corners each of `points` points has, where the mesh is such a manifold.
+/// Returns the number of corners at each of `points` points, if the mesh is such a manifold.
 pub fn degrees(mesh: &PolyMesh, points: usize, job: &Job) -> Result<Option<Vec<u32>>, Cancelled> {
     let n = mesh.corners.len();
     let next = next(mesh);

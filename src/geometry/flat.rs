@@ -58,21 +58,21 @@ impl PolyMesh {
     }
 }
 
-/// What the file says of faces and corners besides.
+/// The file's further attributes of faces and corners.
 impl PolyMesh {
-    /// The texture coordinates and, for each corner, which of them it has.
+    /// Returns the texture coordinates, and the index into them for each corner.
     pub fn uvs(&self) -> Option<(&[[f64; 2]], &[u32])> {
         let all = self.attributes.as_deref()?;
         let fits = !all.uv_corners.is_empty() && all.uv_corners.len() == self.corners.len();
         fits.then_some((&all.uvs[..], &all.uv_corners[..]))
     }
 
-    /// What a group is called.
+    /// Returns the name of a group.
     pub fn group_name(&self, group: u32) -> Option<&GroupName> {
         self.attributes.as_deref()?.groups.get(group as usize)
     }
 
-    /// Whether any group names a material.
+    /// Returns true if any group names a material.
     pub fn has_materials(&self) -> bool {
         let groups = self.attributes.as_deref().map_or(&[][..], |a| &a.groups);
         groups.iter().any(|g| !g.material.is_empty())

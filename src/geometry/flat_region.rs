@@ -1,9 +1,9 @@
 //! The flat face of a solid around one of its triangles, and the plane through it.
 //!
-//! A face of a solid is many triangles, whose corners were rounded to single precision each. Which
-//! triangles belong to it cannot be told from the plane of one small triangle: its corners'
-//! rounding tilts it. So the region grows and its plane is fitted in turns: the wider the region,
-//! the smaller the tilt that rounding can explain.
+//! A face of a solid is many triangles, whose corners were each rounded to single precision. The
+//! plane of one small triangle does not show which triangles belong to the face, because its
+//! corners' rounding tilts it. So the region grows and its plane is fitted in turns: the wider the
+//! region, the smaller the tilt that rounding can explain.
 
 use glam::DVec3;
 
@@ -25,11 +25,11 @@ pub struct FlatRegion {
     pub triangles: Vec<u32>,
     /// Outwards, unit length.
     pub normal: DVec3,
-    /// The centre of its area; lies in its plane.
+    /// The centre of its area, in its plane.
     pub middle: DVec3,
     /// In the square of the mesh's unit.
     pub area: f64,
-    /// How far its corners lie from its plane at most.
+    /// The greatest distance of its corners from its plane.
     pub off: f64,
     /// The directed edges around it: the face lies to the left of each, seen from outside.
     outline: Vec<[DVec3; 2]>,
@@ -109,8 +109,9 @@ impl TriangleNeighbours {
 }
 
 impl FlatRegion {
-    /// The flat face that holds `triangle`; on a curved surface that triangle alone, or the few
-    /// beside it that lie in its plane. `None`: there is no such triangle, or it has no area.
+    /// Returns the flat face that holds `triangle`. On a curved surface that is the triangle alone,
+    /// or with its few coplanar neighbours. Returns `None` if there is no such triangle, or it has
+    /// no area.
     pub fn around(mesh: &TriMesh, triangle: u32) -> Option<FlatRegion> {
         mesh.triangles.get(triangle as usize)?;
         let reach = mesh.positions.iter().fold(0f32, |r, p| r.max(p.abs().max_element()));
@@ -167,7 +168,7 @@ impl FlatRegion {
     }
 }
 
-/// The triangles that hang together with the first and lie in the plane of `fit`, ascending.
+/// Returns the triangles connected to the first that are in the plane of `fit`, ascending.
 fn grow(
     mesh: &TriMesh,
     table: &TriangleNeighbours,
@@ -183,7 +184,7 @@ fn grow(
             let along = (*p - fit.middle).length();
             fit.height(*p).abs() <= allowed * (1.0 + along / spread)
         });
-        // A sliver has no normal that could be told.
+        // A sliver has no reliable normal.
         let vector = area_vector(c);
         let longest = (0..3).map(|k| c[k].distance(c[(k + 1) % 3])).fold(0.0, f64::max);
         let thick = vector.length() > 16.0 * allowed * longest;
@@ -231,7 +232,7 @@ pub fn large_faces(mesh: &TriMesh, share: f64) -> Vec<FlatRegion> {
         let normal = area_vector(corners(mesh, t as u32)).try_normalize();
         for &b in beyond.iter().filter(|b| **b != TriangleNeighbours::NONE) {
             let other = area_vector(corners(mesh, b)).try_normalize();
-            // Candidates only; each is grown anew from its largest triangle.
+            // Candidates only; each region is grown again from its largest triangle.
             if normal.zip(other).is_some_and(|(a, b)| a.dot(b) > 0.9999) {
                 sets.join(t as u32, b);
             }

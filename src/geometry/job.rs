@@ -21,7 +21,7 @@ impl Job {
         self.cancelled.store(true, Relaxed);
     }
 
-    /// Whether the asker lost interest.
+    /// Returns true if the job was cancelled.
     pub fn cancelled(&self) -> bool {
         self.cancelled.load(Relaxed)
     }

@@ -14,25 +14,25 @@ pub fn default_epsilon(grid: &DistanceGrid) -> f64 {
 /// Steps before a ray is left to the mesh.
 const MOST_STEPS: usize = 4096;
 
-/// What a ray meets in the field.
+/// The result of marching a ray through the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MarchOutcome {
     /// The ray enters the solid; the distance along it at which it comes within `epsilon`.
     Hit(f64),
     /// The ray passes the solid.
     Miss,
-    /// The ray comes nearer to the surface than the field is exact: only the mesh can tell.
+    /// The ray comes closer to the surface than the field's error, so the mesh must decide.
     Unsure,
 }
 
-/// How much the trilinear interpolant of a distance can be wrong, in spacings: a distance changes
-/// by no more than the way, and the mean square way to the corners of a cell, weighted as the
-/// interpolant weights them, is `x (1 - x) + y (1 - y) + z (1 - z)`, at most 3/4.
+/// The greatest error of the trilinear interpolant of a distance, in spacings. A distance changes
+/// by no more than the distance moved. The mean square distance to the corners of a cell, with the
+/// interpolant's weights, is `x (1 - x) + y (1 - y) + z (1 - z)`, at most 3/4.
 const INTERPOLATION: f64 = 0.867;
 
-/// Where the ray from `origin` along `dir` (of unit length) comes within `epsilon` of the solid, or
-/// enters it. A hit is one that goes on into the solid by more than the interpolation can be wrong;
-/// a miss keeps away by more than that from where it enters the grid's box to where it leaves it.
+/// Finds where the ray from `origin` along `dir` (of unit length) comes within `epsilon` of the
+/// solid, or enters it. A hit continues into the solid by more than the interpolation error. A miss
+/// keeps away by more than that from where it enters the grid's box to where it leaves it.
 /// Everything between is [`MarchOutcome::Unsure`], a band of about a spacing around the outline.
 pub fn march(grid: &DistanceGrid, origin: DVec3, dir: DVec3, epsilon: f64) -> MarchOutcome {
     let (lo, hi) = (grid.origin, grid.end());

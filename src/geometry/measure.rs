@@ -51,9 +51,9 @@ pub fn measures(mesh: &TriMesh) -> Measures {
 const LOOKED_AT: usize = 4096;
 const ON_ONE: usize = 64;
 
-/// Whether a closed surface lies within itself: somewhere outside of a triangle is still inside the
-/// solid, by the winding number. Looked at in about 4,096 places, at most 64 of them on one
-/// triangle, so an overlap that is smaller than their spacing can be missed.
+/// Returns true if a closed surface overlaps itself: a place outside a triangle is inside the
+/// solid, by the winding number. Tests about 4,096 places, at most 64 of them on one triangle, so
+/// an overlap smaller than their spacing can be missed.
 pub fn overlaps(mesh: &TriMesh, job: &Job) -> Result<bool, Cancelled> {
     let solid = DistanceSolid::build(mesh, job)?;
     let (lo, hi) = mesh.bounds();
@@ -129,7 +129,7 @@ fn front_faces(flat: &[DVec2], triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> 
         let z = (x ^ (x >> 32)).wrapping_mul(by);
         (z ^ (z >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb)
     };
-    // By place, not by index: files of loose triangles say each corner anew.
+    // By position, not by index: files of loose triangles repeat each corner.
     let name = |p: &DVec2| {
         // Zero of either sign is one place.
         let [x, y] = [p.x + 0.0, p.y + 0.0].map(f64::to_bits);
@@ -181,7 +181,7 @@ impl Strips {
         if height <= 0.0 || !height.is_finite() {
             return None;
         }
-        // Which triangles cross the middle of each strip: counted, then filled.
+        // The triangles that cross the middle of each strip: counted, then filled.
         let range = |t: &[u32; 3]| {
             let y = t.map(|i| flat[i as usize].y);
             let (a, b) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
@@ -207,7 +207,7 @@ impl Strips {
         Some(Strips { lo, height, starts, members })
     }
 
-    /// Where the middle of strip `s` runs inside the triangles, one span a triangle.
+    /// Returns the spans of the middle of strip `s` inside the triangles, one for each triangle.
     pub fn spans(&self, s: usize, flat: &[DVec2], triangles: &[[u32; 3]]) -> Vec<(f64, f64)> {
         let y = self.lo + (s as f64 + 0.5) * self.height;
         self.members[self.starts[s] as usize..self.starts[s + 1] as usize]
@@ -217,7 +217,7 @@ impl Strips {
     }
 }
 
-/// Where the line at `y` runs inside a triangle.
+/// Returns the span of the line at `y` inside a triangle.
 fn crossed_at(p: [DVec2; 3], y: f64) -> Option<(f64, f64)> {
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
     for k in 0..3 {
@@ -277,7 +277,7 @@ mod tests {
         let whole = crate::shapes::torus(3.0, 1.0, 40, 24).triangulate().0;
         let mut open = whole.clone();
         open.triangles.pop();
-        // Every corner anew, as in STL.
+        // Every corner repeated, as in STL.
         let loose = TriMesh {
             positions: (0..whole.triangles.len()).flat_map(|t| whole.corners(t)).collect(),
             triangles: (0..whole.triangles.len() as u32)

@@ -268,16 +268,16 @@ fn closed(cavity: OffsetSurface, radius: f64, job: &Job) -> Result<OffsetSurface
     if faces.is_empty() { Err(RemeshError::Empty) } else { Ok(OffsetSurface { faces, ..back }) }
 }
 
-/// The cavities without those that are flatter than the samples can tell: where a solid is about
-/// twice the wall thick, its middle comes out as flat flakes. Leaving one out makes the part more
-/// solid there, never thinner.
+/// Removes cavities that are too flat for the sampling to resolve: where a solid is about twice the
+/// wall thick, its middle gives flat flakes. Leaving one out makes the part more solid there, never
+/// thinner.
 fn without_specks(points: &[Vec3], faces: Vec<[u32; 3]>, h: f64) -> Vec<[u32; 3]> {
     let mut shells = DisjointSets::new(points.len());
     for &[a, b, c] in &faces {
         shells.join(a, b);
         shells.join(b, c);
     }
-    // Six times the volume and twice the area of each cavity, about a point of its own.
+    // Six times the volume and twice the area of each cavity, about one of its points.
     let mut sums = vec![(0.0f64, 0.0f64); points.len()];
     for &face in &faces {
         let home = shells.root(face[0]);
@@ -359,7 +359,7 @@ mod tests {
         let mut least = f64::INFINITY;
         for t in cavity {
             let [a, b, c] = t.map(|v| made.mesh.positions[v as usize].as_dvec3());
-            // Other places than those that the cavity was made by.
+            // Other places than those from which the cavity was made.
             for (u, v) in [(0.25, 0.0), (0.25, 0.25), (0.6, 0.2), (0.1, 0.45)] {
                 let p = a + (b - a) * u + (c - a) * v;
                 let near = solid.tree.nearest(p, f64::INFINITY).unwrap();

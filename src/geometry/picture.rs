@@ -9,7 +9,7 @@ use crate::TriMesh;
 /// An orthographic camera.
 #[derive(Debug, Clone, Copy)]
 pub struct Camera {
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture.
     pub target: Vec3,
     /// From the target towards the eye; any length but zero.
     pub towards_eye: Vec3,
@@ -158,7 +158,7 @@ fn fill([a, b, c]: [Vec3; 3], w: usize, h: usize, mut put: impl FnMut(usize, f32
 }
 
 impl Picture {
-    /// Where a point of the mesh is in the picture, pixels from the upper left.
+    /// Returns the projection of a point of the mesh, in pixels from the upper left.
     pub fn place(&self, camera: &Camera, p: Vec3) -> (f32, f32) {
         let q = camera.axes().transpose()
             * (p - camera.target)
@@ -183,7 +183,7 @@ impl Picture {
     /// A line two pixels wide between two places.
     pub fn line(&mut self, from: (f32, f32), to: (f32, f32), colour: [u8; 3]) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        // What is far outside costs no more than what is seen.
+        // Parts far outside cost no more than visible ones.
         let steps = dx.abs().max(dy.abs()).ceil().clamp(1.0, 1e5) as usize;
         for i in 0..=steps {
             let t = i as f32 / steps as f32;

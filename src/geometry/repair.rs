@@ -72,7 +72,7 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     let p = |i: u32| mesh.positions[i as usize];
     let mut sets = DisjointSets::new(n);
     if distance > 0.0 {
-        // Cells of the distance's size: what is near lies in the same or a neighbouring cell.
+        // Cells of the distance's size: neighbours within it are in the same or an adjacent cell.
         let cell = |q: DVec3| (q / distance).floor();
         let key = |c: DVec3| c.to_array().map(|v| (v + 0.0).to_bits());
         let mut cells: Vec<([u64; 3], u32)> = (0..n as u32).map(|i| (key(cell(p(i))), i)).collect();
@@ -116,7 +116,7 @@ pub fn weld(mesh: &mut PolyMesh, distance: f64) -> usize {
     merged
 }
 
-/// Removes vertices that no face uses; the others keep their order. Returns how many went.
+/// Removes vertices that no face uses; the others keep their order. Returns the number removed.
 pub fn drop_unused(mesh: &mut PolyMesh) -> usize {
     let mut new = vec![u32::MAX; mesh.positions.len()];
     for &c in &mesh.corners {
@@ -197,17 +197,17 @@ pub struct OrientedShells {
     pub guessed: usize,
 }
 
-/// As [`orient_shells`]; returns how many faces were turned.
+/// As [`orient_shells`]; returns the number of faces turned.
 pub fn orient(mesh: &mut PolyMesh) -> usize {
     orient_shells(mesh).turned
 }
 
 /// Makes neighbours agree across every edge of two faces (the first face of a shell leads), then
-/// decides for each closed shell which way it faces. Where the mesh is consistent as it is (no
+/// decides for each closed shell which way it faces. If the mesh is consistent already (no
 /// neighbours disagree, every outermost shell faces outwards), its directions are kept: a shell
-/// that faces inwards is a cavity. Else shells in no other face outwards, and shells that others go
-/// around an odd number of times face inwards; a shell that crosses another is not within it.
-/// A one-sided surface keeps a seam; [`super::check::report`] then still says so.
+/// that faces inwards is a cavity. Otherwise shells in no other face outwards, and shells that
+/// others enclose an odd number of times face inwards; a shell that crosses another is not within
+/// it. A one-sided surface keeps a seam, which [`super::check::report`] still reports.
 pub fn orient_shells(mesh: &mut PolyMesh) -> OrientedShells {
     let edges = EdgeTable::of(mesh);
     let faces = mesh.face_count();
@@ -398,7 +398,7 @@ pub fn fill_holes(mesh: &mut PolyMesh, longest: usize) -> Filled {
             }
             let first = open.partition_point(|e| e.0 < at);
             let ways = open[first..].iter().take_while(|e| e.0 == at).count();
-            // Where borders meet, the loop is not one loop.
+            // At a vertex where borders meet, the loop is not one loop.
             if ways != 1 || used[first] || ring.len() > open.len() {
                 break false;
             }

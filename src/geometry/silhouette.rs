@@ -23,8 +23,7 @@ use crate::boolean::box_tree::{Span, SpanTree};
 use crate::job::Job;
 
 /// Half the extent of a chain in whole numbers. The smallest step is 7e-15 of the extent, 64 times
-/// what double precision rounds to, so that edges which lie on each other but for rounding become
-/// one.
+/// the rounding of double precision, so that edges that coincide up to rounding become one.
 const REACH: f64 = (1u64 << 46) as f64;
 
 /// Steps of a resolved outline in one of a chain.
@@ -145,8 +144,8 @@ impl Chain {
         (spans, tree)
     }
 
-    /// Whether few enough edges are near each other to be resolved: of edges in bundles, such as
-    /// the sides of slivers that lie on each other, each crosses each anew once it is rounded.
+    /// Returns true if few enough edges are near each other to be resolved. In a bundle, such as
+    /// the coincident sides of slivers, each edge crosses each other again once it is rounded.
     fn crosses_rarely(&self, spans: &[Span], tree: &SpanTree) -> bool {
         const EACH: usize = 256;
         const ALL: usize = 1_000_000;
@@ -159,8 +158,8 @@ impl Chain {
         })
     }
 
-    /// How far the corners of resolved shapes, in steps of one in [`FINER`], are from the edges
-    /// that they came from, at most; in steps.
+    /// Returns the greatest distance of the corners of resolved shapes, in steps of one in
+    /// [`FINER`], from the edges that they came from; in steps.
     fn farthest(&self, tree: &SpanTree, shapes: &[Vec<Vec<[i64; 2]>>]) -> f64 {
         let nearest = |p: &[i64; 2]| {
             let at = flat_place(*p) / FINER as f64;
@@ -234,8 +233,8 @@ impl Chain {
     fn shapes(&mut self) -> Vec<Vec<Vec<[i64; 2]>>> {
         let loops = self.loops();
         let mut overlay = Overlay::<i64>::new(self.edges.len());
-        // Edges that all but lie on each other are joined after a few rounds, each round over three
-        // times the length; with a finer precision they are resolved into thousands of slivers.
+        // Nearly coincident edges are joined after a few rounds, each round over three times the
+        // length; with a finer precision they are resolved into thousands of slivers.
         overlay.solver = Solver { precision: Precision::LOW, ..Solver::AUTO };
         for l in &loops {
             overlay.add_contour(l, Subject);
@@ -268,25 +267,25 @@ fn flat_place(p: [i64; 2]) -> DVec3 {
 /// A shadow.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShadowOutline {
-    /// What is covered.
+    /// The covered regions.
     pub regions: Vec<PlaneRegion>,
-    /// 0 where the outline is exact; else the height of the strips that it is drawn in, because its
-    /// edges cross too often to be resolved in a time that follows the mesh's size.
+    /// Zero if the outline is exact; else the height of the strips that approximate it, because its
+    /// edges cross too often to be resolved in a time proportional to the mesh's size.
     pub strip: f64,
     /// One standard deviation of the regions' area; 0 where the outline is exact.
     pub standard_error: f64,
-    /// How far the area of an exact outline may be off, in square units: the length of the rings
-    /// times how far their corners lie from the edges that they came from, rounding included. 0
-    /// where it is drawn in strips.
+    /// The greatest error of the area of an exact outline, in square units: the length of the rings
+    /// times the distance of their corners from the original edges, rounding included. Zero if it
+    /// is drawn in strips.
     pub error_bound: f64,
 }
 
 /// Strips in which an outline is drawn that is not resolved.
 const STRIPS: usize = 512;
 
-/// The shadow of a mesh on `plane`, exact to about 1e-14 of its extent (more where edges all but
-/// lie on each other: [`ShadowOutline::error_bound`]) beyond the rounding of its vertices to single
-/// precision. Rings repeat their first point at the end.
+/// Returns the shadow of a mesh on `plane`. It is exact to about 1e-14 of the mesh's extent, beyond
+/// the rounding of its vertices to single precision. Nearly coincident edges increase the error to
+/// [`ShadowOutline::error_bound`]. Rings repeat their first point at the end.
 pub fn outline(topology: &Topology, plane: &ProjectionPlane) -> Vec<PlaneRegion> {
     let positions: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
     outline_of(topology, &positions, plane).regions
@@ -415,7 +414,7 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
     for (s, &y) in borders.iter().enumerate() {
         let row = |s: Option<usize>| s.and_then(|s| rows.get(s)).map_or(&[][..], |r| r);
         let (below, above) = (row(s.checked_sub(1)), row(Some(s)));
-        // Where only one of the two rows is, there is a piece of the outline between them.
+        // If only one of the two rows is covered, a piece of the outline is between them.
         marks.clear();
         marks.extend(below.iter().flat_map(|&(a, b)| [(a, 1), (b, -1)]));
         marks.extend(above.iter().flat_map(|&(a, b)| [(a, -1), (b, 1)]));

@@ -33,7 +33,8 @@ fn meeting_point([a, b]: WholeEdge, [c, d]: WholeEdge) -> Option<[i64; 2]> {
     Some([0, 1].map(|k| a[k] + ((b[k] - a[k]) as f64 * t).round() as i64))
 }
 
-/// Whether an edge passes the square around `c`, a fifth larger than a step, between its ends.
+/// Returns true if an edge passes between its ends through the square around `c`, a fifth larger
+/// than a step.
 fn passes([a, b]: WholeEdge, c: [i64; 2]) -> bool {
     let (dx, dy) = (i128::from(b[0] - a[0]), i128::from(b[1] - a[1]));
     let along = |p: [i64; 2]| i128::from(p[0] - a[0]) * dx + i128::from(p[1] - a[1]) * dy;
@@ -41,8 +42,8 @@ fn passes([a, b]: WholeEdge, c: [i64; 2]) -> bool {
     10 * orient(a, b, c).abs() <= 6 * (dx.abs() + dy.abs()) && at > 0 && at < along(b)
 }
 
-/// The edges, cut and rounded. `spans` and `tree`: the boxes of the edges. Each edge becomes a path
-/// between its own ends, so that a sum of edges that is closed stays so.
+/// Returns the edges, cut and rounded. `spans` and `tree` hold the boxes of the edges. Each edge
+/// becomes a path between its old ends, so that a closed sum of edges stays closed.
 pub fn snap_rounded(edges: &[WholeEdge], spans: &[Span], tree: &SpanTree) -> Vec<WholeEdge> {
     let crossings = |i: usize| {
         let mut found = Vec::new();
@@ -108,7 +109,7 @@ mod tests {
         let tree = SpanTree::build(&spans, &Job::default()).expect("built");
         let mut cut = snap_rounded(&edges, &spans, &tree);
         assert!(cut.len() > 100, "{}", cut.len());
-        // What each point gives and takes is as before.
+        // The balance of each point is unchanged.
         let mut balance = std::collections::BTreeMap::new();
         let sides = [(&edges, 1), (&cut, -1)];
         for (list, sign) in sides {

@@ -17,7 +17,7 @@ use crate::portable::PortableMath;
 /// More corners than this are not made: 2^31.
 pub const MAX_CORNERS: u64 = 1 << 31;
 
-/// What both schemes need to know of a mesh.
+/// The surroundings of each vertex, for both schemes.
 struct VertexSurroundings {
     /// The edge of each corner's side.
     edge_of: Vec<u32>,
@@ -95,7 +95,7 @@ impl VertexSurroundings {
     }
 }
 
-/// What decides where a vertex goes.
+/// The rule for a vertex's new position.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum VertexRule {
     Inside,
@@ -182,10 +182,10 @@ impl Stencils {
         self.from[range.clone()].iter().map(|&v| v as usize).zip(self.weight[range].iter().copied())
     }
 
-    /// How to move the old vertices so that the new ones come to move as near to `wanted` as least
-    /// squares bring them, after `rounds` of simultaneous iteration (each correction is shared out
-    /// by the weights: Gilbert 1972). An old vertex that no new one which is wanted to move is made
-    /// of stays.
+    /// Returns the displacement of the old vertices that moves the new ones as near to `wanted` as
+    /// least squares permit, after `rounds` of simultaneous iteration (each correction is divided
+    /// by the weights: Gilbert 1972). An old vertex stays if no new vertex that it influences is to
+    /// move.
     pub fn fit(&self, wanted: &[DVec3], rounds: usize, job: &Job) -> Result<Vec<DVec3>, Cancelled> {
         let (mut shares, mut free) = (vec![0.0; self.old], vec![false; self.old]);
         for (f, goal) in wanted.iter().enumerate() {
@@ -359,7 +359,7 @@ fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
     out
 }
 
-/// Corners after so many levels, to be asked before memory is taken for them.
+/// Returns the number of corners after this many levels, to check before memory is allocated.
 pub fn corners_after(mesh: &PolyMesh, levels: u32) -> u64 {
     (mesh.corners.len() as u64 * 3).saturating_mul(4u64.saturating_pow(levels))
 }
@@ -401,7 +401,7 @@ mod tests {
                         && (map.row(f).map(|r| r.1).sum::<f64>() - 1.0).abs() < 1e-14
                 );
             }
-            // What coarse vertices can bring about is found again.
+            // The fit recovers displacements that coarse vertices can produce.
             let by = |v: usize| DVec3::new((v as f64).sin(), 0.3, (v as f64 * 0.7).cos());
             let wanted: Vec<_> = (0..fine.positions.len())
                 .map(|f| map.row(f).fold(DVec3::ZERO, |q, (v, w)| q + by(v) * w))

@@ -1,11 +1,10 @@
 //! Polygons into triangles, concave ones too.
 //!
 //! A face is seen along the axis of its normal's (Newell) largest component and cut by ears
-//! (Meisters 1975). Whether a corner is convex and whether another lies in the ear is decided
-//! exactly (Shewchuk's `orient2d`) on the coordinates as they are, so that the result depends on
-//! nothing but them. A quadrilateral is cut along the shorter of its diagonals that lie inside. A
-//! polygon that crosses itself gives triangles too, one fewer than corners less one; they overlap
-//! as it does.
+//! (Meisters 1975). The tests for convex corners, and for corners inside an ear, are exact
+//! (Shewchuk's `orient2d`) for the given coordinates, so that the result depends on nothing else. A
+//! quadrilateral is cut along the shorter of its inner diagonals. A polygon that crosses itself
+//! gives triangles too, two fewer than its corners; they overlap as it does.
 
 use std::collections::BTreeSet;
 
@@ -34,7 +33,7 @@ impl PolyMesh {
         (out, of)
     }
 
-    /// Cuts faces anew whose diagonal is another face's diagonal or edge too: that edge would have
+    /// Recuts faces whose diagonal is another face's diagonal or edge too: that edge would have
     /// four triangles, and the mesh would no longer be manifold.
     fn separate_diagonals(&self, triangles: &mut [[u32; 3]], of: &[u32]) {
         let key = |a: u32, b: u32| u64::from(a.min(b)) << 32 | u64::from(a.max(b));
@@ -181,8 +180,8 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
     ears(corners, &points, turn, |_, _| true, out);
 }
 
-/// Whether three corners are in line but for rounding. A triangle of such has no direction: in
-/// space it may lie in the plane of a face beside its own, over it.
+/// Returns true if three corners are collinear up to rounding. Such a triangle has no direction: in
+/// space it may overlap a neighbouring face in that face's plane.
 fn flat_ear(points: &[Coord<f64>], i: usize, j: usize, k: usize, turn: f64) -> bool {
     let square = |a: usize, b: usize| {
         let (x, y) = (points[a].x - points[b].x, points[a].y - points[b].y);
@@ -206,7 +205,7 @@ fn ears(
     let n = corners.len();
     let mut next: Vec<usize> = (1..n).chain([0]).collect();
     let mut prev: Vec<usize> = [n - 1].into_iter().chain(0..n - 1).collect();
-    // Only corners that are not convex can lie in an ear, and a corner that became convex stays so.
+    // Only reflex corners can be inside an ear, and a corner that became convex stays so.
     let mut reflex: Vec<usize> = (0..n).filter(|&i| turn(prev[i], i, next[i]) <= 0.0).collect();
     let inside = |p: usize, i: usize, q: usize, r: usize| {
         // A corner at the same place as one of the ear's is a touch, not a hindrance.

@@ -1,9 +1,7 @@
-//! Vertices that were moved to a better place and folded faces over there go back to where they
-//! came from.
+//! Moves vertices back to their former places if their new places fold faces.
 //!
-//! The dual surface before any vertex moves lies with each vertex among its own cell's crossings
-//! and folds nowhere, so going back always helps, and only what is in the way of something goes
-//! back.
+//! In the dual surface before any vertex moves, each vertex is among its cell's crossings and no
+//! face folds. So going back always helps, and only vertices that cause folds go back.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;

@@ -107,8 +107,8 @@ impl Winding {
         Winding { dipoles }
     }
 
-    /// How often the surface of `tree`, which this was built from, goes around `p`; 0 out of range
-    /// ([`crate::bvh::REACH`]).
+    /// Returns the winding number of the surface of `tree`, from which this was built, around `p`;
+    /// returns 0 out of range ([`crate::bvh::REACH`]).
     pub fn at(&self, tree: &Bvh8, p: DVec3) -> f64 {
         if self.dipoles.is_empty() || tree.out_of_range(p) {
             return 0.0;

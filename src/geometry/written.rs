@@ -1,11 +1,11 @@
-//! What a file will hold: a mesh in the format's faces and precision, without triangles that cross.
+//! The mesh that a file will hold: in the format's faces and precision, and without crossings.
 //!
-//! Rounding moves each vertex on its own, so a mesh that crosses nothing may cross itself once it
-//! is written. Here it is rounded first, checked with exact predicates
-//! ([`crate::self_intersection`]), and repaired by local operations: an edge is flipped, an edge no
-//! longer than a few steps of the precision is collapsed, or a vertex is moved by a few steps. An
-//! operation is kept only where fewer pairs cross after it (the greedy scheme of Attene, "A
-//! lightweight approach to repairing digitized polygon meshes", 2010).
+//! Rounding moves each vertex separately, so a mesh without crossings may cross itself once it is
+//! written. Here it is rounded first, checked with exact predicates ([`crate::self_intersection`]),
+//! and repaired by local operations: an edge is flipped, an edge of at most a few steps of the
+//! precision is collapsed, or a vertex is moved by a few steps. An operation is kept only if it
+//! reduces the number of crossings (the greedy scheme of Attene, "A lightweight approach to
+//! repairing digitized polygon meshes", 2010).
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -30,20 +30,20 @@ pub struct WrittenMesh<'a> {
     pub crossings: usize,
 }
 
-/// Faces that come from another mesh, one that is closed and manifold and crosses nothing: between
-/// those that are in the file as they are there nothing crosses, and they are not compared again.
+/// Faces that come from another mesh, which is closed, manifold and without crossings: its faces
+/// that are unchanged in the file do not cross, and are not compared again.
 #[derive(Debug, Clone, Copy)]
 pub struct KnownFaces<'a> {
     /// The other mesh.
     pub mesh: &'a PolyMesh,
-    /// For each face of the mesh that is written its face there, or the one that it is a part of.
+    /// For each face of the written mesh, the face there that it is, or is a part of.
     pub faces: &'a [Option<u32>],
 }
 
 impl KnownFaces<'_> {
     /// The triangles of `out` that are not triangles of the known mesh; `of`: the face of each.
     fn changed(&self, out: &PolyMesh, of: &[u32]) -> Vec<u32> {
-        // Each is there once: a second one would lie on the first.
+        // Each face is used once: a second copy would coincide with the first.
         let mut used = vec![false; self.mesh.face_count()];
         let mut as_known = |f: u32| {
             let Some(Some(known)) = self.faces.get(f as usize) else { return false };
@@ -174,7 +174,7 @@ struct LocalMesh {
     tree: SpanTree,
     /// Triangles that are no longer where the tree has them.
     changed: Vec<u32>,
-    /// Whether each triangle is one of them.
+    /// True for each triangle in `changed`.
     is_changed: Vec<bool>,
     single: bool,
     step: f64,
@@ -272,9 +272,9 @@ impl LocalMesh {
         }
     }
 
-    /// Whether two triangles go through each other by more than any operation moves them: along
-    /// each direction that can part them (both normals, and across each two edges; the separating
-    /// axes of Gottschalk, 1996) they overlap by more than the limit.
+    /// Returns true if two triangles cross by more than any operation moves them. Then they overlap
+    /// by more than the limit along each separating axis: both normals, and the cross product of
+    /// each two edges (Gottschalk, 1996).
     fn cross_deeply(&self, s: u32, t: u32) -> bool {
         let [p, q] = [s, t].map(|t| self.triangles[t as usize].map(|v| self.positions[v as usize]));
         let edges = |c: [DVec3; 3]| [c[1] - c[0], c[2] - c[1], c[0] - c[2]];
@@ -500,8 +500,8 @@ impl LocalMesh {
         })
     }
 
-    /// What is left, in the mesh it came from: faces that no repair changed as they were, the
-    /// triangles of the others.
+    /// Stores the result in the original mesh: unchanged faces as they were, and the triangles of
+    /// the others.
     fn store(self, mesh: &mut PolyMesh) {
         let old = std::mem::replace(mesh, PolyMesh::new());
         let mut names = Vec::new();
@@ -583,7 +583,7 @@ mod tests {
         let all = crossings(&dented, None);
         assert!(all > 3, "{all}");
         assert_eq!(crossings(&dented, Some(faces)), all);
-        // A face that is there twice lies on itself, though both are as they were.
+        // A duplicate face coincides with the first, although both are unchanged.
         let mut twice = clean.clone();
         let again: Vec<u32> = twice.face(5).to_vec();
         twice.push_face(&again);

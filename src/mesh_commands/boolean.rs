@@ -32,7 +32,7 @@ pub enum What {
     All,
     /// One solid in two by `--plane`: what is above it and what is below it.
     Split,
-    /// Each connected shell of one mesh in a file of its own.
+    /// Each connected shell of one mesh, in a separate file.
     Shells,
 }
 
@@ -42,12 +42,12 @@ pub enum Solve {
     Winding,
 }
 
-/// Which polygons a result has where a face was cut.
+/// Shape of a result's polygons where a face was cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Polygons {
-    /// Convex ones, which every program reads alike.
+    /// Convex polygons, which every program reads alike.
     Convex,
-    /// As few as can be had, concave ones among them.
+    /// As few polygons as possible, including concave ones.
     Any,
 }
 
@@ -58,8 +58,8 @@ pub struct BooleanArgs {
     /// more.
     #[arg(required = true, num_args = 1..)]
     pub meshes: Vec<PathBuf>,
-    /// Where the result goes; the ending says the format. Where there are several, their names
-    /// stand before the ending.
+    /// File to write the result to; the extension decides the format. Several results get their
+    /// names before the extension.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     /// Length within which faces are in contact; 0 for what the numbers say. Without it, what the
@@ -108,19 +108,19 @@ struct BooleanAnswer {
     phases: BTreeMap<String, f64>,
     /// Length within which places were taken as one; of several steps, the largest.
     tolerance: f64,
-    /// What the operands' coordinates resolve, the coarsest.
+    /// The precision of the operands' coordinates, the coarsest.
     precision: Option<Precision>,
     /// Distances that the tolerance decided.
     contact: ContactAnswer,
-    /// Whether another tolerance may give another result.
+    /// True if another tolerance may give another result.
     depends_on_tolerance: bool,
-    /// How far a volume may be from that of the operands as they are.
+    /// The greatest error of a volume relative to the operands as given.
     volume_bound: f64,
     /// Pieces of the curve in which the surfaces meet.
     cut_segments: usize,
     /// That curve, in polylines.
     cut: Vec<Line>,
-    /// Triangles more than without `--refine-cut`, of all results.
+    /// Triangles added by `--refine-cut`, of all results.
     refined: usize,
     warnings: Vec<String>,
 }
@@ -490,7 +490,7 @@ impl Made {
     }
 }
 
-/// Says what was made.
+/// Prints the result.
 fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     warn(&args.out, &out.warnings);
     answer(json, out, |w| {
@@ -534,7 +534,7 @@ fn operand(
     let stop = |e: sculptd_geometry::job::Cancelled| Fail::Input(e.to_string());
     let mut facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
     if !facts.closed {
-        // Triangle soups (STL) say their corners anew for each triangle.
+        // Triangle soups (STL) repeat their corners for each triangle.
         repair::weld(&mut mesh, 0.0);
         facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
     }
@@ -552,7 +552,7 @@ fn operand(
     let crossed = facts.self_intersections.unwrap_or(0);
     let mut clean = facts.closed && facts.manifold && facts.self_intersections == Some(0);
     phase(out, "look");
-    // Whether the faces' directions say what is inside.
+    // True if the faces' directions decide what is inside.
     let directed = facts.closed && facts.oriented && facts.volume.is_some_and(|v| v > 0.0);
     if args.solve.is_some() && (!directed || crossed > 0 || args.trust || facts.components > 1) {
         let oriented = if directed { Default::default() } else { repair::orient_shells(&mut mesh) };

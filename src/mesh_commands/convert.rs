@@ -48,7 +48,7 @@ pub(super) struct Written {
     pub warnings: Vec<String>,
 }
 
-/// What a file holds, as it is read again.
+/// The facts of a written file, which is read again.
 #[derive(Debug, Clone)]
 pub(super) struct FileFacts {
     pub vertices: usize,
@@ -67,7 +67,7 @@ pub(super) struct FileFacts {
 /// A mesh rounded to its file's format, looked at for triangles that cross, and repaired within
 /// the format's precision and a tolerance.
 pub(super) struct ReadyMesh {
-    /// Where it is not the mesh itself.
+    /// The mesh to write, if it differs from the input.
     changed: Option<PolyMesh>,
     /// Pairs of triangles that still cross.
     pub crossings: usize,
@@ -151,7 +151,7 @@ fn file_facts(
 ) -> Result<FileFacts, Fail> {
     let loaded = read_mesh(path, job)?;
     let mut mesh = loaded.mesh;
-    // STL says the corners of each triangle anew.
+    // STL repeats the corners of each triangle.
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")) {
         repair::weld(&mut mesh, 0.0);
     }
@@ -173,7 +173,7 @@ fn file_facts(
     })
 }
 
-/// Writes `mesh` and says so: the end of every command that makes a mesh.
+/// Writes `mesh` and reports it: the end of every command that makes a mesh.
 pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
     deliver_checked(path, mesh, None, warnings, json)
 }
@@ -270,7 +270,8 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
             match boolean::solve(&mesh, &job) {
                 Ok(solved) => {
                     mesh = solved;
-                    // What the solver knows exactly is rounded to doubles, and may cross itself so.
+                    // The exact result of the solver is rounded to doubles, and may then cross
+                    // itself.
                     crossings = Some(0.0);
                 }
                 Err(e) => return Err(Fail::Check(format!("shells overlap and {e}"))),

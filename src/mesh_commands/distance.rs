@@ -34,10 +34,10 @@ pub struct DistanceArgs {
     /// Samples outside the mesh's box on each side of the grid.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub margin: usize,
-    /// How inside is told from outside.
+    /// Method that separates inside from outside.
     #[arg(long, value_enum, default_value = "winding")]
     pub sign: SignArg,
-    /// Where the grid goes, as .npy, or the points' distances, one a line.
+    /// File to write the grid to, as .npy, or the points' distances, one per line.
     #[arg(long, short, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
@@ -78,9 +78,10 @@ struct GridFacts {
 #[derive(Debug)]
 pub struct Ready {
     pub part: CentredMesh,
-    /// In the part's frame: `part.centre` is taken from what is asked and added to what is told.
+    /// The solid in the part's frame: subtract `part.centre` from the input and add it to the
+    /// output.
     pub solid: DistanceSolid,
-    /// The reader's, and whether the surface is open.
+    /// The reader's warnings, and one if the surface is open.
     pub warnings: Vec<String>,
 }
 
@@ -127,7 +128,7 @@ pub fn warn(path: &Path, warnings: &[String]) {
     }
 }
 
-/// Runs `work` and says how many seconds it took.
+/// Runs `work` and returns its result and its duration in seconds.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let clock = Clock::monotonic();
     let start = clock.now_us();

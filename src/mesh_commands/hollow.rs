@@ -16,7 +16,7 @@ pub struct HollowArgs {
     /// The wall's thickness.
     #[arg(long, value_name = "MM")]
     pub wall: f64,
-    /// Where the new mesh goes; the ending says the format.
+    /// File to write the new mesh to; the extension decides the format.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]

@@ -1,8 +1,8 @@
-//! The subcommands over mesh files: one module a subcommand. Each reads its arguments, calls
+//! The subcommands over mesh files: one module each. Each reads its arguments, calls
 //! `sculptd-geometry` and prints; it decides nothing.
 //!
-//! They stand apart from the rest of the command line because they know nothing of the clay: an
-//! edit of a brush does not compile them anew.
+//! They are separate from the rest of the command line because they do not depend on the clay: an
+//! edit of a brush does not recompile them.
 //!
 //! Read first: [`Fail`] (the exit codes), [`answer`] (what goes to standard output), then
 //! [`convert`], the simplest command that reads and writes.
@@ -62,7 +62,7 @@ impl Fail {
         }
     }
 
-    /// An IO error on `path`: a refused permission is told apart from everything else.
+    /// Converts an IO error on `path`: a denied permission has a separate exit code.
     pub fn io(path: &Path, e: &std::io::Error) -> Self {
         let text = format!("{}: {e}", path.display());
         if e.kind() == std::io::ErrorKind::PermissionDenied {
@@ -91,7 +91,7 @@ impl From<WriteError> for Fail {
     }
 }
 
-/// What a command ends with.
+/// The result of a command.
 pub type Outcome = Result<(), Fail>;
 
 /// Prints the answer: the object with `--json`, else the text. A closed pipe is the reader's

@@ -61,7 +61,7 @@ struct MeasureAnswer {
     vertices: usize,
     triangles: usize,
     closed: bool,
-    /// Shells, or parts of one, lie in each other.
+    /// True if shells, or parts of one, overlap.
     overlapping: bool,
     warnings: Vec<String>,
 }

@@ -14,7 +14,7 @@ use sculptd_geometry::offset::{offset, smooth_union};
 pub struct OffsetArgs {
     /// The mesh file.
     pub mesh: PathBuf,
-    /// How far to move the surface, at least, everywhere: out, or in where negative.
+    /// Distance to move the surface, at least, everywhere: outwards, or inwards if negative.
     #[arg(long, value_name = "MM", allow_hyphen_values = true)]
     pub distance: Option<f64>,
     /// Instead: unite with the solid in this file, by a fillet of `--radius`.
@@ -23,7 +23,7 @@ pub struct OffsetArgs {
     /// The fillet's radius, for `--unite`.
     #[arg(long, value_name = "MM", default_value_t = 0.0)]
     pub radius: f64,
-    /// Where the new mesh goes; the ending says the format.
+    /// File to write the new mesh to; the extension decides the format.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]

@@ -99,7 +99,7 @@ struct ProjectAnswer {
     area: f64,
     /// One standard deviation; zero for `exact`.
     standard_error: f64,
-    /// How far the area of an exact outline may be off; zero for the other methods.
+    /// The greatest error of the area of an exact outline; zero for the other methods.
     error_bound: f64,
     polygons: usize,
     holes: usize,

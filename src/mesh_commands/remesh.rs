@@ -18,7 +18,7 @@ use sculptd_geometry::remesh::{RemeshError, RemeshSettings, remesh};
 pub struct RemeshArgs {
     /// The mesh file: closed or not, crossed or not, of any number of shells.
     pub mesh: PathBuf,
-    /// Where the new mesh goes; the ending says the format.
+    /// File to write the new mesh to; the extension decides the format.
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -30,7 +30,7 @@ pub struct RemeshArgs {
     pub quads: QuadArgs,
 }
 
-/// How fine the field is sampled.
+/// The resolution of the field.
 #[derive(Debug, Clone, clap::Args)]
 pub struct RemeshHow {
     /// Samples along the longest side of the box, 8 to 1024.
@@ -38,7 +38,7 @@ pub struct RemeshHow {
     pub side: usize,
 }
 
-/// What came out; the same for every command that makes a mesh from the field.
+/// The result; the same for every command that makes a mesh from the field.
 #[derive(Debug, Serialize)]
 pub struct RemeshMade {
     pub file: PathBuf,

@@ -22,7 +22,7 @@ pub struct SubdivideArgs {
     pub mesh: PathBuf,
     #[arg(long, value_enum, default_value = "catmull-clark")]
     pub scheme: Scheme,
-    /// How often; each level has four times the faces.
+    /// Number of levels; each has four times the faces.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=12))]
     pub levels: u32,
     #[arg(short, long, value_name = "FILE")]

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::wire::message::Address;
 
-/// Own hashes that are kept, and hashes of others that wait for the own one.
+/// Greatest number of local hashes kept, then of remote hashes that wait for the local one.
 const KEPT: usize = 64;
 const EARLY: usize = 256;
 
-/// What was told of the frames that are compared.
+/// Hashes of the compared frames.
 #[derive(Debug, Default)]
 pub struct HashComparison {
     own: BTreeMap<u64, u64>,
@@ -16,7 +16,7 @@ pub struct HashComparison {
 }
 
 impl HashComparison {
-    /// A member's hash after a frame. `Some`: the own one, where they differ.
+    /// Takes a member's hash after a frame. Returns the local hash if they differ.
     pub fn take(&mut self, index: u64, from: Address, hash: u64) -> Option<u64> {
         match self.own.get(&index) {
             Some(own) => (*own != hash).then_some(*own),

@@ -1,4 +1,4 @@
-//! What a station is in every phase: its log, its own batches, and what waits to be sent and told.
+//! State of a station in every phase: its log, its batches, and the waiting messages and events.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub enum To {
     Bulk(Address),
 }
 
-/// What a station tells whoever runs it.
+/// Events that a station reports to its caller.
 #[derive(Debug, Clone)]
 pub enum Event {
     /// The next frame to be stepped.
@@ -37,13 +37,12 @@ pub enum Event {
     /// The next bytes of a checkpoint, as [`sculptd_engine::checkpoint::Captured::write`] made
     /// them.
     RestorePart {
-        /// Whether they are its first: what came before was of another.
+        /// True for the first part: earlier bytes belong to another checkpoint.
         first: bool,
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// The world is made anew from the checkpoint whose bytes have come; frames from the one after
-    /// `index` follow.
+    /// Rebuild the world from the received checkpoint; frames from the one after `index` follow.
     Restore {
         /// The frame of the checkpoint.
         index: u64,
@@ -76,7 +75,7 @@ pub struct Core {
     pub address: Address,
     /// As the person wants to be called.
     pub name: String,
-    /// What the person is.
+    /// Role of the person.
     pub role: Role,
     /// The own number; 0 before the first entry.
     pub person: PersonId,
@@ -86,9 +85,9 @@ pub struct Core {
     pub log: ReplicaLog,
     /// The own input.
     pub outbox: Outbox,
-    /// What is to be sent, in order.
+    /// Messages to send, in order.
     pub outgoing: VecDeque<(To, Vec<u8>)>,
-    /// What is to be told, in order.
+    /// Events to report, in order.
     pub events: VecDeque<Event>,
     /// Random bytes.
     pub entropy: Entropy,
@@ -100,7 +99,7 @@ impl std::fmt::Debug for Core {
     }
 }
 
-/// Seals messages among those who may take over, under a key of its own, so that no two messages of
+/// Seals messages among the possible successors, under a separate key, so that no two messages of
 /// the group share a nonce.
 #[derive(Debug)]
 pub struct HeirsSeal {
@@ -220,13 +219,14 @@ impl RoundTrip {
         }
     }
 
-    /// Whether a message and its answer take longer than a fifth of the silence after which a host
-    /// is gone.
+    /// Returns true if a message and its answer take longer than a fifth of the silence after which
+    /// a host counts as lost.
     pub fn is_long(&self) -> bool {
         self.smooth_us > LOST_US as f64 / 5.0
     }
 
-    /// What was sent longer ago and is not confirmed is sent again.
+    /// Returns the time without a confirmation after which a message is sent again, in
+    /// microseconds.
     pub fn patience_us(&self) -> u64 {
         // Both sides send at intervals: a confirmation waits for the next message.
         (self.smooth_us * 1.5) as u64 + 2 * SEND_US + 60_000

@@ -50,11 +50,11 @@ pub struct TickInput {
     pub samples: Vec<Sample>,
     /// In the order in which they are stepped.
     pub commands: Vec<Command>,
-    /// How many of the commands are the own person's, and where: their results are waited for.
+    /// Indices of the commands that came from the local person: their results are awaited.
     pub own: Vec<usize>,
 }
 
-/// What a frame asks for after its tick.
+/// Requests of a frame after its tick.
 #[derive(Debug, Default)]
 pub struct Asked {
     /// To be hashed.
@@ -63,7 +63,7 @@ pub struct Asked {
     pub captured: Option<Captured>,
 }
 
-/// Which tick comes next.
+/// Chooses the next tick.
 #[derive(Debug)]
 pub struct Executor {
     rate_hz: u32,
@@ -92,8 +92,8 @@ impl Executor {
         self.person
     }
 
-    /// The ticks without input before the one of a frame: those that are to be stepped. While
-    /// nothing goes on by itself they change nothing, and none is.
+    /// Returns the ticks without input before a frame's tick that must be stepped. While nothing is
+    /// under way they would change nothing, and the range is empty.
     pub fn empty_ticks(&self, world: &World, frame: &Frame) -> std::ops::Range<u64> {
         let first = world.tick() + 1;
         match self.busy {
@@ -148,7 +148,7 @@ impl Executor {
         input
     }
 
-    /// What follows a tick that was stepped; `frame`: where it was a frame's own.
+    /// Updates the state after a stepped tick; `frame` is `None` for an empty tick.
     pub fn after_step(&mut self, world: &mut World, frame: Option<&Frame>) -> Asked {
         world.show_to(self.person);
         let report = *world.report();

@@ -37,7 +37,7 @@ impl HeldCheckpoint {
         let end = first + CHUNK;
         match self.bytes.get(first..end) {
             Some(chunk) if end < self.bytes.len() => Some((chunk, false)),
-            // Whether a full chunk is the last is known when something follows it, or nothing does.
+            // A full chunk is known to be the last only once more bytes or the end arrive.
             Some(chunk) => self.whole.then_some((chunk, true)),
             None if self.whole => {
                 self.bytes.get(first..).filter(|c| !c.is_empty()).map(|c| (c, true))
@@ -68,7 +68,7 @@ impl HeldCheckpoint {
     }
 }
 
-/// Whether who joins now may begin with a checkpoint that is there.
+/// Returns true if a joining station may start with this checkpoint.
 pub fn is_recent(core: &Core, held: &HeldCheckpoint) -> bool {
     core.log.from(held.index + 1, 1).is_some() && core.log.last() < held.index + RECENT
 }

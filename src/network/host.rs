@@ -95,7 +95,7 @@ impl Host {
             present_us: 0,
             forged: 0,
         };
-        // What is in the log and was not acknowledged by the host before is by this one.
+        // This host acknowledges the log entries that the previous one did not.
         for (person, applied) in core.log.people() {
             host.waiting.entry(person.person).or_default().received = applied;
             host.acknowledgements.expect(core.log.last(), person.person, applied);
@@ -116,7 +116,7 @@ impl Host {
         self.present_us = 0;
     }
 
-    /// What a successor needs.
+    /// Returns the data that a successor needs.
     pub fn succession(&self) -> (Keyring, Secret) {
         (self.keyring.clone(), self.group.clone())
     }
@@ -398,7 +398,7 @@ impl Host {
         }
     }
 
-    /// The hash of the own world after a frame.
+    /// Takes the hash of the local world after a frame.
     pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
         for from in self.comparison.take_own(index, hash) {
             self.differs(core, index, from, hash);
@@ -447,7 +447,7 @@ impl Host {
         }
     }
 
-    /// Whether the world had nothing under way after the last frame.
+    /// Notes whether nothing was under way in the world after the last frame.
     pub fn after_step(&mut self, at_rest: bool) {
         self.at_rest = at_rest;
     }

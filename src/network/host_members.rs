@@ -19,7 +19,7 @@ pub const PER_MESSAGE: (usize, usize) = (64, 2048);
 /// Samples, commands and batches of one person and one frame; one batch may go beyond.
 const PER_FRAME: usize = 128;
 
-/// Who said hello and may join next.
+/// A station that has said hello and may join next.
 #[derive(Debug)]
 pub struct Greeted {
     pub up: Seal,
@@ -30,7 +30,7 @@ pub struct Greeted {
     pub at_us: u64,
 }
 
-/// What a member may send.
+/// Limits of a member's messages.
 #[derive(Debug)]
 pub struct SenderLimits {
     pub bytes: RateLimit,
@@ -68,7 +68,7 @@ pub struct JoinedMember {
     pub heard_us: u64,
     /// Waits for a checkpoint.
     pub waits: bool,
-    /// Frames up to this one are there; `None`: the checkpoint is not, yet.
+    /// Index of the last frame it has; `None`: it does not have the checkpoint yet.
     pub have: Option<u64>,
     /// The frames after this one are those of the log.
     pub first: u64,
@@ -93,7 +93,7 @@ impl JoinedMember {
         }
     }
 
-    /// Frames as bytes for this member, as differences to those that it is known to have.
+    /// Encodes frames for this member, as differences to frames that it is known to have.
     pub fn bytes_of(&self, frames: &[Arc<Frame>], log: &ReplicaLog) -> Vec<u8> {
         frames_to_bytes(frames, log, (self.first, self.have.unwrap_or(self.first)))
     }
@@ -163,8 +163,8 @@ pub fn note_departures(
     arrivals.extend(gone);
 }
 
-/// How many of a person's next batches one frame takes, so that a frame of all people fits into a
-/// message, whatever they send; one at least, where there is one.
+/// Returns the number of a person's next batches that fit into one frame, so that a frame of all
+/// people fits into a message. It is at least one if there are any.
 pub fn fitting<'a>(batches: impl Iterator<Item = &'a Batch>) -> usize {
     let mut sum = 0;
     let fits = |b: &&Batch| {

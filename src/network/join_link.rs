@@ -2,9 +2,10 @@
 //! `sculptd://join/NAME?key=KEY&role=ROLE&as=PERSON&connect=ENDPOINT`.
 //!
 //! Laws kept here:
-//! * Whoever has the link may join: it holds the key. So no error and no `Debug` shows any of it.
-//! * A link that is read is the link that was written. What is not understood is refused, as a
-//!   newer program may mean more by it.
+//! * Any holder of the link may join, because it contains the key. So no error and no `Debug`
+//!   shows any of it.
+//! * Reading a written link gives the same link. Unknown parts are refused, because a newer program
+//!   may give them a meaning.
 //! * Reading never panics, and what is read is bounded.
 
 use std::fmt::Write;
@@ -13,14 +14,14 @@ use crate::keyring::{Invitation, from_hex};
 use crate::seal::KEY;
 use crate::wire::frame::{MAX_NAME, Role};
 
-/// How every link begins.
+/// Prefix of every link.
 pub const SCHEME: &str = "sculptd://";
 /// Bytes of a link; as many as a QR code of the largest kind holds.
 pub const MAX_LINK: usize = 2048;
 /// Endpoints of a link.
 pub const MAX_CONNECT: usize = 8;
 
-/// What a link says.
+/// Content of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JoinLink {
     /// The sculpture's name.
@@ -77,12 +78,12 @@ pub fn sculpture_name(text: &str) -> Result<String, String> {
     }
 }
 
-/// Whether a text means to be a link and not a name: a name has no colon.
+/// Returns true if a text is meant as a link and not as a name: a name has no colon.
 pub fn is_link(text: &str) -> bool {
     text.contains(':')
 }
 
-/// A text as it stands in a link (RFC 3986, percent-encoding).
+/// Appends a text in the encoding of a link (RFC 3986, percent-encoding).
 fn encoded(text: &str, out: &mut String) {
     for byte in text.bytes() {
         match byte {
@@ -110,14 +111,14 @@ fn decoded(text: &str) -> Result<String, BadLink> {
     String::from_utf8(out).map_err(|_| BadLink::Percent)
 }
 
-/// Whether text is a line of 1 to `most` bytes.
+/// Returns true if text is a line of 1 to `most` bytes.
 fn is_line(text: &str, most: usize) -> bool {
     (1..=most).contains(&text.len())
         && !text.trim().is_empty()
         && !text.chars().any(char::is_control)
 }
 
-/// Whether a text may be an endpoint; the network says whether it is one.
+/// Returns true if a text has the form of an endpoint; only the network can decide if it is one.
 pub fn is_endpoint(text: &str) -> bool {
     let parts = text.split_once('/').is_some_and(|(way, at)| !way.is_empty() && at.contains(':'));
     parts && is_line(text, 256) && !text.contains(char::is_whitespace)

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::seal::{KEY, Secret};
 use crate::wire::frame::Role;
 
-/// Random bytes from outside: this crate makes none of its own.
+/// Source of random bytes from outside: this crate has none.
 pub type Entropy = Box<dyn FnMut(&mut [u8]) + Send>;
 
-/// What a file with the ending `.key` says.
+/// Content of a file with the extension `.key`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Invitation {
     /// The most that it allows.
@@ -47,7 +47,7 @@ pub enum KeyError {
     Bad {
         /// The file.
         path: String,
-        /// What was expected.
+        /// The expected content.
         why: String,
     },
 }
@@ -72,10 +72,10 @@ impl Invitation {
         write_key(path, what, &Written { role: self.role, name, key })
     }
 
-    /// Whether somebody of this name may be this.
+    /// Checks that a person of this name may have this role.
     ///
     /// # Errors
-    /// Says why not.
+    /// The text gives the reason.
     pub fn allows(&self, name: &str, role: Role) -> Result<(), String> {
         if self.role != Role::Sculptor && self.role != role {
             return Err(format!(

@@ -1,7 +1,7 @@
 //! One sculpture shared over a network. Each daemon sends its samples and commands to a host; the
 //! host orders them into ticks and sends the ticks to all; every replica steps the same world,
-//! which is deterministic. What is sent is input, never a mesh; only who joins is given the pages
-//! of a checkpoint.
+//! which is deterministic. Only input is sent, never a mesh; only a joining replica receives the
+//! pages of a checkpoint.
 //!
 //! Read first: [`station`], the protocol as a state machine without clock, IO and threads;
 //! [`wire`], its messages; [`executor`], which steps a world by frames. With the feature
@@ -14,13 +14,15 @@
 //! ```
 //!
 //! Laws kept here:
-//! * A sample is rounded before it is sent, and everybody steps what was sent, its sender too.
-//! * What is shown of the own strokes before they are ordered ([`local_echo`]) is a try on a copy,
-//!   and no part of what is stepped.
-//! * Input is acknowledged when a replica has it too; what is not is sent again, to the next host
-//!   where the first is gone. What was is kept for minutes, and sent again to a host that lacks it,
-//!   as another part of a split network had it. Nothing is stepped twice: batches are numbered.
-//! * Nobody without a key is listened to; what a member sends is bounded. Reading never panics.
+//! * A sample is rounded before it is sent, and every replica steps the rounded sample, its sender
+//!   too.
+//! * The preview of local strokes before they are ordered ([`local_echo`]) runs on a copy, and is
+//!   not part of the stepped world.
+//! * Input is acknowledged when a second replica has it. The sender repeats unacknowledged input,
+//!   to the next host if the first is lost. It keeps acknowledged input for minutes and repeats it
+//!   to a host that lacks it, because another part of a split network may have had it. Batches are
+//!   numbered, so that none is stepped twice.
+//! * Messages without a key are ignored; the input of a member is bounded. Reading never panics.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod acknowledgement;

@@ -1,8 +1,8 @@
-//! A station beside the tick loop, on a thread of its own (`sculptd-shared`), and what takes longer
-//! than a tick on another (`sculptd-replica`): hashes, checkpoints, worlds made of them.
+//! A station beside the tick loop, on a separate thread (`sculptd-shared`), and work longer than a
+//! tick on another (`sculptd-replica`): hashes, checkpoints, worlds built from them.
 //!
-//! The tick thread hands its input over and steps what comes back; it waits for neither thread. It
-//! does allocate a little for each of its own samples that is shared.
+//! The tick thread sends its input and steps the returned frames; it waits for neither thread. It
+//! does allocate a little for each of its samples that is shared.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::PathBuf;
@@ -32,15 +32,15 @@ use sculptd_devices::{Clock, DeviceId, Sample};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
 
-/// What waits between the threads at most; the loop's own input beyond it is told as lost.
+/// Greatest number of messages between the threads; local input beyond it is reported as lost.
 const WAITING: usize = 4096;
 /// Devices of one person.
 const MAX_DEVICES: usize = 16;
-/// After so long without an entry a host that refuses the key is believed.
+/// Time without an entry after which a host's refusal of the key is accepted.
 const ENOUGH: Duration = Duration::from_secs(3);
 /// Jobs of the worker beyond which no state is hashed: it misses a comparison.
 const MAX_JOBS: usize = 64;
-/// Between two words of what became of the own input.
+/// Interval of reports about the local input, in microseconds.
 const TOLD_US: u64 = 100_000;
 /// Compared states that are kept for a dump.
 const KEPT_VIEWS: usize = 8;
@@ -62,12 +62,12 @@ enum ToLoop {
     Input(OwnInput),
 }
 
-/// What a run is told of its shared sculpture.
+/// Reports to the run about its shared sculpture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Told {
     /// For a person.
     Note(String),
-    /// The host lets nobody in here any more.
+    /// The host admits nobody any more.
     Refused(String),
     /// The sculpture cannot be recorded.
     NoSession(String),
@@ -81,9 +81,9 @@ pub type EnteredWorld = (Box<World>, Option<SharedJournal>);
 pub struct SharedSettings {
     /// Threads that step a dab, for a world that comes as a checkpoint.
     pub workers: usize,
-    /// Where both worlds are written when they differ.
+    /// Folder for both worlds if they differ.
     pub dumps: PathBuf,
-    /// Where each world that comes as a checkpoint is recorded from there on.
+    /// Recording of each world received as a checkpoint.
     pub session: Option<SharedSession>,
 }
 
@@ -141,7 +141,7 @@ impl Drop for SharedThread {
 pub struct Shared {
     /// For the loop.
     pub link: SharedLink,
-    /// What the run is told.
+    /// Reports to the run.
     pub told: cc::Receiver<Told>,
 }
 
@@ -209,9 +209,9 @@ impl Shared {
         Ok(Shared { link, told })
     }
 
-    /// Waits until the station was let in, and gives its first world and the host's rate; without a
-    /// world (a device sees none), as soon as it has a number. `coming` is told the bytes of the
-    /// world that have come.
+    /// Waits until the station is admitted, and returns its first world and the host's rate.
+    /// Without a world (a device sees none), it returns as soon as it has a number. `coming`
+    /// receives the number of bytes of the world so far.
     ///
     /// # Errors
     /// [`SharedError::Refused`], [`SharedError::Silent`]
@@ -247,7 +247,7 @@ impl Shared {
                     }
                 }
                 Ok(ToLoop::World(world, executor, journal)) => {
-                    // What stands in a session's way was told before.
+                    // An obstacle to the session was reported before.
                     let told = self.told.try_iter();
                     let no_session =
                         |t| if let Told::NoSession(why) = t { Some(why) } else { None };
@@ -361,7 +361,7 @@ impl SharedInput for SharedLink {
         if let Some(frame) = frame {
             self.echo.ordered(&frame);
             let at_rest = world.is_at_rest();
-            // Where the station is so far behind, it misses a comparison.
+            // A station that is too far behind misses a comparison.
             let _ = self.to.try_send(FromLoop::Stepped { frame, asked, at_rest });
         }
     }
@@ -399,11 +399,11 @@ struct Running {
     /// Bytes of the newest checkpoint.
     came: u64,
     views: BTreeMap<u64, HashView>,
-    /// A state differed: the host's is written when it is there.
+    /// Frame with a different state: the host's state is written once it arrives.
     differs: Option<u64>,
     dumps: PathBuf,
     hosting: Arc<AtomicBool>,
-    /// What the loop was told last of the own input, and when.
+    /// Last report to the loop about the local input, and its time.
     told_input: (u64, OwnInput),
     stop: Arc<AtomicBool>,
 }

@@ -1,11 +1,11 @@
-//! The own strokes before they are ordered: a world that runs ahead of the replica's, for the
-//! picture alone. What is sculpted depends on frames and on nothing of this.
+//! The local strokes before they are ordered: a world that runs ahead of the replica's, for the
+//! picture alone. Sculpting depends only on frames.
 //!
-//! Own input goes into the world ahead in the tick in which it was given. When it comes back in a
-//! frame, the replica's world has it too; where frames bring nothing but that, the world ahead
-//! stays right. Where they bring what others did, another fork of the replica's world is made and
-//! catches up with the own input that is still on its way, some batches a tick, while the first
-//! one is shown on. When nothing is on its way the replica's world itself is shown.
+//! Local input goes into the world ahead in the tick in which it was given. When it returns in a
+//! frame, the replica's world has it too; if frames contain nothing else, the world ahead stays
+//! right. If they contain input of others, another fork of the replica's world is made. It catches
+//! up with the local input still in transit, some batches a tick, while the first fork is still
+//! shown. When nothing is in transit the replica's world itself is shown.
 
 use std::collections::VecDeque;
 
@@ -32,7 +32,7 @@ pub struct LocalEcho {
     person: PersonId,
     waiting: VecDeque<Batch>,
     ahead: Option<Box<World>>,
-    /// Catches up; so many of those that wait are in it.
+    /// A fork that catches up, and the number of waiting batches in it.
     next: Option<(Box<World>, usize)>,
     /// Frames brought what the world ahead does not have.
     stale: bool,
@@ -41,7 +41,7 @@ pub struct LocalEcho {
     since: u32,
 }
 
-/// Whether a command may be tried ahead: it sets something, and changes no clay.
+/// Returns true if a command may be applied ahead: it sets something, and changes no clay.
 fn is_tried(command: &Command) -> bool {
     matches!(
         command,
@@ -72,7 +72,7 @@ impl LocalEcho {
         *self = LocalEcho { forks, ..LocalEcho::new(rate_hz, person) };
     }
 
-    /// The world that is shown in the place of the replica's.
+    /// Returns the world shown instead of the replica's.
     pub fn ahead(&mut self) -> Option<&mut World> {
         self.ahead.as_deref_mut()
     }
@@ -82,8 +82,8 @@ impl LocalEcho {
         self.forks
     }
 
-    /// Takes the own input of a tick as it is sent, nothing where there is none; once a tick,
-    /// before the frames that have come. `world`: the replica's.
+    /// Takes the local input of a tick as it is sent, even if it is empty; called once a tick,
+    /// before the received frames. `world`: the replica's.
     pub fn take(&mut self, world: &World, samples: &[Sample], commands: &[Command]) {
         self.since = self.since.saturating_add(1);
         if samples.is_empty() && commands.is_empty() {
@@ -173,7 +173,7 @@ impl LocalEcho {
     }
 }
 
-/// Whether a batch of a frame is the end of what was given in a tick.
+/// Returns true if a batch of a frame is the end of a tick's input.
 fn is_same(own: &Batch, ordered: &Batch) -> bool {
     let body = |b: &Batch| b.samples.last().map(|s| (s.device, s.body));
     body(own) == body(ordered) && own.commands.len() == ordered.commands.len()

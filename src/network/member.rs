@@ -1,5 +1,5 @@
-//! A member: greets, is let in, fetches a checkpoint where it needs one, then follows the host's
-//! frames and sends its own input.
+//! A member: greets, is admitted, fetches a checkpoint if it needs one, then follows the host's
+//! frames and sends its input.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,17 +22,17 @@ const WINDOW: u32 = 256;
 /// While a checkpoint comes, a word at least so often, and silence for so long is an end: what
 /// carries it may stand still for a while, and what is asked for again then comes twice.
 const FETCHING_US: (u64, u64) = (1_000_000, 12_000_000);
-/// A host that others vouch for and that is silent for so long is greeted anew.
+/// Silence after which a host is greeted again although others vouch for it, in microseconds.
 const UNHEARD_US: u64 = 5 * LOST_US;
-/// Gaps that are asked for again at once.
+/// Greatest number of gaps requested again at once.
 const MAX_GAPS: usize = 16;
-/// After so long without any chunk, those that did not come are asked for again. What carries them
-/// loses none but where it is made anew, and stands still now and then.
+/// Time without any chunk after which missing ones are requested again, in microseconds. The
+/// transport loses none unless it is reconnected, and pauses now and then.
 const CHUNK_US: u64 = 10_000_000;
 /// Frames that wait for one before them.
 const MAX_EARLY: usize = 4096;
 
-/// How far a member is.
+/// Progress of a member.
 #[derive(Debug)]
 enum MemberPhase {
     /// Says hello to whoever hosts.
@@ -57,9 +57,9 @@ struct Fetch {
     asked: u32,
     /// The last one, once it is known.
     last: Option<u32>,
-    /// When something came, or was asked for again.
+    /// Time of the last arrival or repeated request.
     progress_us: u64,
-    /// When the host last heard of this.
+    /// Time of the last message to the host.
     spoke_us: u64,
 }
 
@@ -73,7 +73,7 @@ pub struct Member {
     pub term: Term,
     seals: Option<(Seal, Seal)>,
     heard_us: u64,
-    /// Somebody else told that this host is there.
+    /// Time at which another member reported that this host is alive.
     vouched_us: u64,
     early: BTreeMap<u64, Arc<Frame>>,
     /// A checkpoint that was broken off: it goes on where the host has it still.
@@ -83,7 +83,7 @@ pub struct Member {
     next_us: u64,
     /// The own world is that of the log: it may be continued, and may take over.
     pub level: bool,
-    /// What a successor needs.
+    /// Data that a successor needs.
     pub succession: Option<(Keyring, Secret)>,
     hashes: BTreeMap<u64, u64>,
     begun_us: u64,
@@ -117,23 +117,23 @@ impl Member {
         }
     }
 
-    /// Whether it follows a host.
+    /// Returns true if it follows a host.
     pub fn follows(&self) -> bool {
         matches!(self.phase, MemberPhase::Follows)
     }
 
-    /// Whether the host is there for certain: it was heard just now.
+    /// Returns true if the host is alive for certain: it was heard just now.
     pub fn hears_host(&self, now_us: u64) -> bool {
         self.follows() && now_us < self.heard_us + LOST_US / 2
     }
 
-    /// Another one says that this host is there: the own way to it stands still.
+    /// Notes that another member still hears this host: only the local connection is stalled.
     pub fn vouched(&mut self, now_us: u64) {
         self.vouched_us = now_us;
         self.lost = false;
     }
 
-    /// Begins anew with a greeting.
+    /// Restarts with a greeting.
     pub fn greet(&mut self, core: &mut Core, now_us: u64) {
         let greets = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
         if let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, greets) {
@@ -204,7 +204,7 @@ impl Member {
                         Ok(Some(frames)) => frames.into_iter().for_each(|frame| {
                             self.take_frame(core, Arc::new(frame));
                         }),
-                        // What they go on from was lost, and is sent again.
+                        // The frames that these build on were lost, and are sent again.
                         Ok(None) => {}
                         Err(_) => core.note("the host sends what are no frames; it is ignored"),
                     }
@@ -328,7 +328,7 @@ impl Member {
         }
     }
 
-    /// The hash of the own world after a frame.
+    /// Takes the hash of the local world after a frame.
     pub fn own_hash(&mut self, core: &mut Core, index: u64, hash: u64) {
         self.hashes.insert(index, hash);
         while self.hashes.len() > 64 {

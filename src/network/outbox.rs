@@ -20,7 +20,7 @@ const KEPT: usize = 14_400;
 /// Acknowledged batches that are kept although they have a mesh or the like.
 const KEPT_LARGE: usize = 2;
 
-/// The own batches that are not acknowledged, and the newest of those that are.
+/// The local batches without an acknowledgement, and the newest ones with it.
 #[derive(Debug, Default)]
 pub struct Outbox {
     batches: VecDeque<(Batch, Option<u64>)>,
@@ -31,11 +31,11 @@ pub struct Outbox {
     /// The last of each device.
     last: Vec<Sample>,
     next: u64,
-    /// What was taken in, and what became of it.
+    /// Counts of the accepted input and of its fate.
     pub counts: OutboxCounts,
 }
 
-/// What an outbox took in.
+/// Counts of an outbox's input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OutboxCounts {
     /// Samples that did more than move.
@@ -47,7 +47,7 @@ pub struct OutboxCounts {
 }
 
 impl Outbox {
-    /// Takes what the own devices and people gave in one tick.
+    /// Takes the input of the local devices and people from one tick.
     pub fn push(&mut self, samples: Vec<Sample>, commands: Vec<Command>) {
         let congested = self.len() >= CONGESTED;
         let mut kept: Vec<(Sample, bool)> = Vec::with_capacity(samples.len());
@@ -104,11 +104,11 @@ impl Outbox {
         self.batches.get(at as usize).map(|(b, _)| b)
     }
 
-    /// The log has the batches up to `applied`: what follows is numbered from the one after it, and
-    /// is to be sent anew.
+    /// Restarts after `applied`, the last batch in the log: later batches are numbered from the one
+    /// after it, and are sent again.
     pub fn begin_after(&mut self, applied: u64) {
-        // The log of a new host may lack what was in the old one's: it is sent again under the same
-        // numbers. What is kept no longer left a gap, which nobody would ever fill.
+        // The log of a new host may lack batches of the old one: they are sent again under the same
+        // numbers. A batch no longer kept leaves a gap that nobody would ever fill.
         let first = self.batches.front().map_or(self.next + 1, |(b, _)| b.number);
         let lost = first.saturating_sub(applied + 1);
         self.counts.lost += lost;
@@ -126,8 +126,8 @@ impl Outbox {
         self.batches.partition_point(|(b, _)| b.number <= received)
     }
 
-    /// What is to be sent now: batches after `received` that were never sent, or longer ago than
-    /// `patience_us`.
+    /// Returns the batches to send now: those after `received` that were never sent, or sent longer
+    /// than `patience_us` ago.
     pub fn due(&mut self, received: u64, now_us: u64, patience_us: u64) -> Vec<Batch> {
         let (mut due, mut entries, from) = (Vec::new(), 0, self.from(received));
         for (batch, sent) in self.batches.range_mut(from..) {
@@ -144,12 +144,12 @@ impl Outbox {
         due
     }
 
-    /// The batches after `received`, for a host that orders its own.
+    /// Returns the batches after `received`, for a host that orders its local ones.
     pub fn after(&self, received: u64, most: usize) -> impl Iterator<Item = &Batch> {
         self.batches.range(self.from(received)..).map(|(b, _)| b).take(most)
     }
 
-    /// How many are after `received`.
+    /// Returns the number of batches after `received`.
     pub fn count_after(&self, received: u64) -> usize {
         self.batches.len() - self.from(received)
     }
@@ -164,18 +164,18 @@ impl Outbox {
         self.acknowledged
     }
 
-    /// How many are not acknowledged.
+    /// Returns the number of batches without an acknowledgement.
     pub fn len(&self) -> usize {
         self.count_after(self.acknowledged)
     }
 
-    /// Whether all are acknowledged.
+    /// Returns true if all batches are acknowledged.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Whether a batch is more than some hundred bytes.
+/// Returns true if a batch has more than some hundred bytes.
 fn is_large(batch: &Batch) -> bool {
     batch.commands.iter().any(Command::owns_memory)
 }

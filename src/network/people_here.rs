@@ -1,12 +1,12 @@
-//! Who shares the sculpture, as the log of arrivals tells it, for the loop and its window.
+//! The people who share the sculpture, from the log of arrivals, for the loop and its window.
 
 use crate::core::Event;
 use crate::station::Station;
 use crate::wire::frame::{Arrival, Role};
 use sculptd_daemon::people::{OwnInput, PeopleHere, Person, PersonRole};
 
-/// Everybody who ever came, and who of them is connected. A host that was killed is told as gone
-/// by its successor, five seconds after it took over.
+/// Returns everybody who ever came, and who of them is connected. The successor of a killed host
+/// reports it as gone five seconds after taking over.
 pub fn people_here(station: &Station) -> PeopleHere {
     let person = |(a, _): (Arrival, u64)| Person {
         number: a.person,
@@ -22,7 +22,7 @@ pub fn people_here(station: &Station) -> PeopleHere {
     PeopleHere { own: station.person(), all }
 }
 
-/// What became of the own input.
+/// Returns the counts of the local input.
 pub fn own_input(station: &Station) -> OwnInput {
     let outbox = station.outbox();
     OwnInput {
@@ -35,7 +35,7 @@ pub fn own_input(station: &Station) -> OwnInput {
     }
 }
 
-/// Whether what [`people_here`] gives may be another after this event.
+/// Returns true if the result of [`people_here`] may change with this event.
 pub fn changes_people(event: &Event) -> bool {
     match event {
         Event::Frame(frame) => !frame.arrivals.is_empty(),

@@ -1,5 +1,5 @@
-//! What may be shared. Commands that need what only one daemon has, or that put everybody's work
-//! aside, may not; they are refused where they are made, and by the host again.
+//! Rules for shared commands. Commands that need data of one daemon, or that would replace
+//! everybody's work, are not shared. The sender refuses them, and the host refuses them again.
 
 use crate::wire::frame::{Batch, MAX_COMMAND};
 use sculptd_engine::command::Command;
@@ -29,7 +29,7 @@ pub fn refused(batch: &Batch) -> Option<&'static str> {
     batch.commands.iter().find_map(refused_command)
 }
 
-/// Whether a command takes more bytes than one may ([`MAX_COMMAND`]).
+/// Returns true if a command is longer than [`MAX_COMMAND`] bytes.
 pub fn is_too_large(command: &Command) -> bool {
     postcard::to_stdvec(command).map_or(true, |bytes| bytes.len() > MAX_COMMAND)
 }

@@ -7,7 +7,7 @@ use crate::keyring::Entropy;
 /// Random bytes of the operating system.
 ///
 /// # Panics
-/// Where the operating system has none: no key may be made then.
+/// If the operating system has none: no key may be made then.
 pub fn system_entropy() -> Entropy {
     let random = SystemRandom::new();
     Box::new(move |bytes| {

@@ -41,7 +41,7 @@ impl ReplicaLog {
         self.tick
     }
 
-    /// Where the log ends.
+    /// Returns the term and index of the log's end.
     pub fn reached(&self) -> Reached {
         (self.turn_of(self.last), self.last)
     }
@@ -83,7 +83,7 @@ impl ReplicaLog {
         known.or_else(|| (1..=254).find(|n| !self.people.contains_key(n)))
     }
 
-    /// What is known of a person.
+    /// Returns the newest arrival of a person.
     pub fn person(&self, person: PersonId) -> Option<&Arrival> {
         self.people.get(&person).map(|p| &p.0)
     }
@@ -134,7 +134,8 @@ impl ReplicaLog {
         Some(self.frames.iter().skip(at).take(most).cloned().collect())
     }
 
-    /// Whether a log that ends there is the beginning of this one, and what follows is here.
+    /// Returns true if a log with this end is a prefix of this one, and the frames after it are
+    /// kept.
     pub fn continues(&self, reached: Reached) -> bool {
         let (term, index) = reached;
         index <= self.last

@@ -1,5 +1,5 @@
-//! What takes longer than a tick, on a thread of its own (`sculptd-replica`): hashes, checkpoints,
-//! worlds made of them, and the sessions that begin with those.
+//! Work longer than a tick, on a separate thread (`sculptd-replica`): hashes, checkpoints, worlds
+//! built from them, and the sessions that begin with those.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ pub enum Job {
         first: bool,
         bytes: Vec<u8>,
     },
-    /// All bytes are there; ticks a second.
+    /// All bytes have arrived; ticks a second.
     Restore(u32),
     Dump(Box<HashView>, PathBuf),
 }

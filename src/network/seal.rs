@@ -40,7 +40,7 @@ fn code(key: &Secret, what: &str, parts: &[&[u8]]) -> [u8; KEY] {
 }
 
 impl Secret {
-    /// What the key is called: no secret, and no way back to it.
+    /// Returns the name of the key, from which the secret cannot be derived.
     pub fn name(&self) -> [u8; 8] {
         let mut name = [0; 8];
         name.copy_from_slice(&code(self, "sculptd key name 1", &[])[..8]);
@@ -54,7 +54,7 @@ impl Secret {
         code(self, "sculptd proof 1", &parts)
     }
 
-    /// Whether a proof is the one that the host would give; takes as long for any.
+    /// Returns true if a proof is the host's, in constant time.
     pub fn proves(&self, proof: &[u8; KEY], member: &Nonce, host: &Nonce, term: &Term) -> bool {
         let expected = self.proof(member, host, term);
         expected.iter().zip(proof).fold(0, |d, (a, b)| d | (a ^ b)) == 0

@@ -1,5 +1,5 @@
-//! The files of one who joins: a session for each world that came as a checkpoint, recorded from
-//! there on. What was done before is in the files of others.
+//! The files of a joining replica: a session for each world received as a checkpoint, recorded from
+//! there on. Earlier work is in the files of others.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use sculptd_engine::world::World;
 /// Names that are tried.
 const NAMES: u32 = 10_000;
 
-/// Where the sessions go.
+/// Destination of the sessions.
 #[derive(Debug)]
 pub struct SharedSession {
     path: PathBuf,
@@ -31,7 +31,7 @@ impl SharedSession {
     /// in a shared sculpture goes as far back as memory does.
     ///
     /// # Errors
-    /// Where the file cannot be made, as a text.
+    /// The file cannot be created; the text says why.
     pub fn begin(&mut self, world: &mut World, rate_hz: u32) -> Result<SharedJournal, String> {
         let start = SessionStart::of_world(world).ok_or("the world is not at rest")?;
         let path = match self.taken {

@@ -1,12 +1,12 @@
 //! A station: one daemon's part in a shared sculpture, as a state machine. Datagrams, time and the
-//! own input go in; datagrams and events come out. It has no clock, no IO, no threads, and its
+//! local input go in; datagrams and events come out. It has no clock, no IO, no threads, and its
 //! random bytes come from outside, so that a test can run many of them on a simulated network.
 //!
-//! **When the host is silent** for [`LOST_US`], the members that may take over tell each other
-//! where their logs end; after [`DECIDE_US`] the one with the longest log (of equals, the one with
-//! the lowest address) hosts in a new turn. The others greet it. A host that hears of a greater
-//! turn becomes a member again. Where the network is split, each part goes on; when it heals, the
-//! smaller turn's stations join the greater's, and send again what of their own input it lacks.
+//! **When the host is silent** for [`LOST_US`], the possible successors exchange the ends of their
+//! logs. After [`DECIDE_US`] the one with the longest log (of equals, the one with the lowest
+//! address) hosts in a new term. The others greet it. A host that hears of a greater term becomes a
+//! member again. If the network is split, each part goes on. When it heals, the smaller term's
+//! stations join the greater's, and repeat their input that it lacks.
 
 use crate::core::{Core, DOWN, Event, GREETING, HEIRS, HeirsSeal, LOST_US, To, UP};
 use crate::host::Host;
@@ -31,7 +31,7 @@ const AGAIN_US: u64 = 1_500_000;
 pub struct Identity {
     /// As the person wants to be called.
     pub name: String,
-    /// What the person wants to be.
+    /// Role that the person requests.
     pub role: Role,
     /// The key that the station greets with. A host greets with it once it is no longer the host.
     pub invitation: Invitation,
@@ -146,12 +146,12 @@ impl Station {
         self.core.rate_hz
     }
 
-    /// Whether this station hosts.
+    /// Returns true if this station hosts.
     pub fn hosts(&self) -> bool {
         matches!(self.phase, StationPhase::Hosts(_))
     }
 
-    /// Whether this station follows a host.
+    /// Returns true if this station follows a host.
     pub fn follows(&self) -> bool {
         matches!(&self.phase, StationPhase::Follows(m) if m.follows())
     }
@@ -166,9 +166,9 @@ impl Station {
         &self.core.outbox
     }
 
-    /// Takes the own input of a tick: rounded samples whose devices are numbered from 0, and
-    /// commands that may be shared ([`crate::policy`]). Before the first entry there is nobody to
-    /// take it, and a viewer gives none.
+    /// Takes the local input of a tick: rounded samples whose devices are numbered from 0, and
+    /// commands that may be shared ([`crate::policy`]). Input before the first entry, and that of a
+    /// viewer, is dropped.
     pub fn submit(&mut self, samples: Vec<Sample>, commands: Vec<Command>, now_us: u64) {
         if self.core.person == 0 || self.core.role == Role::Viewer {
             return;
@@ -328,7 +328,7 @@ impl Station {
             return;
         }
         if election.best.1 != self.core.address {
-            // The best one is about to say so.
+            // The best one is about to announce itself.
             (election.decided, election.until_us) = (true, now_us + AGAIN_US);
             return;
         }
@@ -354,7 +354,7 @@ impl Station {
         self.core.events.pop_front()
     }
 
-    /// The hash of the own world after a frame with the mark.
+    /// Takes the hash of the local world after a frame with the mark.
     pub fn own_hash(&mut self, index: u64, hash: u64) {
         match &mut self.phase {
             StationPhase::Hosts(host) => host.own_hash(&mut self.core, index, hash),
@@ -362,8 +362,8 @@ impl Station {
         }
     }
 
-    /// The next bytes of the own world's checkpoint after a frame with the mark; `last`: nothing
-    /// follows them. Only a host needs them.
+    /// Takes the next bytes of the local world's checkpoint after a frame with the mark; `last`:
+    /// nothing follows them. Only a host needs them.
     pub fn checkpoint_part(&mut self, index: u64, part: &[u8], last: bool) {
         if let StationPhase::Hosts(host) = &mut self.phase {
             host.checkpoint_part(&mut self.core, index, part, last);
@@ -385,7 +385,7 @@ impl Station {
         }
     }
 
-    /// Whether the own world had nothing under way after the last frame that was stepped.
+    /// Notes whether nothing was under way in the local world after the last stepped frame.
     pub fn after_step(&mut self, at_rest: bool) {
         if let StationPhase::Hosts(host) = &mut self.phase {
             host.after_step(at_rest);
@@ -409,7 +409,7 @@ impl Station {
     }
 }
 
-/// Whether a candidate is the better one: it has more of the log; of equals, the lower address.
+/// Returns true if candidate `a` is better: it has more of the log; of equals, the lower address.
 fn better(a: (Reached, Address), b: (Reached, Address)) -> bool {
     a.0 > b.0 || a.0 == b.0 && a.1 < b.1
 }

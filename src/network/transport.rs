@@ -6,9 +6,9 @@ use crate::wire::message::Address;
 
 /// Carries datagrams.
 pub trait Transport: Send + std::fmt::Debug {
-    /// Whether datagrams for whoever hosts come here from now on.
+    /// Sets whether datagrams for the current host arrive here from now on.
     fn hosts(&mut self, on: bool);
-    /// The own address: datagrams for it come here. Called once, before all else.
+    /// Sets the local address: datagrams for it arrive here. Called once, before all else.
     fn listen(&mut self, address: Address) -> Result<(), String>;
     /// Sends; never waits.
     fn send(&mut self, to: To, bytes: Vec<u8>);

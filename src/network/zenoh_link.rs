@@ -33,10 +33,10 @@ const MAX_PUBLISHERS: usize = 256;
 /// found by the stations. One that lives through a break is there again at once after it.
 const LEASE_MS: u32 = 20_000;
 
-/// Where others are found.
+/// Addresses of the network connection.
 #[derive(Debug, Clone, Default)]
 pub struct Endpoints {
-    /// Where this process listens, as `tcp/0.0.0.0:7447`; none: any port.
+    /// Addresses on which this process listens, as `tcp/0.0.0.0:7447`; none: any port.
     pub listen: Vec<String>,
     /// Whom it connects to, as `tcp/studio.local:7447`.
     pub connect: Vec<String>,
@@ -61,7 +61,7 @@ pub struct ZenohLink {
 /// Opens a session. `lease_ms`: a silent connection is given up after so long.
 ///
 /// # Errors
-/// Where an endpoint cannot be used, as a text.
+/// An endpoint cannot be used; the text says why.
 pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh::Session, String> {
     let mut config = zenoh::Config::default();
     let list = |all: &[String]| {
@@ -78,7 +78,7 @@ pub(crate) fn open_session(endpoints: &Endpoints, lease_ms: u32) -> Result<zenoh
     }
     if !endpoints.connect.is_empty() {
         set("connect/endpoints", &list(&endpoints.connect))?;
-        // Who is not there yet is tried again for ever, in the background.
+        // Missing peers are retried for ever, in the background.
         set("connect/timeout_ms", "-1")?;
         set("connect/exit_on_failure", "false")?;
     }
@@ -95,7 +95,7 @@ impl ZenohLink {
     /// Opens a session.
     ///
     /// # Errors
-    /// Where an endpoint cannot be used, as a text.
+    /// An endpoint cannot be used; the text says why.
     pub fn open(name: &str, endpoints: &Endpoints) -> Result<ZenohLink, String> {
         let session = open_session(endpoints, LEASE_MS)?;
         let (sender, incoming) = cc::bounded(WAITING);
@@ -159,7 +159,7 @@ impl ZenohLink {
             }
             self.bulk.insert(key.clone(), sender);
         }
-        // What does not fit is asked for again.
+        // Data that does not fit is requested again.
         let sender = self.bulk.get(&key);
         let _ = sender.map(|sender| sender.try_send(bytes));
     }

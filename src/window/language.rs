@@ -15,7 +15,7 @@ use fluent_bundle::concurrent::FluentBundle;
 use fluent_bundle::{FluentArgs, FluentResource};
 use unic_langid::LanguageIdentifier;
 
-/// What is put into a message: a text, or a number that chooses between singular and plural.
+/// Argument of a message: a text, or a number that chooses between singular and plural.
 pub use fluent_bundle::FluentValue as Argument;
 
 /// Texts of languages in Fluent's syntax, each behind its code (`en`).
@@ -58,10 +58,10 @@ impl Translation {
         Translation { code: code.to_owned(), bundle, letters: String::new(), fallback }
     }
 
-    /// Lays the messages of a text over those that are there.
+    /// Adds the messages of a text; they replace existing ones of the same name.
     ///
     /// # Errors
-    /// The line and the fault, where the text is not Fluent's syntax.
+    /// The line and the fault, if the text is not valid Fluent.
     fn add(&mut self, text: &str) -> Result<(), String> {
         let resource = FluentResource::try_new(text.to_owned()).map_err(|(_, faults)| {
             let fault = faults.first();

@@ -13,7 +13,7 @@ pub struct Material {
     pub power: f32,
     /// Light at grazing angles, 0 none to 1.
     pub rim: f32,
-    /// A metal mirrors what surrounds it in its own colour, and scatters nothing.
+    /// True for metal, which reflects its surroundings in its colour and scatters nothing.
     pub metal: bool,
 }
 
@@ -32,7 +32,7 @@ impl Material {
         Material { metal: true, ..self }
     }
 
-    /// What it is called in commands: `bronze`.
+    /// Returns its name in commands, such as `bronze`.
     pub fn short_name(&self) -> &'static str {
         self.name.strip_prefix("material-").unwrap_or(self.name)
     }
@@ -49,7 +49,7 @@ pub const MATERIALS: [Material; 8] = [
     material("material-steel", [0.62, 0.63, 0.65], 1.0, 160.0, 0.20).metal(),
 ];
 
-/// What lights the clay.
+/// Light source of the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Light {
@@ -65,23 +65,23 @@ pub enum Light {
 }
 
 impl Light {
-    /// Whether light comes from all around.
+    /// Returns true if light comes from all around.
     pub fn is_around(self) -> bool {
         matches!(self, Light::Room | Light::Environment)
     }
 }
 
-/// What the clay's own colours give way to.
+/// Map shown instead of the clay's colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Map {
     #[default]
     None,
-    /// 0 free to 1 held fast.
+    /// 0 free to 1 fully masked.
     Mask,
     /// Wall thickness in the mesh's unit.
     Thickness,
-    /// To another form, in the mesh's unit: negative within it, positive outside.
+    /// Distance to another form, in the mesh's unit: negative within it, positive outside.
     Distance,
 }
 
@@ -151,20 +151,20 @@ pub struct Look {
     /// Index into [`MATERIALS`]; beyond them, the last.
     pub material: usize,
     pub light: Light,
-    /// How far the studio's main light, or what is around, is turned about the eye's upright axis,
-    /// degrees.
+    /// Rotation of the studio's main light, or of the surroundings, about the eye's upright axis,
+    /// in degrees.
     pub turned: f32,
-    /// How high the studio's main light stands over the eye's horizon, degrees.
+    /// Elevation of the studio's main light above the eye's horizon, in degrees.
     pub raised: f32,
-    /// How much of the studio's main light a shadow takes: 0 casts none, 1 takes all.
+    /// Share of the studio's main light that a shadow removes: 0 casts none, 1 removes all.
     pub shadow: f32,
-    /// How bright what is around is; 1 is as bright as the studio.
+    /// Brightness of the surroundings; 1 is as bright as the studio.
     pub bright: f32,
     /// One tone a triangle.
     pub flat: bool,
-    /// How strongly hollows are darkened and ridges lightened, 0 none to 2.
+    /// Strength of darkened hollows and lightened ridges, 0 none to 2.
     pub cavity: f32,
-    /// How strongly forms shade their own hollows and each other, 0 none to 2.
+    /// Strength of ambient occlusion, 0 none to 2.
     pub shade: f32,
     /// Edges of triangles over the clay.
     pub wireframe: bool,
@@ -202,8 +202,8 @@ impl Default for Look {
     }
 }
 
-/// Where the studio's main light stands when nobody moved it: over the left shoulder. Degrees over
-/// the eye's horizon, and radians about its upright axis from the eye on.
+/// Default direction of the studio's main light: over the left shoulder. Degrees above the eye's
+/// horizon, and radians about its upright axis, measured from the eye.
 pub const RAISED: f32 = 40.3;
 const AROUND: f32 = -0.628;
 
@@ -216,8 +216,8 @@ impl Look {
         [raised.cos() * around.sin(), raised.sin(), raised.cos() * around.cos()]
     }
 
-    /// How much of the main light shadows take as it is: none where something else lights the clay
-    /// or a map is read.
+    /// Returns the share of the main light that shadows remove, 0 to 1: 0 if another light or a map
+    /// is shown.
     pub fn cast(&self) -> f32 {
         let studio = self.light == Light::Studio && self.map == Map::None;
         if studio && self.shadow.is_finite() { self.shadow.clamp(0.0, 1.0) } else { 0.0 }

@@ -2,7 +2,7 @@
 //!
 //! The law: in the steady state of a stroke the tick thread neither allocates nor frees.
 //!
-//! Each test runs in a process of its own: rayon's queues reclaim memory for the whole process, so
+//! Each test runs in a separate process: rayon's queues reclaim memory for the whole process, so
 //! that a thread which takes work from another one's queue may free what other tests retired.
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -75,8 +75,8 @@ pub(crate) fn live_bytes() -> i64 {
     LIVE.load(Relaxed)
 }
 
-/// Runs the test of this name in a process of its own, where nobody else allocates, and answers
-/// false there and true when it has passed there.
+/// Runs the test of this name in a separate process, where no other thread allocates. Returns false
+/// in that process, and true here once the test has passed there.
 pub(crate) fn passed_alone(name: &str) -> bool {
     const ALONE: &str = "SCULPTD_TEST_ALONE";
     if std::env::var_os(ALONE).is_some() {

@@ -1,4 +1,4 @@
-//! What is broken is refused with a clear word, the right exit code, and nothing written.
+//! Broken input is rejected with a clear message and the right exit code, and nothing is written.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -56,9 +56,9 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
         if facts.components != s.components[k] {
             fault(format!("{} components instead of {}", facts.components, s.components[k]));
         }
-        // Pieces of one operand that stand on each other are told as crossing, in the operand as in
-        // the result; and corners that rounding left beside a turned plane are told as crossing it.
-        // The area says that no more is there.
+        // Touching pieces of one operand count as crossing, in the operand as in the result. So do
+        // corners that rounding leaves beside a turned plane. The area shows that there is no
+        // further error.
         let stacked = s.name.contains("goblet") || placement != "as it stands";
         if facts.degenerate_faces > 0 || (facts.crossed_triangles != Some(0) && !stacked) {
             fault(format!(
@@ -88,7 +88,7 @@ fn the_scenes_as_they_stand_and_turned() {
             (std::f64::consts::FRAC_PI_4, [0.; 3]),
         ] {
             s.a = a.clone().placed(turn(angle), shift.into());
-            // The other is placed by way of a detour, so that it is rounded on its own.
+            // The second operand is placed in two moves, so that its rounding is independent.
             let off = DVec3::new(3.7, 1.9, -2.3);
             s.b = b
                 .clone()

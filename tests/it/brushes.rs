@@ -29,11 +29,11 @@ use sculptd_geometry::{TriMesh, shapes};
 /// A work, a pen, and a hand that guides it.
 pub struct Studio {
     pub world: World,
-    /// How the pen leans, radians.
+    /// Tilt of the pen, in radians.
     pub tilt: Option<Vec2>,
-    /// All that the world was told, where that is kept.
+    /// The complete input of the world, if it is recorded.
     pub told: Option<Vec<Told>>,
-    /// There was more to do than one tick allows.
+    /// True if the work exceeded one tick.
     paused: bool,
     tick: u64,
 }
@@ -126,7 +126,7 @@ impl Studio {
         self.world.mesh().to_tri().positions
     }
 
-    /// Where a point of the work is seen.
+    /// Returns the view position of a point on the sculpture.
     pub fn view(&self, p: Vec3) -> Vec2 {
         self.world.camera().project(p).expect("before the eye")
     }

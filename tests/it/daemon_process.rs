@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::Value;
 
-/// A daemon in a home of its own. It is killed when dropped.
+/// A daemon in a separate home folder. It is killed when dropped.
 pub struct Daemon {
     pub child: Child,
     pub home: tempfile::TempDir,
@@ -27,7 +27,7 @@ impl Daemon {
         Daemon::run_in(tempfile::tempdir().expect("a folder"), args)
     }
 
-    /// The same, in a home that is there.
+    /// The same, in an existing home folder.
     pub fn run_in(home: tempfile::TempDir, args: &[&str]) -> Daemon {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
         command.args(["run", "--headless"]).args(args);
@@ -47,12 +47,12 @@ impl Daemon {
         Daemon { child, home, told }
     }
 
-    /// Whether a line of its log holds this.
+    /// Returns true if a line of its log contains this text.
     pub fn has_told(&self, what: &str) -> bool {
         self.told.lock().expect("no panic").iter().any(|l| l.contains(what))
     }
 
-    /// A request to it; `None`: it was refused, or nobody answers.
+    /// Sends it a request; `None`: it was refused, or not answered.
     pub fn ctl(&self, method: &str, params: Option<&str>) -> Option<Value> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
         command.args(["--json", "ctl", method]).args(params);

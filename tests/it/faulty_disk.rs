@@ -135,7 +135,7 @@ fn a_disk_that_fails_at_any_call_loses_nothing_in_silence() {
     assert!(whole > 0);
 }
 
-/// A session that is read from a disk whose bits rot: what is shown is right, or it is told.
+/// A session read from a disk with bit rot: the result is correct, or the error is reported.
 #[test]
 fn bit_rot_at_any_read_of_a_session_is_never_shown_as_the_sculpture() {
     let home = tempfile::tempdir().expect("a folder");
@@ -190,8 +190,8 @@ fn visitor(n: u32) -> sculptd_geometry::PolyMesh {
     sculptd_geometry::shapes::uv_sphere(1.0, 4 + n, 8)
 }
 
-/// Three visitors' sculptures are kept, marked and sent, each told of on standard output. Run by
-/// the test below in a process of its own, whose disk fails.
+/// Keeps, marks and sends three visitors' sculptures, and prints each on standard output. The test
+/// below runs it in a separate process, whose disk fails.
 #[test]
 fn gallery_day() {
     use sculptd_daemon::kiosk::{gallery, spool::Spool};
@@ -272,7 +272,7 @@ fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
             assert!(out.status.success(), "{case}: {said}");
             days += 1;
             let (here, there) = (dir.path().join("works"), dir.path().join("store"));
-            // The disk is well again, and the program starts anew.
+            // The disk works again, and the program restarts.
             let spool = Spool::start(&here, &there.display().to_string());
             let spool = spool.unwrap_or_else(|e| panic!("{case}: {e}"));
             crate::waiting::until("all is sent", || spool::waiting(&here).is_empty());

@@ -152,7 +152,7 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
         list["here"] == 3 && all.iter().all(|e| e["state"]["settings"]["revision"] == old)
     });
 
-    // A death is told within ten seconds: the list looks for four.
+    // A lost installation is reported within ten seconds: the list waits for four.
     tower.child.kill().expect("killed");
     tower.child.wait().expect("ended");
     let (_, list) = staff.ask(&["list"]);

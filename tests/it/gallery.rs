@@ -78,8 +78,8 @@ fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
     });
     drop(first);
     assert_eq!(spool::sent(&here), 2);
-    // What was sent is not sent again; what staff took out of the folder does not give its number
-    // back.
+    // Sent sculptures are not sent again. Numbers of sculptures that staff removed from the folder
+    // are not reused.
     std::fs::remove_file(here.join("work-000001.glb")).expect("removed");
     std::fs::remove_file(here.join("work-000002.glb")).expect("removed");
     assert!(work(3).ends_with("work-000003.glb"));

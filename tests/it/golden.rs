@@ -1,8 +1,8 @@
 //! Golden runs: real recordings on real meshes, and the demo's journal on the ball. The facts are
-//! readable and tell how a stroke changed; the hash is the same on every machine and with any
+//! readable and show how a stroke changed. The hash is the same on every machine and with any
 //! number of workers.
 //!
-//! `SCULPTD_BLESS=1` writes the facts anew: look at the difference before it is kept.
+//! `SCULPTD_BLESS=1` rewrites the facts: look at the difference before you keep it.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::corpus;
 
-/// What happened, as a person would say it.
+/// Summary of a run for people.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Facts {
     what: String,

@@ -10,7 +10,7 @@ use sculptd_engine::hand::{HandSettings, HandTools, Pose};
 
 use crate::corpus;
 
-/// What is done in each recording, as its name and a look at it say: the poses that may be seen
+/// The poses of each recording, known from its name and from viewing it: the poses that may occur
 /// besides neutral.
 const MADE: [(&str, &[Pose], Option<Pose>); 12] = [
     ("pinch.jsonl.gz", &[Pose::Pinch, Pose::Flat, Pose::Open], Some(Pose::Pinch)),

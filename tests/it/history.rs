@@ -53,8 +53,8 @@ struct Studio {
     thread: Option<WriterThread>,
     history: Handle,
     jumps: cc::Receiver<QueuedCommand>,
-    /// What it cost the tick thread to hand over each tick, ns; the most may be another's time on
-    /// the processor.
+    /// Time of the tick thread to hand over each tick, in ns. The maximum may include another
+    /// thread's time on the processor.
     handed: Vec<u64>,
     clock: Clock,
 }
@@ -98,7 +98,7 @@ impl Studio {
         Studio { path, world, writer, thread, history, jumps, handed: Vec::new(), clock }
     }
 
-    /// What a restart does.
+    /// Restarts from the file.
     fn reopened(path: &Path) -> Studio {
         let begun =
             startup::begin(None, Some(path), &Config::default(), &Job::default()).expect("opens");
@@ -129,7 +129,7 @@ impl Studio {
             self.tick(&[pen(tick, at + Vec2::new(0.004 * k as f32, 0.0), k < 5)], &[]);
         }
         self.tick(&[], &[]);
-        // What dynamic topology carried over belongs to the stroke.
+        // Carried-over dynamic topology belongs to the stroke.
         while self.world.report().paused {
             self.tick(&[], &[]);
         }
@@ -265,7 +265,7 @@ fn steps_in_memory_and_steps_in_the_file_are_one_history() {
     s.becomes(hashes[3]);
     s.tick(&[], &[Command::Undo]);
     s.becomes(hashes[2]);
-    // A step in memory on top, taken back from memory, and on into the file.
+    // A step in memory on top, undone from memory, and on into the file.
     let top = s.stroke(Vec2::new(0.05, 0.1));
     assert_eq!(s.world.undo_steps(), 1);
     s.tick(&[], &[Command::Undo, Command::Undo]);
@@ -370,7 +370,7 @@ fn a_session_cut_off_anywhere_opens_as_its_replay() {
             assert_eq!(quick.replayed.world.hash(), whole.world.hash(), "at {k}");
             assert_eq!(quick.replayed.ticks, whole.ticks);
         }
-        // And it goes on: a stroke, taken back by the file's history.
+        // And it continues: a stroke, undone by the file's history.
         let now = whole.world.hash();
         let mut again = Studio::reopened(&copy);
         let lifted = again.world.hash();

@@ -54,7 +54,7 @@ pub fn thread_seconds(id: u32, name: &str) -> f64 {
     ticks as f64 / 100.0
 }
 
-/// A running daemon with folders of its own; killed when dropped.
+/// A running daemon with separate folders; killed when dropped.
 pub struct Daemon {
     child: Child,
     folder: tempfile::TempDir,
@@ -62,8 +62,8 @@ pub struct Daemon {
 }
 
 impl Daemon {
-    /// Starts the program with these arguments and these settings, and waits until its control
-    /// socket is there (and its figures, where it was told to show them).
+    /// Starts the program with these arguments and settings, and waits until its control socket
+    /// exists (and its metrics, if they were requested).
     pub fn start(arguments: &[&str], settings: &str) -> Daemon {
         Daemon::start_in(arguments, settings, &[])
     }
@@ -127,7 +127,7 @@ impl Daemon {
         assert!(sent.is_ok_and(|s| s.success()), "{name}");
     }
 
-    /// Whether it still runs.
+    /// Returns true if it is still running.
     pub fn runs(&mut self) -> bool {
         self.child.try_wait().expect("a child").is_none()
     }

@@ -1,5 +1,4 @@
-//! Hand trackers that break every rule: the daemon goes on, stays small, and ends when it is told
-//! to.
+//! Hand trackers that break every rule: the daemon continues, stays small, and ends on request.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -16,10 +15,10 @@ use crate::waiting::until;
 const END_S: f64 = 2.0;
 /// Most memory of the daemon. A start ball of 160,000 vertices takes a sixth of it.
 const MEMORY_KIB: u64 = 1 << 20;
-/// How long each is endured before the daemon is told to end, seconds.
+/// Duration of each before the daemon is stopped, in seconds.
 const ENDURED_S: f64 = 1.5;
 
-/// What a tracker does with one connection, until `ended` says that the test is over.
+/// Behaviour of a tracker on one connection, until `ended` is set at the end of the test.
 type Behaviour = fn(&mut TcpStream, &AtomicBool) -> std::io::Result<()>;
 
 /// Reads the request and answers it as RFC 6455 wants it.
@@ -298,7 +297,7 @@ fn listen(behaviour: Behaviour, ended: &Arc<AtomicBool>) -> (String, Arc<AtomicU
 fn the_daemon_ends_in_time_and_stays_small_under_every_hostile_tracker() {
     println!("{:<52} {:>6} {:>6} {:>8} {:>6}", "tracker", "met", "CPU %", "MiB", "end s");
     let mut failed = Vec::new();
-    // A few at a time: every daemon has a tick thread of its own.
+    // A few at a time: every daemon has a tick thread.
     for group in TRACKERS.chunks(4) {
         let ended = Arc::new(AtomicBool::new(false));
         let threads: Vec<_> = group

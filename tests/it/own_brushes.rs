@@ -38,7 +38,7 @@ fn brushes_are_exported_imported_and_listed_and_a_broken_one_is_told_by_its_line
     assert!(out.status.success(), "{out:?}");
     assert_eq!(listed(&own), (vec!["bark".into(), "my texture".into()], String::new()));
     assert!(own.join("oak.png").is_file(), "the picture comes along");
-    // A second time only in the place of the first.
+    // A second import works only with `--replace`.
     assert_eq!(brush(&own, &["import", &text(&bark)]).status.code(), Some(6));
     assert!(brush(&own, &["import", &text(&bark), "--replace"]).status.success());
     // Out again, and the same.

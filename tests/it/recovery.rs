@@ -1,5 +1,5 @@
-//! kill -9 at random moments: the session reopens, what was acknowledged 250 ms before is there,
-//! and replaying it gives the clay that the daemon itself had at that tick.
+//! kill -9 at random moments: the session reopens with all input acknowledged 250 ms before, and
+//! replaying it gives the daemon's clay at that tick.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};

@@ -152,7 +152,7 @@ fn objects_are_added_moved_combined_and_written_by_request() {
         (&json!("slot"), &json!([1.0, 0.0, 0.0]))
     );
 
-    // What cannot be done is said.
+    // Impossible requests return an error.
     let of = |id: u64| json!({ "id": id });
     run.ask("scene.lock", json!({ "id": id, "locked": true }));
     assert_eq!(run.refused("scene.remove", of(id)), format!("object {id} is locked"));
@@ -164,7 +164,7 @@ fn objects_are_added_moved_combined_and_written_by_request() {
     let same = json!({ "operation": "union", "a": id, "b": id });
     assert!(run.refused("scene.boolean", same).contains("two different"));
 
-    // All taken back, the start has its bits.
+    // After undoing everything, the start has the same bits.
     let steps = run.live.published.load().undo_steps;
     for _ in 0..steps {
         run.ask("undo", json!({}));
@@ -335,7 +335,7 @@ fn a_quad_file_leaves_as_it_came_after_strokes_and_after_the_session_is_reopened
     run.objects();
     let after = run.live.published.load().mesh.to_tri();
     assert_ne!(before.positions, after.positions);
-    // A file loaded while the session runs has its own.
+    // A file loaded while the session runs has separate faces.
     let (second, lid) = (shapes::torus(2.0, 0.5, 30, 12), dir.path().join("lid.obj"));
     write_mesh(&lid, &second).expect("written");
     let lid = run.ask("scene.add", json!({ "path": lid }))["id"].clone();
@@ -367,7 +367,7 @@ fn a_quad_file_leaves_as_it_came_after_strokes_and_after_the_session_is_reopened
     let (uvs, corners) = all.uvs().expect("texture coordinates");
     let (own, theirs) = quads.uvs().expect("texture coordinates");
     assert_eq!((uvs, &corners[..theirs.len()]), (own, theirs));
-    // What a format does not hold is said.
+    // Properties that a format does not support are reported.
     let stl = run.ask("export", json!({ "path": dir.path().join("all.stl") }))["warnings"].clone();
     let said = stl.to_string();
     for lost in ["groups", "materials", "texture", "polygons", "one mesh"] {

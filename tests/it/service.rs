@@ -230,7 +230,7 @@ fn every_subcommand_has_its_manual_page_and_numbers_read_as_they_were_written() 
     let dir = tempfile::tempdir().expect("a folder");
     let out = sculptd().args(["man", "--all"]).arg(dir.path()).output().expect("runs");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    // What the first page refers to is there.
+    // Every page that the first page refers to exists.
     let first = std::fs::read_to_string(dir.path().join("sculptd.1")).expect("the first page");
     let named: Vec<String> = first
         .split(|c: char| c.is_whitespace())
@@ -254,8 +254,8 @@ fn every_subcommand_has_its_manual_page_and_numbers_read_as_they_were_written() 
     assert_eq!(shown["undo.history_bytes"]["value"], 4u64 << 30);
 }
 
-/// Without a runtime folder the socket lies in the temporary directory, where anybody may have made
-/// a folder of its name before.
+/// Without a runtime folder the socket is in the temporary directory, where anybody may have
+/// created a folder of its name before.
 #[cfg(unix)]
 #[test]
 fn a_fallback_folder_that_others_may_write_is_refused_by_daemon_and_client() {

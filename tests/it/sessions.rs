@@ -161,7 +161,7 @@ fn a_damaged_session_is_saved_beside_the_old_one_and_the_loss_told_in_ticks() {
         }
         put(&path, &damaged);
         match session::open(&path) {
-            // What the checksums let through is, to the bit, a prefix of what was written.
+            // Input accepted by the checksums is, to the bit, a prefix of the written input.
             Ok(opened) if opened.loss.is_none() => {
                 let last = opened.input.last().map_or(0, |t| t.tick);
                 assert_eq!(hash_of(&opened), hashes[last as usize], "case {case}");
@@ -402,7 +402,7 @@ fn a_disk_that_keeps_everybody_waiting_costs_a_kill_nothing() {
     let opened = session::open(&script.path).expect("opens");
     assert_eq!((opened.input.last().map(|t| t.tick), script.written()), (Some(last), before));
     assert_eq!(hash_of(&opened), script.hashes[last as usize]);
-    // A copy is what it is: the original's log is not its own, and stays.
+    // A copy does not own the original's log, which stays.
     let copy = dir.path().join("c.sculpt");
     for ending in ["", "-wal"] {
         let from = format!("{}{ending}", script.path.display());

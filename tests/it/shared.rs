@@ -165,13 +165,13 @@ fn everybody_has_a_file_that_gives_the_same_clay() {
     until("Bob goes on alone", || alone.hash() == clay);
     alone.stroke(0.7);
     until("the clay is other clay", || alone.hash() != clay);
-    // Nobody joins into a file that is there.
+    // Joining into an existing file fails.
     let mut again = Daemon::run(&bob_joins);
     until("it is refused", || again.child.try_wait().expect("waited for").is_some());
     assert!(again.has_told("name a file that is not there"));
 }
 
-/// `sculptd` with these arguments, in a home of its own, and a text on standard input.
+/// Runs `sculptd` with these arguments, in a separate home folder, with a text on standard input.
 fn sculptd(home: &Path, args: &[&str], input: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -234,7 +234,7 @@ fn guests_join_by_a_link_see_each_other_and_take_back_their_own_steps() {
         people(&wall)["people"].as_array().map(|p| p.iter().map(|p| p["colour"].clone()).collect())
     );
 
-    // Bob's step is taken back by Bob, although Ada has sculpted elsewhere since.
+    // Bob can undo Bob's step, although Ada has sculpted elsewhere since.
     let begin = ada.hash().expect("a hash");
     bob.stroke(0.35);
     bob.follows(&ada, &begin);
@@ -249,7 +249,7 @@ fn guests_join_by_a_link_see_each_other_and_take_back_their_own_steps() {
     bob.ctl("redo", None).expect("sent");
     until("it is done again", || bob.hash().as_deref() == Some(&*both));
     bob.follows(&ada, &adas);
-    // Where Ada sculpts over it, Bob is told so.
+    // If Ada sculpts over it, Bob's undo is refused.
     ada.stroke(0.35);
     bob.follows(&ada, &both);
     let over = ada.hash().expect("a hash");

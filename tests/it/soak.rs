@@ -97,7 +97,7 @@ impl Wire {
     }
 }
 
-/// A small disk of its own, where root may mount one; filled and emptied.
+/// A separate small disk, if root may mount one; it is filled and emptied.
 struct Disk {
     at: PathBuf,
     mounted: bool,
@@ -136,12 +136,12 @@ impl Drop for Disk {
     }
 }
 
-/// When somebody is at the pen.
+/// Schedule of the visits.
 #[derive(Debug, Clone, Copy)]
 struct Calendar {
     /// From one visit's beginning to the next one's, in ticks.
     every: u64,
-    /// How long a visit takes.
+    /// Duration of a visit, in ticks.
     visit: u64,
     /// Visits of a day; after them it is night.
     a_day: u64,
@@ -192,7 +192,8 @@ fn soak(seed: u64, ticks: u64, calendar: Calendar) -> Result<(), String> {
     let mut wire = Wire::new();
     let mut faults = std::collections::BTreeMap::<&str, u64>::new();
     let mut publisher = Publisher::new(Published::of(&mut world, PublishedFigures::default()));
-    // What a slow renderer still looks at, since when and until when.
+    // The state that a slow renderer still holds, with the ticks when it took it and when it
+    // releases it.
     let mut held: Option<(Arc<Published>, u64, u64)> = None;
     let (mut samples, mut slow, mut full_until) = (Vec::new(), 0u64, 0u64);
     let (mut dabs, mut taken) = (0u64, 0u64);

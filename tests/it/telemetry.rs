@@ -11,7 +11,7 @@ use crate::hostile::{Daemon, memory_kib};
 use crate::waiting::{PATIENCE, pause, until};
 use sculptd_daemon::telemetry::otlp::name_and_unit;
 
-/// How a collector behaves.
+/// Behaviour of a collector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Manner {
     Well,

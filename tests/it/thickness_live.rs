@@ -1,4 +1,4 @@
-//! The live map: after a stroke the same as a map made anew, at a cost of what changed.
+//! The live map: after a stroke it equals a new map, at a cost that follows the change.
 
 use glam::Vec3;
 use sculptd_clay::brush::GaussianBrush;

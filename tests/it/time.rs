@@ -70,7 +70,7 @@ fn a_process_that_is_stopped_during_a_stroke_accounts_for_every_frame() {
     until("a second passes", || sent.load(Relaxed) >= continued + 110);
     stop.store(true, Relaxed);
     let _open = tracker.join().expect("the tracker ends");
-    // What is in the socket is read.
+    // The data in the socket is read.
     rest(700);
     daemon.end();
     let frames = sent.load(Relaxed);

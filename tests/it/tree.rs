@@ -25,7 +25,7 @@ fn equals_brute_force_and_its_own_scalar_twin_bit_for_bit() {
     let rays = rays(&mut random, 4000);
     let (fast, slow) = (hits(&tree, &rays), hits(&scalar, &rays));
     assert_eq!(fast, slow);
-    // Each triangle alone in a tree of its own: no walk, no culling, only the triangle test.
+    // Each triangle alone in a separate tree: no walk, no culling, only the triangle test.
     let single: Vec<Bvh8> = (0..mesh.triangles.len())
         .map(|t| {
             let one = TriMesh { triangles: vec![mesh.triangles[t]], ..mesh.clone() };
@@ -170,7 +170,7 @@ fn distances_to_slivers_are_as_good_as_the_corners() {
         assert_eq!(hit, scalar.closest_hit(ray, |_| true));
         let Some(hit) = hit else { continue };
         met += 1;
-        // Where the rounded ray leaves the plate.
+        // The point at which the rounded ray leaves the plate.
         let (o, d) = (turn.inverse() * ray.origin.as_dvec3(), turn.inverse() * ray.dir.as_dvec3());
         worst = worst.max((f64::from(hit.t) - (thick - o.z) / d.z).abs());
     }

@@ -13,7 +13,7 @@ pub fn until(what: &str, so: impl FnMut() -> bool) {
     assert!(comes(so), "never: {what}");
 }
 
-/// Whether it comes to be so within the bound.
+/// Returns true if the condition becomes true within the time limit.
 pub fn comes(mut so: impl FnMut() -> bool) -> bool {
     let clock = Clock::monotonic();
     while !so() {

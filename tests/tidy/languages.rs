@@ -1,5 +1,5 @@
 //! The languages of the window: every language has every message of English with the same
-//! arguments, the code uses each of them and no other, and no text stands in the code itself.
+//! arguments, the code uses each of them and no other, and the code contains no texts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,8 +8,8 @@ use super::{root, sources};
 /// Of a message or an attribute: the arguments that it names.
 type Arguments = BTreeSet<String>;
 
-/// Messages by the beginning of their ids that the code makes of its own data (brushes, actions,
-/// stages, ...); tests/it/viewer/languages.rs goes through that data.
+/// Prefixes of the message ids that the code builds from data (brushes, actions, stages, ...);
+/// tests/it/viewer/languages.rs checks that data.
 const OF_DATA: [&str; 5] = ["kind-", "number-", "action-", "process-", "stage-"];
 
 /// Texts that stay in the code, and why.
@@ -157,7 +157,7 @@ fn lines() -> Vec<(String, usize, String)> {
     all
 }
 
-/// What stands in quotes on a line.
+/// Returns the quoted texts of a line.
 fn literals(line: &str) -> Vec<String> {
     let (mut all, mut now, mut escaped) = (Vec::new(), None::<String>, false);
     let chars: Vec<char> = line.chars().collect();
@@ -184,7 +184,7 @@ fn every_message_is_used_and_every_id_in_the_code_is_one() {
             let base = literal.split('.').next().unwrap_or_default().to_owned();
             used.insert(literal.clone());
             used.insert(base);
-            // What is asked for by a literal.
+            // A message id given as a literal.
             let asked = text.replace("include_str!", "").contains(&format!("tr!(\"{literal}\""));
             if asked && !english.contains_key(&literal) {
                 wrong.push(format!("{file}:{line}: no message is called {literal}"));
@@ -201,7 +201,7 @@ fn every_message_is_used_and_every_id_in_the_code_is_one() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Whether a text has a word of two letters or more outside of what is put into it.
+/// Returns true if a text contains a word of two letters or more outside of its placeables.
 fn has_words(text: &str) -> bool {
     let mut depth = 0;
     let mut letters = 0;

@@ -49,7 +49,7 @@ fn the_map_names_every_thread() {
     let missing: Vec<&String> = made
         .iter()
         .filter(|n| !n.is_empty() && !crates.contains(&n.as_str()))
-        // A recording is told by its number, and a turntable is a folder of pictures: no threads.
+        // A recording has a number, and a turntable is a folder of pictures: no threads.
         .filter(|n| !n.starts_with("recording") && *n != "turntable")
         .filter(|n| !known.contains(&format!("sculptd-{n}")) && !known.contains(&format!("`-{n}`")))
         .collect();

@@ -2,7 +2,7 @@
 //! its modules in it, one arrow a dependency, with the number of files that make it. Dependencies
 //! that a chain of arrows implies are not drawn.
 //!
-//! `SCULPTD_BLESS=1 cargo test --test tidy picture` draws it anew.
+//! `SCULPTD_BLESS=1 cargo test --test tidy picture` redraws it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -15,7 +15,7 @@ const WIDTH: usize = 900;
 const BOX: usize = 700;
 const LINE: usize = 20;
 
-/// How many files of a crate name another; arrows that a path of others implies are left out.
+/// Returns the number of files of a crate that name another; implied arrows are left out.
 fn arrows() -> BTreeMap<(usize, usize), usize> {
     let all = named();
     let implied = |(from, to): (usize, usize)| {
@@ -42,7 +42,7 @@ fn named() -> BTreeMap<(usize, usize), usize> {
     out
 }
 
-/// The sources of one crate without those of the members that lie in its folder.
+/// Returns the sources of one crate without those of the members in its folder.
 fn files_of(dir: &str) -> Vec<(String, String)> {
     let base = root().join(dir);
     let inner =
@@ -137,7 +137,8 @@ fn draw() -> String {
     )
 }
 
-/// What of a picture matters: boxes, words and arrows, not the counts of lines and files.
+/// Returns the relevant parts of a picture: boxes, words and arrows, not the counts of lines and
+/// files.
 fn facts(svg: &str) -> Vec<String> {
     let told =
         |l: &&str| l.contains("<text") && !l.contains("lines</text>") || l.contains("<title>");

@@ -97,8 +97,8 @@ fn a_pen_that_the_desktop_follows_makes_each_stroke_once() {
     println!("{came} of {expected} strokes came");
     s.look("desktop-strokes");
 
-    // The pen is away, and the mouse is a pen of its own. How far a mouse moves the pointer is the
-    // desktop's affair (it may accelerate): it is steered by where the pointer is.
+    // The pen is away, and the mouse is a separate pen. The desktop decides how far a mouse moves
+    // the pointer (it may accelerate), so the test steers by the pointer's position.
     let place = |s: &Stage| {
         let said = s.tool("xdotool", &["getmouselocation", "--shell"]).expect("the pointer");
         let value = |name: &str| {

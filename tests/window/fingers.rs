@@ -1,4 +1,4 @@
-//! Fingers on a touch screen, in a real window: one sculpts, two turn the view, three take back.
+//! Fingers on a touch screen, in a real window: one sculpts, two turn the view, three undo.
 
 use glam::DVec2;
 use serde_json::Value;
@@ -31,9 +31,9 @@ fn go(touch: &mut Driven, ways: &[[(f64, f64); 2]]) {
     }
 }
 
-/// Makes a gesture until it is seen. A machine that stands still between two fingers brings the
-/// second one after the time in which a gesture begins: the first one has then sculpted, rightly,
-/// which is taken back, and the gesture is made again. One that does neither is lost, and fails.
+/// Makes a gesture until it is seen. On a stalled machine the second finger may arrive too late for
+/// a gesture. The first finger has then sculpted, correctly; the stroke is undone and the gesture
+/// made again. A gesture that does neither is lost, and fails.
 fn make(s: &mut Stage, touch: &mut Driven, what: &str, gesture: &Gesture<'_>) {
     let before = steps(s);
     for _ in 0..5 {

@@ -135,7 +135,7 @@ fn what_would_come_is_seen_before_it_is_made() {
     s.ask("take-up", &json!({ "path": tool }));
     s.seen("a2-thing");
     let (triangles, hash) = (s.figure("triangles"), s.ask("hash", &Value::Null)["hash"].clone());
-    // It stands beside the work: the preview shows it as clay.
+    // It appears beside the sculpture: the preview shows it as clay.
     s.answer("ctrl+k", "preview: add");
     s.seen("a3-preview");
     assert_eq!(s.ask("hash", &Value::Null)["hash"], hash, "a preview is of the window alone");

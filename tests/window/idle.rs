@@ -43,7 +43,7 @@ fn shares(s: &Stage, seconds: u64) -> BTreeMap<String, f64> {
     out
 }
 
-/// Of the window's threads: all but those that tick and keep the session.
+/// Returns the share of the window's threads: all but those that tick and store the session.
 fn of_the_window(shares: &BTreeMap<String, f64>) -> f64 {
     let daemon = ["sculptd-tick", "sculptd-journal", "sculptd-tail", "sculptd-history"];
     // Linux keeps fifteen letters of a name.
@@ -85,7 +85,7 @@ fn an_idle_window_takes_no_processor() {
     pause(5000);
     let idle = shares(&s, 30);
     told("idle, 5 M triangles", &idle);
-    // What a frame costs in which nothing of the clay changes: the pointer moves, the ring with it.
+    // Cost of a frame in which the clay does not change: the pointer moves, and the ring with it.
     let lines = s.log().lines().count();
     for i in 0..200 {
         let (x, y) = ((500 + i).to_string(), (300 + i / 2).to_string());

@@ -77,7 +77,7 @@ fn a_killed_screen_ends_the_stroke_and_nothing_else() {
     let pid = s.daemon.0.id();
     half_a_stroke(&mut s, 40, &first);
     lose(&mut s);
-    // It ends as by a lifted pen: one step, which undo takes back.
+    // The stroke ends as if the pen were lifted: one step, which undo removes.
     s.until("the stroke is closed", |s| s.figure("undo_steps") == 2);
     let ended = hash(&s);
     assert_ne!(ended, first);
@@ -96,7 +96,7 @@ fn a_killed_screen_ends_the_stroke_and_nothing_else() {
     s.seen("lost-1-new-window");
     let (well, said) = s.run(&["window"]);
     assert!(!well && said.contains("open already"), "{said}");
-    // It is sculpted in, and what was done before can be taken back.
+    // The window sculpts, and earlier steps can be undone.
     let steps = s.figure("undo_steps");
     s.drag((-80, -20), (80, -20));
     s.until("the new window sculpts", |s| s.figure("undo_steps") == steps + 1);

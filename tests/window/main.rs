@@ -1,7 +1,7 @@
-//! The real window on a screen of its own: a binary apart, for these tests run one at a time.
+//! The real window on a separate screen: a separate binary, because these tests run one at a time.
 //!
-//! `SCULPTD_SHOTS=folder` keeps the pictures; `SCULPTD_BLESS=1` writes the kept references anew:
-//! look at them first.
+//! `SCULPTD_SHOTS=folder` saves the pictures; `SCULPTD_BLESS=1` rewrites the references: look at
+//! them first.
 #![cfg(unix)]
 #![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
 

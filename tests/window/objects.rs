@@ -10,8 +10,8 @@ use super::stage::{SIZE, Stage, differs};
 /// Points that a panel takes on each side.
 const PANEL: f32 = 236.0;
 
-/// Where things are on the page of the scene with two objects, the second of them active; the rest
-/// with the first one active and a layer.
+/// Positions on the scene page with two objects, the second of them active; the rest with the first
+/// one active and a layer.
 const NAME_OF_BALL: (i32, i32) = (1167, 107);
 const NAME_OF_BOX: (i32, i32) = (1159, 132);
 const EYE_OF_BOX: (i32, i32) = (1071, 132);
@@ -32,7 +32,7 @@ fn camera(s: &Stage) -> Camera {
     serde_json::from_value(s.ask("camera", &json!({}))).expect("a camera")
 }
 
-/// Where a place of the world is on the screen.
+/// Returns the pixel of a point in the world.
 fn pixel(s: &Stage, place: DVec3) -> (i32, i32) {
     let view = camera(s).project(place.as_vec3()).expect("before the eye");
     let (wide, high) = (SIZE.0 as f32 - 2.0 * PANEL, SIZE.1 as f32);

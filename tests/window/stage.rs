@@ -1,5 +1,5 @@
-//! A screen of its own (Xvfb, software Vulkan) with the daemon's window on it, driven by a
-//! synthetic pointer and keys. One stage at a time: each waits for the one before.
+//! A separate screen (Xvfb, software Vulkan) with the daemon's window on it, driven by a synthetic
+//! pointer and keys. One stage at a time: each waits for the one before.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -54,7 +54,7 @@ fn present(tool: &str) -> bool {
     Command::new(tool).arg("-help").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
-/// Whether the long tests were asked for.
+/// Returns true if the long tests were requested.
 pub fn long() -> bool {
     std::env::var_os("SCULPTD_LONG").is_some_and(|v| v == "1")
 }
@@ -64,7 +64,7 @@ pub fn pause(ms: u64) {
     std::thread::sleep(Duration::from_millis(ms));
 }
 
-/// The program on a screen, with a data folder and a control socket of its own.
+/// Returns the program on a screen, with a separate data folder and control socket.
 fn program(dir: &Path, display: &str) -> Command {
     let mut program = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     program
@@ -98,8 +98,8 @@ fn screen(dir: &Path) -> (Ended, String) {
     let told = dir.join("display");
     let file = std::fs::File::create(&told).expect("a file");
     let size = format!("{}x{}x24", SIZE.0, SIZE.1);
-    // Without `-noreset` the server starts anew when its last client leaves, which may be a tool
-    // that looked for the window, and refuses the daemon that connects meanwhile.
+    // Without `-noreset` the server restarts when its last client leaves, which may be a tool that
+    // looked for the window, and refuses the daemon that connects meanwhile.
     let screen = Command::new("Xvfb")
         .args(["-displayfd", "1", "-screen", "0", &size, "-noreset", "-nolisten", "tcp"])
         .stdout(file)
@@ -112,7 +112,7 @@ fn screen(dir: &Path) -> (Ended, String) {
     (Ended(screen), format!(":{}", display.trim()))
 }
 
-/// What a condition gives once it gives something.
+/// Waits until a condition returns a value, and returns it.
 #[allow(clippy::disallowed_methods)] // A test waits for other processes.
 pub fn wait<T>(what: &str, mut so: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
@@ -201,7 +201,7 @@ impl Stage {
         let _ = self.screen.0.wait();
     }
 
-    /// Another screen in the place of one that was lost, without a window.
+    /// Starts another screen to replace a lost one, without a window.
     pub fn new_screen(&mut self) {
         (self.screen, self.display) = screen(self.dir.path());
     }
@@ -221,7 +221,7 @@ impl Stage {
         assert!(self.shown());
     }
 
-    /// What the daemon has said.
+    /// Returns the daemon's log.
     pub fn log(&self) -> String {
         std::fs::read_to_string(self.dir.path().join("log")).unwrap_or_default()
     }
@@ -258,7 +258,8 @@ impl Stage {
         }
     }
 
-    /// Whether it comes to be so, which is long waited for: a loaded machine is late, not wrong.
+    /// Waits until the condition is true, with a long limit: a loaded machine is late, not wrong.
+    /// Returns false after that.
     #[allow(clippy::disallowed_methods)] // A test waits for other processes.
     pub fn soon(&mut self, mut so: impl FnMut(&mut Stage) -> bool) -> bool {
         let begun = Instant::now();

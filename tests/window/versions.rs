@@ -29,8 +29,8 @@ fn the_versions_of_a_session_in_a_real_window() {
     }
     stroke(&mut s, (0, -120), (0, 120), 5);
     s.seen("versions-1-branch");
-    // The rows lie in the left panel. A click on a row goes to its version; clicks from the lowest
-    // row up, again and again, until each version was met.
+    // The rows are in the left panel. A click on a row goes to its version. Click from the lowest
+    // row up, again and again, until each version was visited.
     let here = |s: &Stage| history(s)["here"].as_u64().expect("a version") as usize;
     let mut met = std::collections::BTreeSet::from([here(&s)]);
     let mut rows = (520..720).rev().step_by(10).cycle();

@@ -38,8 +38,8 @@ impl Driven {
         self.0.write_all(&message).expect("the server listens");
     }
 
-    /// Whether the second values are used; a mask of the axes that follow, eight bytes; then, at a
-    /// multiple of eight bytes, 64 values, twice.
+    /// Encodes a flag for the second values; a mask of the axes that follow, eight bytes; then, at
+    /// a multiple of eight bytes, 64 values, twice.
     fn axes(values: &[f64]) -> Vec<u8> {
         let mut body = vec![0; 4];
         body.extend(((1u64 << values.len()) - 1).to_le_bytes());
@@ -92,7 +92,7 @@ impl Driven {
     }
 }
 
-/// What a finger does.
+/// Action of a finger.
 #[derive(Debug, Clone, Copy)]
 pub enum Finger {
     Begin,

@@ -1,6 +1,6 @@
-//! Serial pens: the same simulated pen twice, each on a pseudo-terminal of its own. The kernel's
+//! Serial pens: the same simulated pen twice, each on a separate pseudo-terminal. The kernel's
 //! driver reads one (attached by `inputattach`), our adaptor the other; after every packet both
-//! must say the same.
+//! must report the same state.
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};

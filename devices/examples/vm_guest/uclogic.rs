@@ -1,6 +1,6 @@
-//! The kernel's `hid_uclogic` on a simulated Huion: it asks the device for its parameters, puts a
-//! descriptor of its own in the place of the device's and changes each report. What the daemon's
-//! binary records through hidraw must give the strokes that the raw reports give.
+//! The kernel's `hid_uclogic` on a simulated Huion: it asks the device for its parameters, replaces
+//! the device's descriptor and changes each report. The recording of the daemon's binary through
+//! hidraw must give the strokes that the raw reports give.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::time::Duration;
 
-/// What such a tablet says of itself, as far as the drivers need it: reports 2 and 12 (the pad) in
+/// Report descriptor of such a tablet, as far as the drivers need it: reports 2 and 12 (the pad) in
 /// nine opaque bytes, feature 2 in one.
 pub const DESCRIPTOR: &[u8] = &[
     0x05, 0x0d, 0x09, 0x01, 0xa1, 0x01, 0x85, 0x02, 0x09, 0x00, 0x75, 0x08, 0x95, 0x09, 0x15, 0x00,

@@ -131,7 +131,7 @@ fn answer(
                 Ok(Asked::Unlink { seq, target }) => {
                     let there = waiting.iter().any(|w| w.0 == target);
                     waiting.retain(|w| w.0 != target);
-                    // -ECONNRESET: it was taken back.
+                    // -ECONNRESET: the request was cancelled.
                     returned(&mut socket, 4, seq, if there { -104 } else { 0 }, 0, &[])?;
                 }
                 Err(_) => return Ok(()),
@@ -165,7 +165,7 @@ fn returned(
     socket.write_all(&out)
 }
 
-/// What the device answers to a control transfer; `None`: it stalls.
+/// Returns the device's answer to a control transfer; `None` if it stalls.
 fn control(device: &Description, setup: [u8; 8]) -> Option<Vec<u8>> {
     let value = u16::from_le_bytes([setup[2], setup[3]]);
     let [vid, pid] = [device.vid, device.pid].map(u16::to_le_bytes);

@@ -14,13 +14,13 @@ use crate::tablet::{Area, Family, Id, PadFacts, PenFacts, Tablet};
 /// A size in whole inches and the descriptor's agree within this share.
 const NOMINAL: f64 = 0.2;
 
-/// Reads an interface by its own descriptor.
+/// Identifies an interface by its report descriptor.
 ///
-/// `known`: the model, where the catalogue has one for these ids whose reports are described; its
-/// name and size are taken.
+/// `known`: the model, if the catalogue has one for these ids whose reports are described; its name
+/// and size are used.
 ///
-/// `size_mm`: of every model with these ids, where they have one; it is taken where the descriptor
-/// states none.
+/// `size_mm`: the size shared by every model with these ids; it is used if the descriptor states
+/// none.
 pub(super) fn described(
     who: &Identity,
     d: &Descriptor,
@@ -111,7 +111,7 @@ fn names_a_chip(name: &str) -> bool {
     })
 }
 
-/// Whether the counts of the axes are those of a tablet of this shape.
+/// Returns true if the counts of the axes match a tablet of this shape.
 fn same_shape(size: (f64, f64), x: &Bits, y: &Bits) -> bool {
     let span = |b: &Bits| f64::from(b.max) - f64::from(b.min);
     let ratio = (span(x) / span(y)) / (size.0 / size.1);
@@ -141,7 +141,7 @@ fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
     let mut found = made(who, d, area, pen, family, "by its parameter string");
     found.described = false;
     found.stated_pressure = Some(params.max_pressure);
-    // Reading these strings switches the tablet to its own protocol.
+    // Reading these strings switches the tablet to its vendor protocol.
     let long = Params::is_long(who);
     Arc::make_mut(&mut found.tablet).id[0].init_strings =
         if long { vec![200] } else { vec![100, 123] };
@@ -195,7 +195,7 @@ fn made(
 /// Ranges of one described report.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
-    /// Counts of the axes. The size is 0: a report states none of its own.
+    /// Counts of the axes. The size is 0: a report states none.
     pub area: Area,
     /// Counts at full pressure; 0 where the report has none.
     pub max_pressure: u32,

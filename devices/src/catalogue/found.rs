@@ -49,7 +49,7 @@ impl Found {
     }
 }
 
-/// What an interface turned out to be.
+/// Result of identifying an interface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Identification {
     /// One model.

@@ -11,8 +11,8 @@ use super::{Catalogue, size};
 use crate::descriptor::{Bits, CollectionKind, Descriptor};
 use crate::tablet::{Family, Id, StringIs, Tablet};
 
-/// What each piece of evidence adds to a candidate's score. A contradiction excludes the candidate
-/// and is no number.
+/// Points that each piece of evidence adds to a candidate's score. A contradiction excludes the
+/// candidate and has no number.
 mod score {
     /// The user added the model.
     pub(super) const OWN: i32 = 10_000;
@@ -38,13 +38,13 @@ mod score {
 
 /// A pair of ids is shared if it stands for so many models.
 const SHARED: usize = 3;
-/// How far a descriptor's believed size may be from a model's.
+/// Greatest difference of a descriptor's believed size from a model's, as a share.
 const SIZE_TOLERANCE: f64 = 0.12;
-/// How far counts of one firmware may be from another's of the same model.
+/// Greatest difference of counts between firmwares of one model, as a share.
 const COUNT_TOLERANCE: f64 = 0.01;
 
 impl Catalogue {
-    /// Which model an interface belongs to.
+    /// Identifies the model that an interface belongs to.
     pub fn identify(&self, who: &Identity) -> Identification {
         let descriptor = Descriptor::parse(&who.descriptor);
         let d = descriptor.as_ref().ok();
@@ -59,8 +59,8 @@ impl Catalogue {
             && self.shared(who)
             && (d.is_some_and(|d| d.pens.iter().any(|p| !p.bare)) || Params::of(who).is_some())
         {
-            // Neither a string nor a name speaks for it, its ids stand for many models, and the
-            // device states its own ranges.
+            // Neither a string nor a name supports it, many models share its ids, and the device
+            // states its ranges.
             return self.without_model(who);
         }
         match best.len() {
@@ -78,7 +78,7 @@ impl Catalogue {
         }
     }
 
-    /// What an interface is if no model is known, or if its reports contradict the known one.
+    /// Identifies an interface without a known model, or whose reports contradict the known one.
     pub(crate) fn without_model(&self, who: &Identity) -> Identification {
         match Descriptor::parse(&who.descriptor) {
             Err(e) => Identification::Declined(e.to_string()),
@@ -112,8 +112,8 @@ impl Catalogue {
         let mut best: Vec<Found> = Vec::new();
         // A negative score is a stranger with a known id.
         let mut most = 0;
-        // Where a string that is known tells these models apart, a model that it does not match is
-        // another one.
+        // If a known string distinguishes these models, a model that it does not match is another
+        // one.
         let ids = self.tablets.iter().flat_map(|t| &t.id);
         let shared = self.shared(who);
         let told_apart = ids
@@ -188,7 +188,7 @@ fn alike(f: &Found, tablet: &Tablet, id: &Id) -> bool {
         && f.tablet.pen.max_pressure == tablet.pen.max_pressure
 }
 
-/// Whether the interface has reports of the length that the model's file has.
+/// Returns true if the interface has reports of the length in the model's file.
 fn fits_length(id: &Id, who: &Identity, d: Option<&Descriptor>, relaxed: bool) -> bool {
     let has = |n: usize| who.seen_lengths.contains(&n) || d.is_some_and(|d| d.declares_length(n));
     if relaxed {
@@ -215,8 +215,8 @@ fn usual_lengths(family: Family) -> &'static [usize] {
     }
 }
 
-/// How many of a model's string patterns match. `None`: one is contradicted. Patterns on one index
-/// are alternatives; of each index one must match, as far as it is known.
+/// Returns the number of a model's string patterns that match; `None` if one is contradicted.
+/// Patterns on one index are alternatives; of each known index one must match.
 fn strings(id: &Id, who: &Identity) -> Option<i32> {
     let mut by_index: BTreeMap<u8, bool> = BTreeMap::new();
     for pattern in id.strings.iter().filter_map(|s| StringIs::parse(s)) {
@@ -265,7 +265,7 @@ fn standing(
     Some(score)
 }
 
-/// What one parameter string adds; `None`: it contradicts the model.
+/// Returns the score of one parameter string; `None` if it contradicts the model.
 ///
 /// `anonymous`: the model shares its ids, and no name speaks for it.
 fn agreement(tablet: &Tablet, p: &Params, anonymous: bool) -> Option<i32> {
@@ -290,7 +290,7 @@ fn agreement(tablet: &Tablet, p: &Params, anonymous: bool) -> Option<i32> {
     }
 }
 
-/// What the described pen reports add or take away.
+/// Returns the score of the described pen reports, positive or negative.
 fn by_descriptor(tablet: &Tablet, d: &Descriptor) -> i32 {
     let mut score = 0;
     for pen in d.pens.iter().filter(|p| !p.as_mouse) {
@@ -314,14 +314,14 @@ fn other_size(a: f64, b: f64) -> bool {
     (a - b).abs() > SIZE_TOLERANCE * b
 }
 
-/// Whether a word of the device's name is the model's brand.
+/// Returns true if a word of the device's name is the model's brand.
 fn of_brand(model: &str, device: &str) -> bool {
     let brand = model.split_whitespace().next().unwrap_or_default();
     let mut words = device.split(|c: char| !c.is_ascii_alphanumeric() && c != '-');
     words.any(|word| word.eq_ignore_ascii_case(brand))
 }
 
-/// A name without what stands in parentheses and without a version: `GT-191 V2` is a `GT-191`.
+/// Removes a part in parentheses and a version from a name: `GT-191 V2` becomes `GT-191`.
 fn base(name: &str) -> &str {
     let name = name.split_once('(').map_or(name, |(before, _)| before).trim_end();
     match name.rsplit_once(' ') {
@@ -330,8 +330,8 @@ fn base(name: &str) -> &str {
     }
 }
 
-/// Whether the names agree but for a version, or share a model code: a word with letters and
-/// digits.
+/// Returns true if the names agree apart from a version, or share a model code: a word with letters
+/// and digits.
 fn alike_named(model: &str, device: &str) -> bool {
     let codes = |name: &str| {
         let plain = name.split_whitespace().map(|word| {
@@ -348,7 +348,8 @@ fn alike_named(model: &str, device: &str) -> bool {
     named(base(model), base(device)) || codes(model).iter().any(|c| theirs.contains(c))
 }
 
-/// Whether the device's name ends in the model's, letters and digits only, the brand left out.
+/// Returns true if the device's name ends with the model's, comparing only letters and digits,
+/// without the brand.
 fn named(model: &str, device: &str) -> bool {
     let plain = |s: &str| {
         s.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_lowercase()

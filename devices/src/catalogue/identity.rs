@@ -1,4 +1,4 @@
-//! What can be read of one interface of a device.
+//! Data that can be read from one interface of a device.
 
 /// Vendors whose reports are UC-Logic's, whatever their descriptors say: those call the second
 /// button an eraser.
@@ -8,7 +8,8 @@ pub(super) const UC_LOGIC: [u16; 3] = [0x5543, 0x256c, 0x28bd];
 pub(super) const TABLET_VENDORS: [u16; 10] =
     [0x0458, 0x08ca, 0x0b57, 0x172f, 0x256c, 0x28bd, 0x2d80, 0x2feb, 0x5543, 0x6161];
 
-/// What can be read of one interface before it sends a report; for recordings also what it sent.
+/// Data read from one interface before it sends a report; for recordings also the lengths of its
+/// reports.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Identity {
     /// USB or Bluetooth vendor id; 0 where it is unknown.

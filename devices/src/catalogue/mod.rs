@@ -1,10 +1,10 @@
-//! Every known model, and which of them a device is.
+//! Every known model, and the identification of devices.
 //!
-//! One pair of ids often stands for many models (256c:006d for 59). They are told apart by what can
-//! be read: report lengths, USB strings, the parameters that some of those strings hold, the report
-//! descriptor, names. A contradiction outweighs any agreement: a model whose range of coordinates
-//! or pressure differs from what the device states of itself is never chosen, whatever the name.
-//! What remains ambiguous is said to be.
+//! One pair of ids is often shared by many models (256c:006d by 59). They are distinguished by the
+//! data that can be read: report lengths, USB strings, the parameters that some of those strings
+//! hold, the report descriptor, names. A contradiction outweighs any agreement: a model whose range
+//! of coordinates or pressure differs from the range stated by the device is never chosen, whatever
+//! the name. An ambiguous result is reported as such.
 //!
 //! | module | what it does |
 //! |---|---|
@@ -12,7 +12,7 @@
 //! | `identify` | which model that is |
 //! | `params` | the parameter strings of UC-Logic tablets |
 //! | `rewritten` | whether a kernel driver replaced the descriptor and changes the reports |
-//! | `described` | a tablet made from its own descriptor, where no model is known |
+//! | `described` | a tablet built from its report descriptor, if no model is known |
 //! | `size` | which stated sizes are believed |
 
 mod described;
@@ -34,11 +34,11 @@ pub use params::Params;
 
 pub(crate) use described::{Scale, by_descriptor};
 
-/// Every known model: the built-in ones and those that a user added.
+/// Every known model: the built-in ones and the user's.
 #[derive(Debug, Clone, Default)]
 pub struct Catalogue {
     tablets: Vec<Arc<Tablet>>,
-    /// How many of them the user added: they come first.
+    /// Number of models that the user added: they come first.
     added: usize,
 }
 
@@ -91,7 +91,7 @@ impl Catalogue {
         })
     }
 
-    /// Every model, those that the user added first.
+    /// Returns every model, the user's first.
     pub fn tablets(&self) -> &[Arc<Tablet>] {
         &self.tablets
     }

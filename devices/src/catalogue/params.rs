@@ -3,7 +3,7 @@
 
 use super::identity::Identity;
 
-/// What a tablet states of its pen. Believed only where every figure is plausible.
+/// Parameters that a tablet states for its pen. Accepted only if every figure is plausible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Params {
     /// Counts at the right edge.
@@ -23,13 +23,13 @@ impl Params {
         Params::all(who).first().copied()
     }
 
-    /// Whether string 200 holds parameters: the tablet speaks the second protocol.
+    /// Returns true if string 200 holds parameters: the tablet uses the second protocol.
     pub fn is_long(who: &Identity) -> bool {
         who.strings.iter().any(|(i, b)| *i == 200 && Params::long(b).is_some())
     }
 
-    /// What string 200 states, then what string 100 does: a tablet may have both, for its two
-    /// protocols.
+    /// Returns the parameters of string 200, then those of string 100: a tablet may have both, for
+    /// its two protocols.
     pub fn all(who: &Identity) -> Vec<Params> {
         let raw =
             |index: u8| who.strings.iter().find(|(i, _)| *i == index).map(|(_, b)| b.as_slice());

@@ -14,11 +14,11 @@ use crate::descriptor::{Descriptor, PenLayout};
 
 /// Report ids that `hid-uclogic` gives the keys, rings and dials that it splits off pen reports.
 const FRAME_IDS: [u8; 4] = [0xf7, 0xf8, 0xf9, 0xba];
-/// Drivers that put a descriptor of their own in the place of the device's.
+/// Drivers that replace the device's descriptor.
 const DRIVERS: [&str; 6] = ["uclogic", "kye", "waltop", "holtek", "viewsonic", "hid-generic-bpf"];
-/// Report id of the vendor's own protocol: Huion and Gaomon.
+/// Report id of the vendor protocol: Huion and Gaomon.
 const HUION_VENDOR: u8 = 0x08;
-/// Report id of the vendor's own protocol: XP-Pen and UGEE.
+/// Report id of the vendor protocol: XP-Pen and UGEE.
 const UGEE_VENDOR: u8 = 0x02;
 /// In-range bit of a report that `hid-uclogic` describes: bit 6 of byte 1.
 const KERNEL_IN_RANGE: usize = 14;
@@ -30,7 +30,7 @@ pub(super) fn rewritten<'a>(who: &Identity, d: &'a Descriptor) -> Option<&'a Pen
     (named || by_shape(who, d, pen)).then_some(pen)
 }
 
-/// No device describes these reports itself: its own protocol is on a vendor's page.
+/// No device describes these reports itself: its vendor protocol is on a vendor's page.
 fn by_shape(who: &Identity, d: &Descriptor, pen: &PenLayout) -> bool {
     if !UC_LOGIC.contains(&who.vid) {
         return false;

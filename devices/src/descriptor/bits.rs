@@ -70,7 +70,7 @@ impl Bits {
         }
     }
 
-    /// Whether the field is not zero, or `None` where the report ends before it.
+    /// Returns true if the field is not zero, or `None` if the report ends before it.
     pub fn set(&self, report: &[u8]) -> Option<bool> {
         self.read(report).map(|v| v != 0)
     }

@@ -42,10 +42,10 @@ pub struct Fact {
     pub max: i64,
 }
 
-/// What a report descriptor says, as far as pens and pads are concerned.
+/// The content of a report descriptor that concerns pens and pads.
 #[derive(Debug, Clone, Default)]
 pub struct Descriptor {
-    /// What the application collections are for: sorted, each kind once.
+    /// Kinds of the application collections: sorted, each kind once.
     pub kinds: Vec<CollectionKind>,
     /// Every input report that places a pen, in the order of the descriptor.
     pub pens: Vec<PenLayout>,
@@ -85,8 +85,9 @@ impl Descriptor {
         Ok(out)
     }
 
-    /// A ring or dial of `hid-uclogic` has a report of its own with one key that is never pressed,
-    /// so that libinput takes the device for a pad. It says nothing about the real keys.
+    /// Removes the dummy key of a ring or dial. `hid-uclogic` gives them a separate report with one
+    /// key that is never pressed, so that libinput takes the device for a pad. It is unrelated to
+    /// the real keys.
     fn drop_dummy_keys(&mut self) {
         if self.pads.iter().any(|p| p.keys.len() > 1) {
             for pad in self.pads.iter_mut().filter(|p| p.keys.len() == 1) {
@@ -142,12 +143,12 @@ impl Descriptor {
         self.input_lengths.iter().map(|l| l.1).max().unwrap_or(0)
     }
 
-    /// Whether an input report of `n` bytes, its id included, is declared.
+    /// Returns true if an input report of `n` bytes, its id included, is declared.
     pub fn declares_length(&self, n: usize) -> bool {
         self.input_lengths.iter().any(|l| l.1 == n)
     }
 
-    /// Whether an input report with this id is declared.
+    /// Returns true if an input report with this id is declared.
     pub fn declares_id(&self, id: u8) -> bool {
         self.input_lengths.iter().any(|l| l.0 == Some(id))
     }
@@ -182,7 +183,7 @@ mod tests {
                 "{main:#x}"
             );
         }
-        // What a collection or its end has used up counts no more.
+        // Usages consumed by a collection or its end no longer count.
         let whole = [0x05, 0x0d, 0x1a, 0, 0, 0x2a, 0xff, 0xff];
         let kept = [&whole[..], &[0xa1, 0x01, 0xc0]].concat().repeat(3);
         assert!(Descriptor::parse(&kept).is_ok());

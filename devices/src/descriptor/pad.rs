@@ -1,4 +1,4 @@
-//! Where the keys, wheels and rings of a pad lie in one input report.
+//! Positions of a pad's keys, wheels and rings in one input report.
 
 use hidreport::{FieldAttributes, VariableField};
 
@@ -11,7 +11,7 @@ const MAX_KEYS: u32 = 32;
 /// A control that turns or slides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turn {
-    /// Where its value lies.
+    /// Position of its value.
     pub bits: Bits,
     /// The value is a number of steps since the last report, and not a position.
     pub relative: bool,
@@ -31,9 +31,9 @@ pub struct PadFields {
 }
 
 impl PadFields {
-    /// Adds a field if it lies in a pad's collection: tablet function keys (0x0D:0x39) or a keypad
-    /// (0x01:0x07), which is what Linux `hid-uclogic`, the HID-BPF fixes and Wacom describe pads
-    /// as. Usages of Wacom's own page (0xFF0D): Linux `wacom_wac.h`.
+    /// Adds a field if it is in a pad's collection: tablet function keys (0x0D:0x39) or a keypad
+    /// (0x01:0x07), as Linux `hid-uclogic`, the HID-BPF fixes and Wacom describe pads. Usages of
+    /// Wacom's page (0xFF0D): Linux `wacom_wac.h`.
     pub(super) fn take(&mut self, f: &VariableField) {
         let of_pad = |usage: u32| matches!(page_id(usage), (0x0d | 0xff0d, 0x39) | (0x01, 0x07));
         let usages = f.collections.iter().flat_map(|c| c.usages());
@@ -47,7 +47,7 @@ impl PadFields {
             (0x0d | 0xff0d, 0x33) | (0xff0d, 0x139) if self.touched.is_none() => {
                 self.touched = Some(Bits::of(f));
             }
-            // Wacom's own page: express keys, then what lies behind the keys of the frame.
+            // Wacom's page: express keys, then the controls after the keys of the frame.
             (0xff0d, key @ 0x910..=0x91f) if f.bits.len() == 1 => {
                 self.add_key(key - 0x910, f);
             }
@@ -83,7 +83,7 @@ impl PadFields {
         }
     }
 
-    /// Whether the report has no control of a pad.
+    /// Returns true if the report has no control of a pad.
     pub fn is_empty(&self) -> bool {
         self.keys.is_empty() && self.turns.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Where the fields of a pen lie in one input report.
+//! Positions of a pen's fields in one input report.
 
 use hidreport::{ArrayField, FieldAttributes, VariableField};
 
@@ -11,7 +11,7 @@ const LEAST_RANGE: i32 = 1000;
 /// An array field: its value, less `bits.min`, is the index of the control that is pressed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selector {
-    /// Where the value lies. A value outside `bits.min..=bits.max` presses nothing.
+    /// Position of the value. A value outside `bits.min..=bits.max` presses nothing.
     pub bits: Bits,
     /// Usage of each control, on the digitiser page (0x0D).
     pub usages: Vec<u32>,

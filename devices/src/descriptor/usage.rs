@@ -4,7 +4,7 @@ use hidreport::Field;
 
 use super::page_id;
 
-/// What an application collection is for.
+/// Kind of an application collection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CollectionKind {
     /// A digitiser, pen or stylus.
@@ -23,7 +23,7 @@ pub enum CollectionKind {
     Other,
 }
 
-/// The kind of the innermost collection that tells it.
+/// Returns the kind of the innermost collection that has one.
 pub(super) fn kind_of(field: &Field) -> Option<CollectionKind> {
     let mut kind = None;
     for c in field.collections() {

@@ -16,11 +16,11 @@ const TELLING_STRINGS: [u8; 7] = [2, 4, 5, 6, 100, 121, 201];
 /// One interface of one device.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Node {
-    /// Where it is opened: `/dev/hidraw0`. Unique while it is plugged in.
+    /// Path with which it is opened: `/dev/hidraw0`. Unique while it is plugged in.
     pub path: String,
     /// Empty where the device has none.
     pub serial: String,
-    /// What can be read of the interface without opening it.
+    /// Data read from the interface without opening it.
     pub who: Identity,
     /// The interface may hold a pen: a digitiser, a vendor's usage, or a pointer. The others are
     /// not opened.

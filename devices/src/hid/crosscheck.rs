@@ -12,7 +12,7 @@ use crate::hid::decoder::Decoder;
 use crate::sample::{Body, DeviceId, Pen, Sample, Tool};
 use crate::tablet::Family;
 
-/// What a descriptor states of one report.
+/// Statement of a descriptor about one report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Statement {
     /// A pen in range over the tablet touches nothing.
@@ -40,9 +40,9 @@ pub enum Statement {
 pub struct Contradiction {
     /// The report; `None` where the descriptor uses no report ids.
     pub report_id: Option<u8>,
-    /// What the descriptor states.
+    /// The descriptor's statement.
     pub statement: Statement,
-    /// What the parser read instead, for people.
+    /// The parser's different reading, as text for people.
     pub read_as: String,
 }
 
@@ -65,7 +65,7 @@ impl Contradiction {
     }
 }
 
-/// What a cross-check compared, and what it found.
+/// Counts and contradictions of a cross-check.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CrossCheck {
     /// Statements that were compared.
@@ -74,8 +74,8 @@ pub struct CrossCheck {
     pub contradictions: Vec<Contradiction>,
 }
 
-/// Which of the two is right where a parser contradicts a descriptor, decided once for each class:
-/// returns the reason for which the parser is, or `None` where nothing is decided.
+/// Decides which side is right if a parser contradicts a descriptor, once for each class. Returns
+/// the reason if the parser is right, or `None` if nothing is decided.
 pub fn decision(found: &Found, contradiction: &Contradiction) -> Option<&'static str> {
     use Statement::{Barrel, Eraser, FarCorner, Invert};
     let id = found.id();
@@ -106,7 +106,7 @@ pub fn note_undecided(found: &mut Found, descriptor: &[u8]) {
     found.note = (!lines.is_empty()).then(|| lines.join("; "));
 }
 
-/// How far the far corner may be from the area's, as a share of the area.
+/// Greatest distance of the far corner from the area's corner, as a share of the area.
 const CORNER: f32 = 0.02;
 /// Least share that counts as full pressure: models of one descriptor differ by one count.
 const FULL: f32 = 0.99;
@@ -136,7 +136,7 @@ struct Witness<'a> {
 }
 
 impl<'a> Witness<'a> {
-    /// Whether the family's parser, and not the descriptor, reads this report.
+    /// Returns true if the family's parser, and not the descriptor, reads this report.
     fn is_read(&self) -> bool {
         let mut engine =
             super::family::Engine::new(&self.found.tablet, self.found.id(), self.descriptor);

@@ -18,10 +18,10 @@ use crate::sample::{DeviceId, Sample};
 /// 200 a second.
 const MAX_SPREAD_US: u64 = 35_000;
 
-/// What became of the reports that were fed so far.
+/// Counts of the reports passed to the decoder so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Reports that were fed.
+    /// Reports passed to the decoder.
     pub reports: u64,
     /// Reports that are cut short or contradict themselves.
     pub broken: u64,
@@ -48,7 +48,7 @@ pub struct Decoder {
     pads: Vec<PadFields>,
     /// A tablet that is not yet switched to its vendor's protocol sends what its descriptor says.
     plain: Option<Box<Decoder>>,
-    /// When the last report was fed.
+    /// Time of the last report.
     last_us: u64,
     counts: Counts,
 }
@@ -109,7 +109,7 @@ impl Decoder {
         }
     }
 
-    /// What became of the reports so far.
+    /// Returns the counts of the reports so far.
     pub fn counts(&self) -> Counts {
         let mut counts = self.counts;
         (counts.outside, counts.placed) = self.pen.outside();
@@ -123,7 +123,7 @@ impl Decoder {
         counts
     }
 
-    /// How the pen's pressure was used so far.
+    /// Returns how the pen has used its pressure range so far.
     pub fn pressure_use(&self) -> PressureUse {
         let other = self.plain.as_ref().map(|p| p.pressure_use()).unwrap_or_default();
         self.pen.pressure_use().and(other)
@@ -178,12 +178,12 @@ impl Decoder {
         self.engine.names_tool()
     }
 
-    /// Whether the pen is in proximity.
+    /// Returns true if the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range() || self.plain.as_ref().is_some_and(|p| p.in_range())
     }
 
-    /// When silence will end the pen's visit.
+    /// Returns the time at which silence will end the pen's visit.
     pub fn due_us(&self) -> Option<u64> {
         let other = self.plain.as_ref().and_then(|p| p.due_us());
         [self.pen.due_us(), other].into_iter().flatten().min()

@@ -39,11 +39,11 @@ fn degrees(bits: &Option<Bits>, b: &[u8], full: f64) -> Option<f32> {
     bits.as_ref().and_then(|f| f.read(b).map(|v| f.degrees(v, full) as f32))
 }
 
-/// Whether this is the last report of a pen that leaves a Huion under `hid-uclogic`. The tablet
-/// sends flags of 0 then, and bit 7 in all others; the driver inverts bit 6 and calls it "in range"
-/// (Linux `hid-uclogic-params.c`, `UCLOGIC_PARAMS_PEN_INRANGE_INVERTED`), so that the pen stays in
-/// range for everybody who reads that bit alone. Its coordinates of 24 bits tell the driver's
-/// reports from others with this id.
+/// Returns true if this is the last report of a pen that leaves a Huion under `hid-uclogic`. The
+/// tablet sends flags of 0 then, and bit 7 in all others. The driver inverts bit 6 and calls it "in
+/// range" (Linux `hid-uclogic-params.c`, `UCLOGIC_PARAMS_PEN_INRANGE_INVERTED`), so that the pen
+/// stays in range for every reader of that bit alone. Its 24-bit coordinates distinguish the
+/// driver's reports from others with this id.
 fn leaves_huion(b: &[u8], layout: &PenLayout) -> bool {
     let wide = layout.x.as_ref().is_some_and(|x| x.len == 24);
     let inverted = layout.in_range.as_ref().is_some_and(|i| i.start == 14);
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!((p.pos, p.pressure, p.tilt), (Some([1, 2]), None, None));
     }
 
-    /// Keys 1 to 3, then two buttons that are named alike, and a ring in a report of its own.
+    /// Keys 1 to 3, then two buttons with the same usages, and a ring in a separate report.
     const PAD: &[u8] = &[
         0x05, 0x01, 0x09, 0x07, 0xa1, 0x01, 0x85, 0xf7, 0x05, 0x0d, 0x09, 0x39, 0xa1, 0x00, 0x05,
         0x09, 0x19, 0x01, 0x29, 0x03, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x03, 0x81, 0x02,

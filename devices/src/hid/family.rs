@@ -201,7 +201,7 @@ impl Engine {
         }
     }
 
-    /// What the firmware of this family's pens does wrong.
+    /// Returns the firmware faults of this family's pens.
     pub fn firmware_rules(&self) -> FirmwareRules {
         let none = FirmwareRules::default();
         match self {

@@ -15,7 +15,7 @@ pub const SECOND: u32 = 2;
 /// Bit of the third barrel button.
 pub const THIRD: u32 = 4;
 
-/// Which rules hold for a pen.
+/// Rules that apply to a pen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FirmwareRules {
     /// Wacom: the third button is sent as the first two together.

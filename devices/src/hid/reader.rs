@@ -15,12 +15,12 @@ use crate::latency::{Latency, Quantiles};
 use crate::queue::Sender;
 use crate::sample::{DeviceId, Sample};
 
-/// How long one read waits, in ms. After each wait silence is checked and kept samples are sent
-/// again.
+/// Timeout of one read, in ms. After each timeout the reader checks for silence and sends kept
+/// samples again.
 const READ_MS: i32 = 10;
 /// The same in microseconds.
 const READ_US: u64 = READ_MS as u64 * 1000;
-/// Longest report; hidraw's own limit is 4096.
+/// Longest report; hidraw's limit is 4096.
 const MAX_REPORT: usize = 4096;
 
 /// The state of a reader.
@@ -97,13 +97,13 @@ struct HidReader {
     listening: Listening,
 }
 
-/// How long the thread listened since the pen's last report. A thread that the system held up hears
-/// of reports late, and that is no silence of the pen.
+/// Time that the thread has listened since the pen's last report. A thread delayed by the system
+/// receives reports late, and that does not count as silence of the pen.
 #[derive(Debug, Default)]
 struct Listening {
-    /// When the last read returned, microseconds.
+    /// Time at which the last read returned, in microseconds.
     read_us: Option<u64>,
-    /// When silence would end the visit; it changes with each report of the pen.
+    /// Time at which silence would end the visit; it changes with each report of the pen.
     due_us: Option<u64>,
     /// Time since the pen's last report in which the thread did not listen, microseconds.
     held_up_us: u64,
@@ -194,7 +194,7 @@ mod tests {
         // The system held the thread up for 400 ms: only one read of that is silence.
         assert_eq!(listening.heard_until(450_000, due), 60_000);
         assert_eq!(listening.heard_until(460_000, due), 70_000);
-        // The next report of the pen begins anew.
+        // The next report of the pen restarts the count.
         assert_eq!(listening.heard_until(461_000, Some(511_000)), 461_000);
     }
 }

@@ -16,7 +16,7 @@ pub enum Tapped {
     Opened {
         /// Number of the interface, from 0 in the order of opening.
         number: usize,
-        /// What is known of it, its strings included.
+        /// Data read from it, its strings included.
         who: Identity,
         /// Serial number; empty where the device has none.
         serial: String,
@@ -25,7 +25,7 @@ pub enum Tapped {
     Report {
         /// Number of the interface.
         number: usize,
-        /// When it was read, in microseconds on the clock of the bus.
+        /// Time of the read, in microseconds on the clock of the bus.
         t_us: u64,
         /// The report, its id first where the device has ids.
         bytes: Vec<u8>,
@@ -40,7 +40,7 @@ pub struct TapBus<B> {
     pub bus: B,
     /// The clock that stamps reports.
     pub clock: Clock,
-    /// Where copies go. A full channel drops them.
+    /// Receiver of copies. A full channel drops them.
     pub out: cc::Sender<Tapped>,
     opened: usize,
 }

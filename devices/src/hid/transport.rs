@@ -17,7 +17,7 @@ pub trait Transport: Send {
         let _ = buf;
         Err(io::ErrorKind::Unsupported.into())
     }
-    /// The report descriptor, where the platform tells it.
+    /// Returns the report descriptor, if the platform provides it.
     fn descriptor(&mut self) -> Option<Vec<u8>> {
         None
     }

@@ -19,7 +19,7 @@ use crate::descriptor::{Bits, Descriptor};
 use crate::report::{PadReport, Parsed, PenReport, byte, s8_at, u16_at};
 use crate::sample::Tool;
 
-/// How one tablet of the family packs its numbers.
+/// Number encoding of one tablet of the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Packing {
     /// 8 bytes; 10 with tilt at 8 and 9; 12 with high coordinate bytes at 10 and 11.
@@ -35,10 +35,10 @@ pub enum Packing {
     Fma,
 }
 
-/// What one tablet does differently.
+/// Differences of one tablet from its family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct UcLogicTraits {
-    /// How the tablet packs its numbers.
+    /// Number encoding.
     pub packing: Packing,
     /// The descriptor's own in-range bit of byte 1, where it has one: 5, 6 or 7.
     pub range_bit: Option<u8>,
@@ -46,15 +46,14 @@ pub struct UcLogicTraits {
     pub no_tilt: bool,
     /// Report ids, one a bit, that the descriptor describes without tilt.
     pub untilted: u32,
-    /// Where the described report keeps its buttons.
+    /// Positions of the buttons in the described report.
     pub bits: UcLogicBits,
 }
 
-/// Which bits of byte 1 are what, in the report that the descriptor describes. Masks; 0 where the
-/// bit is not there.
+/// Bits of byte 1 in the report that the descriptor describes. Masks; 0 for a missing bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct UcLogicBits {
-    /// Id of the described report; 0 where none is.
+    /// Id of the described report; 0 for none.
     id: u8,
     /// The second barrel button, where it is not bit 2.
     second: u8,
@@ -109,7 +108,7 @@ impl UcLogicBits {
     }
 }
 
-/// What the reports so far have shown.
+/// State learned from the reports so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct UcLogicMemory {
     /// `A0` was seen: `C0` means out.
@@ -251,7 +250,7 @@ fn pen(b: &[u8], traits: &UcLogicTraits) -> PenReport {
     }
 }
 
-/// Whether the eraser is near, whether either end touches, and the barrel buttons.
+/// Returns the eraser's proximity, the contact of either end, and the barrel buttons.
 fn switches(id: u8, flags: u8, bits: &UcLogicBits) -> (bool, bool, u32) {
     let first = u32::from(flags >> 1 & 1);
     let set = |mask: u8| u32::from(flags & mask != 0);

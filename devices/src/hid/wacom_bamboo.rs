@@ -5,7 +5,7 @@
 use crate::report::{Parsed, PenReport, byte, u16_at};
 use crate::sample::Tool;
 
-/// What must be remembered: the tool of this visit, known once the pen was placed.
+/// State kept between reports: the tool of this visit, known once the pen was placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BambooMemory {
     tool: Option<Tool>,

@@ -10,7 +10,7 @@ use crate::sample::Tool;
 /// Largest height of these tablets, in counts.
 const MAX_DISTANCE: u32 = 63;
 
-/// Which tablet sends the report.
+/// Tablet that sends the report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BluetoothKind {
     /// Intuos Pro 2: seven frames of 14 bytes, tilt and twist, nine keys and a ring.
@@ -19,7 +19,7 @@ pub enum BluetoothKind {
     Intuos,
 }
 
-/// What must be remembered between reports: the tool is decided as the pen comes into range.
+/// State kept between reports: the tool is decided as the pen comes into range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BluetoothMemory {
     tool: Option<Tool>,

@@ -5,7 +5,7 @@
 use crate::report::{PadReport, Parsed, PenReport, be16_at, byte, u16_at};
 use crate::sample::Tool;
 
-/// Which layout the tablet has.
+/// Report layout of the tablet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DisplayKind {
     /// PL and DTF: 7-bit bytes.
@@ -20,7 +20,7 @@ pub enum DisplayKind {
     TabletPc,
 }
 
-/// What a PL remembers: the tool, decided as the pen enters.
+/// State of a PL: the tool, decided as the pen enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DisplayMemory {
     tool: Option<Tool>,

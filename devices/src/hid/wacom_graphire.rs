@@ -5,7 +5,7 @@
 use crate::report::{PadReport, Parsed, PenReport, byte, u16_at};
 use crate::sample::Tool;
 
-/// How one tablet of the family carries pressure and its pad.
+/// Encoding of pressure and pad in one tablet of the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GraphireKind {
     /// Graphire 1 to 3.

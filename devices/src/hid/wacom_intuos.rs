@@ -5,7 +5,7 @@
 use crate::report::{Parsed, PenReport, be16_at};
 use crate::sample::Tool;
 
-/// What one tablet of the family does differently.
+/// Differences of one tablet from its family.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct IntuosTraits {
     /// Intuos 1 halves its coordinates and height.
@@ -22,7 +22,7 @@ pub struct IntuosTraits {
     pub max_distance: u32,
 }
 
-/// What must be remembered between reports: the tool is named once, when it enters.
+/// State kept between reports: the tool is named once, when it enters.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct IntuosMemory {
     /// A first-generation Intuos follows two tools at once (bit 0 of byte 1 tells them apart); one
@@ -69,8 +69,8 @@ pub fn parse(b: &[u8], traits: &IntuosTraits, memory: &mut IntuosMemory) -> Pars
         memory.reporting = false;
         return if known.is_some() { Parsed::Away } else { Parsed::Nothing };
     }
-    // A puck has packets of its own. A pen and an eraser share theirs, so the tool's number is
-    // awaited: it comes as the pen enters, or as the answer to the reader's query.
+    // A puck has separate packets. A pen and an eraser share theirs, so the parser waits for the
+    // tool's number: it comes as the pen enters, or as the answer to the reader's query.
     let puck = matches!(flags >> 1 & 0x0f, 4 | 6 | 8).then_some(Tool::Mouse);
     let Some(tool) = memory.tool.or(puck) else { return Parsed::Nothing };
     memory.tool = Some(tool);

@@ -5,7 +5,7 @@
 use crate::report::{Batch, PadReport, Parsed, PenReport, byte, s8_at, s16_at, u16_at, u24_at};
 use crate::sample::Tool;
 
-/// Which layout the tablet has.
+/// Report layout of the tablet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProKind {
     /// Report 10: Intuos Pro of 2017, Intuos of 2018.

@@ -1,10 +1,11 @@
-//! Finds tablets, sets them up, reads each on its own thread, and finds them again after a replug.
+//! Finds tablets, sets them up, reads each on a separate thread, and finds them again after a
+//! replug.
 //!
-//! On Linux the report descriptor of a closed interface is read from sysfs. On Windows and macOS it
-//! is not shown: there an interface that may be a pen is opened first and asked for its descriptor
-//! through hidapi, and then it is judged. That path was tested with simulated devices only: it has
+//! On Linux the report descriptor of a closed interface is read from sysfs. Windows and macOS do
+//! not provide it: there an interface that may be a pen is opened first, asked for its descriptor
+//! through hidapi, and then identified. That path was tested with simulated devices only: it has
 //! never run on Windows or macOS. There the system may hold the pen's interface, so that it cannot
-//! be opened; the status then says so.
+//! be opened; the status then reports this.
 //!
 //! hidapi has no hot-plug call. The devices are listed again when the device folder changed or a
 //! reader ended: every 200 ms at first, and less often while nothing changes, at least every two
@@ -33,7 +34,7 @@ const LOOK: (Duration, Duration) = (Duration::from_millis(200), Duration::from_m
 /// A tablet that was only just plugged in may refuse its first messages.
 const TRIES: u32 = 20;
 
-/// What the user configured for tablets.
+/// The user's configuration for tablets.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HidConfig {
@@ -41,7 +42,7 @@ pub struct HidConfig {
     pub models: BTreeMap<String, String>,
     /// Devices that are not opened, by `vid:pid` or `vid:pid:serial`.
     pub ignore: Vec<String>,
-    /// What the user set, by `vid:pid:serial`, `vid:pid` or the model's name.
+    /// The user's calibrations, by `vid:pid:serial`, `vid:pid` or the model's name.
     pub calibration: Calibrations,
     /// The first id given to a tablet's interface.
     #[serde(skip)]
@@ -51,7 +52,7 @@ pub struct HidConfig {
 /// The state of one interface.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NodeStatus {
-    /// Where the interface is opened, such as `/dev/hidraw0`.
+    /// Path of the interface, such as `/dev/hidraw0`.
     pub path: String,
     /// Vendor id.
     pub vid: u16,
@@ -222,9 +223,9 @@ struct Watcher {
     clock: Clock,
     factory: SenderFactory,
     shared: Arc<Mutex<WatchShared>>,
-    /// Which id an interface had: the same one gets it again. Position is the id.
+    /// Id of each interface: the same one gets it again. The position is the id.
     ids: Vec<(String, Option<String>)>,
-    /// How often a node could not be opened or set up.
+    /// Number of failures to open or set up each node.
     failures: BTreeMap<String, u32>,
     connections: BTreeMap<u16, u32>,
 }
@@ -287,7 +288,8 @@ impl Watcher {
                 }
                 Err(refusal) => {
                     let mut status = NodeStatus::of(node);
-                    // What it is read as is known without opening it, where its descriptor is.
+                    // If the descriptor is available, the model is known without opening the
+                    // interface.
                     let known = Some(node).filter(|n| !n.who.descriptor.is_empty());
                     if let Some(Ok((found, candidates))) =
                         known.map(|n| choose(n, &n.who, &self.config, &self.catalogue))
@@ -318,8 +320,9 @@ impl Watcher {
 
     /// Identifies, opens, sets up and reads one interface.
     fn take_up(&mut self, node: &Node) -> Result<OpenInterface, Refusal> {
-        // Where the system does not show the descriptor of a closed interface, it is opened before
-        // it is judged: a tablet is known by its descriptor as often as by its ids.
+        // If the system does not provide the descriptor of a closed interface, the interface is
+        // opened before it is identified: a tablet is recognised by its descriptor as often as by
+        // its ids.
         if node.who.descriptor.is_empty() {
             refusal(node, &self.config).map_err(Refusal::Final)?;
         } else {
@@ -398,7 +401,7 @@ fn refusal(node: &Node, config: &HidConfig) -> Result<(), String> {
     Ok(())
 }
 
-/// Which model a node is read as, and the names of all that it may be when that is uncertain.
+/// Returns the model as which a node is read, and the names of all candidates if that is uncertain.
 pub(crate) fn choose(
     node: &Node,
     who: &Identity,

@@ -14,8 +14,8 @@ use crate::clock::Clock;
 use crate::device_thread::StopToken;
 use crate::leap::frame::MAX_MESSAGE;
 
-/// How long one read or write waits. Short: in between, samples that are kept back go out and the
-/// stop flag is looked at.
+/// Timeout of one read or write. It is short, because kept samples are sent and the stop flag is
+/// checked in between.
 pub(super) const SLICE: Duration = Duration::from_millis(10);
 /// The whole handshake, from the connection on.
 const HANDSHAKE: Duration = Duration::from_millis(1500);
@@ -49,7 +49,7 @@ enum Phase {
 
 impl BoundedStream {
     /// # Errors
-    /// What the system says of the socket's options.
+    /// The system's error about the socket's options.
     pub(super) fn new(stream: TcpStream, stop: StopToken) -> Result<Self> {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(SLICE))?;

@@ -38,13 +38,13 @@ const MESSAGES_AT_ONCE: u64 = 5_000;
 /// Most bytes that wait to be sent to the server.
 const WRITE_BYTES: usize = 64 << 10;
 
-/// Where the tracker's service is, and what it is asked for.
+/// Address of the tracker's service, and the requests to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeapConfig {
     /// The service; the path names the protocol's version, `/v6.json` or `/v7.json`.
     pub url: String,
-    /// Whether a service on another machine may be used. Frames are neither encrypted nor signed.
+    /// True if a service on another machine may be used. Frames are neither encrypted nor signed.
     pub allow_remote: bool,
     /// Frames wanted while another program has the focus. A sculptor's hands are wanted always.
     pub background: bool,
@@ -71,16 +71,16 @@ impl Default for LeapConfig {
     }
 }
 
-/// How the connection stands.
+/// State of the connection.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct LeapStatus {
     /// A server is connected.
     pub connected: bool,
     /// The protocol's version as the server stated it.
     pub version: Option<i64>,
-    /// Whether a tracker is attached, as the service last reported it.
+    /// True if a tracker is attached, as the service last reported it.
     pub attached: Option<bool>,
-    /// Whether the tracker streams, as the service last reported it.
+    /// True if the tracker streams, as the service last reported it.
     pub streaming: Option<bool>,
     /// Frames decoded and sent on.
     pub frames: u64,
@@ -99,7 +99,7 @@ pub struct LeapStatus {
     pub connections: u64,
     /// Frames a second, smoothed over about a second.
     pub rate: f32,
-    /// How late the last frame was over the quickest one.
+    /// Delay of the last frame relative to the quickest one, in microseconds.
     pub delay_us: u64,
     /// Why there is no connection, or what was wrong last.
     pub last_error: Option<String>,
@@ -145,7 +145,7 @@ struct Client {
     /// Motion over the rate cap: replaced by the next motion, sent before anything else and when
     /// the rate allows it. So the last of a flood arrives, and every frame is counted.
     held: Option<Sample>,
-    /// When the last frame came, on our clock.
+    /// Time of the last frame, on our clock.
     framed_us: u64,
     tokens: f64,
     tokens_at_us: u64,

@@ -227,7 +227,7 @@ fn a_server_that_breaks_every_rule_is_survived() {
     );
     let mut reasons = Vec::new();
     for _ in 0..n {
-        // Each attempt by hand: the back-off has its own test and would take a minute here.
+        // Each attempt by hand: the back-off has a separate test and would take a minute here.
         let (_hold, stop) = device_thread::pair();
         let why = match connect(&client.config, &stop) {
             Ok(socket) => client.serve(socket, &stop),

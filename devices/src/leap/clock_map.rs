@@ -7,7 +7,7 @@
 /// Beyond this the clocks are held to have jumped, and the map starts afresh.
 const JUMP_US: i64 = 1_000_000;
 
-/// How fast the two clocks may run apart: 200 parts in a million, worse than any crystal.
+/// Greatest drift between the two clocks: 200 parts in a million, worse than any crystal.
 const DRIFT_PARTS: i64 = 5_000;
 
 /// Our time minus the tracker's, as the quickest frame so far showed it.
@@ -24,8 +24,8 @@ struct Seen {
 }
 
 impl ClockMap {
-    /// When the frame was taken, on our clock: never later than `read_us`, never before the frame
-    /// that came before it. With no stamp of the tracker's it is the instant of the read.
+    /// Returns the time of the frame on our clock: never later than `read_us`, never before the
+    /// previous frame. Without a stamp of the tracker's it is the time of the read.
     pub fn map(&mut self, device_us: Option<u64>, read_us: u64) -> u64 {
         let taken = match device_us.and_then(|d| i64::try_from(d).ok()) {
             Some(device) => self.taken(device, read_us),

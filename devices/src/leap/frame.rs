@@ -171,8 +171,8 @@ pub fn parse_message(json: &str) -> Result<Message, FrameError> {
     Ok(raw.version.map_or(Message::Other, |v| Message::Version(v.int())))
 }
 
-/// Holds size and depth to their caps before anything is built from the text; true if `nan` or
-/// `inf` stands in it outside strings.
+/// Checks size and depth against their limits before anything is built from the text; returns true
+/// if it contains `nan` or `inf` outside strings.
 fn check(json: &str) -> Result<bool, FrameError> {
     if json.len() > MAX_MESSAGE {
         return Err(FrameError::TooLong(json.len()));

@@ -28,7 +28,7 @@ fn pen(pressure: u32, tip: Option<bool>) -> PenReport {
     }
 }
 
-/// What comes out of a state fed with reports 5 ms apart.
+/// Returns the output of a state that receives reports 5 ms apart.
 fn run(cfg: PenConfig, reports: &[PenReport]) -> Vec<Pen> {
     let mut state = PenState::new(cfg);
     let mut out = Vec::new();

@@ -132,8 +132,8 @@ fn what_a_person_set_for_a_tablet_holds_for_that_tablet() {
     assert!(tx.calibrations.is_empty());
 }
 
-/// What a test does to the channel: one device moves or turns its tip over, or the consumer takes
-/// some.
+/// Operation of a test on the channel: one device moves or toggles its tip, or the consumer takes
+/// some samples.
 #[derive(Debug, Clone)]
 enum Op {
     Move(u16),

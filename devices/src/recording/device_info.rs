@@ -2,7 +2,7 @@
 
 use crate::sample::DeviceId;
 
-/// What kind of device a recording is of.
+/// Kind of the recorded device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceKind {
     /// A pen tablet.
@@ -22,6 +22,6 @@ pub struct DeviceInfo {
     pub area_mm: glam::Vec2,
     /// Number under which its samples go out.
     pub device: DeviceId,
-    /// Which model and parser each interface got and why, for people.
+    /// Model and parser of each interface with the reasons, as text for people.
     pub notes: Vec<String>,
 }

@@ -15,12 +15,12 @@ const MAX_REPORT: usize = 4096;
 pub struct BadLine {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it and what was expected.
+    /// The fault, and the expected content.
     pub what: String,
 }
 
-/// Reads a whole file. A last line that has no end and cannot be read was cut off: it is left out,
-/// and [`HidRecording::cut_at`] says so.
+/// Reads a whole file. An unfinished last line that cannot be read was cut off: it is left out, and
+/// [`HidRecording::cut_at`] reports it.
 ///
 /// # Errors
 /// Any other line that cannot be read, or a file without a descriptor and without a report.

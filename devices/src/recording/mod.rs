@@ -17,7 +17,7 @@ pub use player::Player;
 /// report in order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HidRecording {
-    /// What is known of each interface.
+    /// Identity of each interface.
     pub interfaces: Vec<crate::catalogue::Identity>,
     /// Every report, in order of time.
     pub reports: Vec<Stamped>,
@@ -54,7 +54,7 @@ pub enum RecordingError {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// What is wrong with it and what was expected.
+        /// The fault, and the expected content.
         what: String,
     },
     /// No interface of the device is known.

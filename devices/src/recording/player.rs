@@ -79,12 +79,12 @@ impl Player {
         Player { info, source, next: 0, offset_us: 0, ended: false }
     }
 
-    /// What the recording is of.
+    /// Returns the recorded device.
     pub fn device(&self) -> &DeviceInfo {
         &self.info
     }
 
-    /// How the pressure of its pen was used in what was played so far; of hands, nothing.
+    /// Returns how its pen has used the pressure range so far; the default for hands.
     pub fn pressure_use(&self) -> PressureUse {
         match &self.source {
             Source::Pen(p) => p.pressure_use(),
@@ -97,7 +97,7 @@ impl Player {
         self.offset_us = us;
     }
 
-    /// When the next report is due, relative to the first; `None` when all were played.
+    /// Returns the time of the next report, relative to the first; `None` after the last one.
     pub fn next_due_us(&self) -> Option<u64> {
         match &self.source {
             Source::Pen(p) => p.recording.reports.get(self.next).map(|r| r.t_us),

@@ -94,7 +94,7 @@ impl<W: Write> Recorder<W> {
     }
 
     /// # Errors
-    /// What is buffered cannot be written.
+    /// The buffered data cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         self.out.flush()?;
         Ok(self.out)

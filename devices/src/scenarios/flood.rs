@@ -51,8 +51,7 @@ fn nothing_but_motion_is_ever_lost() {
     let (factory, mut rx) = channel(CAPACITY);
     let (mut tablets, mut readers) = (Vec::new(), Vec::new());
     for i in 0..TABLETS {
-        // On a loaded machine the flood itself comes in bursts: its own loss would hide the
-        // channel's.
+        // On a loaded machine the flood itself comes in bursts: its loss would hide the channel's.
         let config = TabletConfig { rate: RATE, keeps: 4096, ..TabletConfig::default() };
         let (tablet, end) = SimTablet::new(&found, script.clone(), config);
         let id = DeviceId(i as u16);

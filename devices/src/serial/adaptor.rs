@@ -17,12 +17,12 @@ use crate::sample::{DeviceId, Sample};
 /// A line that is silent for this long has ended its packet: about the time of four bytes at 19200
 /// baud or three at 9600.
 const QUIET: Duration = Duration::from_millis(2);
-/// How long a read waits while nothing is held back.
+/// Timeout of a read while no packet is held back.
 const READ_SLICE: Duration = Duration::from_millis(20);
 /// First and longest wait before the ports are tried again.
 const BACK_OFF: (Duration, Duration) = (Duration::from_millis(500), Duration::from_secs(4));
 
-/// Which ports may be opened, and what to expect there.
+/// Ports that may be opened, and the expected devices.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SerialConfig {
@@ -35,7 +35,7 @@ pub struct SerialConfig {
     pub protocol: Option<Protocol>,
     /// Fingers on an ISDV4 screen become samples too.
     pub touch: bool,
-    /// What the person set for the tablet there.
+    /// The person's calibration for the tablet there.
     pub calibration: Calibration,
     /// The device number of its samples.
     #[serde(skip)]
@@ -51,11 +51,11 @@ pub struct SerialStatus {
     pub port: Option<String>,
     /// The protocol.
     pub protocol: Option<Protocol>,
-    /// What it calls itself.
+    /// Model name reported by the device.
     pub model: Option<String>,
     /// Width and height of the active area.
     pub area_mm: Option<[f32; 2]>,
-    /// What became of its bytes.
+    /// Counts of its bytes and packets.
     pub counts: SerialCounts,
     /// Samples that were made of them.
     pub samples: u64,
@@ -102,7 +102,7 @@ struct SerialReader {
     clock: Clock,
     sender: Sender,
     status: Arc<Mutex<SerialStatus>>,
-    /// When the present second of counting began, and the packets by then.
+    /// Start of the present second of counting, and the packets by then.
     second: (u64, u64),
 }
 
@@ -152,7 +152,7 @@ impl SerialReader {
         });
     }
 
-    /// The port that is named, else those that may be asked and are there.
+    /// Returns the named port, else the allowed ports that exist.
     fn ports(&self) -> Vec<String> {
         if let Some(name) = &self.config.port {
             return vec![name.clone()];

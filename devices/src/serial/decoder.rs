@@ -11,11 +11,11 @@ use crate::sample::{DeviceId, Sample};
 /// Longest packet of any protocol (two fingers over ISDV4).
 const MAX_PACKET: usize = 16;
 
-/// All these protocols say when the pen leaves, and stream while it is there. A lost last packet
-/// must not leave it there for ever: this much silence ends the visit.
+/// All these protocols report when the pen leaves, and stream while it is near. After a lost last
+/// packet, this much silence ends the visit.
 const SILENCE_US: u64 = 300_000;
 
-/// What became of the bytes.
+/// Counts of bytes and packets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct SerialCounts {
     /// Packets that were read.
@@ -39,7 +39,7 @@ pub struct SerialDecoder {
     have: usize,
     /// A whole packet, not yet confirmed by what follows, and when its last byte was read.
     held: Option<(usize, u64)>,
-    /// What became of the bytes so far.
+    /// Counts of the bytes so far.
     pub counts: SerialCounts,
 }
 
@@ -81,7 +81,7 @@ impl SerialDecoder {
         self.release(emit);
     }
 
-    /// Whether a packet waits for [`SerialDecoder::quiet`].
+    /// Returns true if a packet waits for [`SerialDecoder::quiet`].
     pub fn holds(&self) -> bool {
         self.held.is_some()
     }
@@ -98,7 +98,7 @@ impl SerialDecoder {
         self.pen.leave(t_us, emit);
     }
 
-    /// Whether the pen is in proximity.
+    /// Returns true if the pen is in proximity.
     pub fn in_range(&self) -> bool {
         self.pen.in_range()
     }

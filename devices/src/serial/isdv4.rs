@@ -83,7 +83,7 @@ fn place(b: &[u8]) -> ([i32; 2], u32) {
     ([x as i32, y as i32], (low7(b, 6) & 7) << 7 | low7(b, 5))
 }
 
-/// What the replies made known, and the memory that the third button needs.
+/// Data learned from the replies, and the state that the third button needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Isdv4Layout {
     query: Isdv4Query,

@@ -55,11 +55,11 @@ pub struct SerialFacts {
     pub area_mm: Vec2,
     /// 0: no pressure.
     pub max_pressure: u32,
-    /// How its packets are to be read.
+    /// Layout of its packets.
     pub layout: SerialLayout,
 }
 
-/// How its packets are to be read.
+/// Packet layout of a protocol.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SerialLayout {
     /// ISDV4.

@@ -9,9 +9,9 @@ use super::{Protocol, SerialFacts, SerialLayout, isdv4, summa_mm, wacom_iv, waco
 use crate::device_thread::StopToken;
 
 const MM_PER_INCH: f32 = 25.4;
-/// How long one read of the line waits.
+/// Timeout of one read of the line.
 const SLICE: Duration = Duration::from_millis(10);
-/// How long an answer may take.
+/// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_millis(700);
 /// Longest answer that is taken in.
 const MAX_REPLY: usize = 64;
@@ -20,9 +20,9 @@ const MAX_REPLY: usize = 64;
 pub(crate) trait Wire: Read + Write + Send {
     /// 8 bits, 1 stop bit. A pseudo-terminal may ignore it.
     fn set_line(&mut self, baud: u32, odd_parity: bool) -> io::Result<()>;
-    /// How long a read waits.
+    /// Sets the timeout of a read.
     fn set_patience(&mut self, patience: Duration) -> io::Result<()>;
-    /// Throws away what came and was not read.
+    /// Discards received bytes that were not read.
     fn clear(&mut self) -> io::Result<()>;
 }
 
@@ -40,10 +40,10 @@ impl Wire for Box<dyn serialport::SerialPort> {
     }
 }
 
-/// How the end of an answer is found.
+/// Rule that finds the end of an answer.
 #[derive(Debug, Clone, Copy)]
 enum End {
-    /// So many bytes from the first with bit 7 set.
+    /// This number of bytes from the first with bit 7 set.
     Packet(usize),
     /// A carriage return; some models leave it out, and then silence does.
     Line,

@@ -4,14 +4,14 @@ use super::{low7, signed7};
 use crate::report::{Parsed, PenReport};
 use crate::sample::Tool;
 
-/// What differs between models.
+/// Differences between models.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WacomIvLayout {
     /// Largest coordinates.
     pub max: [i32; 2],
     /// Pressure bits beyond the seven of the last byte: 0, 1 or 2.
     pub extra_bits: u32,
-    /// Which button bit is the eraser.
+    /// Button bit of the eraser.
     pub eraser: u32,
     /// Packets carry tilt.
     pub tilt: bool,

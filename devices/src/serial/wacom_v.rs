@@ -10,12 +10,11 @@ pub const LENGTH: usize = 9;
 /// Full pressure in counts.
 pub const MAX_PRESSURE: u32 = 1023;
 
-/// How packets are read, and the tool that is near.
+/// Packet layout, and the tool that is near.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WacomVLayout {
     max: [i32; 2],
-    /// By channel: what lies on it. A tablet follows two tools at once; the first to come has the
-    /// word.
+    /// Tool on each channel. A tablet follows two tools at once; the first to come has priority.
     tools: [Option<Tool>; 2],
     leading: Option<usize>,
 }

@@ -9,8 +9,8 @@ use glam::{Mat3, Quat, Vec3, vec3};
 use super::pen::smooth;
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal of its own
-/// in the protocol.
+/// Metacarpal, proximal, middle and distal bone, thumb first; a thumb has no metacarpal in the
+/// protocol.
 const BONES: [[f32; 4]; 5] = [
     [0.0, 46.0, 32.0, 22.0],
     [68.0, 40.0, 23.0, 16.0],
@@ -18,8 +18,8 @@ const BONES: [[f32; 4]; 5] = [
     [58.0, 41.0, 26.0, 17.0],
     [54.0, 33.0, 18.0, 16.0],
 ];
-/// Where each finger leaves the wrist, sideways, thumb side first: mm from the middle of a right
-/// hand.
+/// Sideways position of each finger's root at the wrist, thumb side first: mm from the middle of a
+/// right hand.
 const ROOTS: [f32; 5] = [-24.0, -12.0, -3.0, 6.0, 15.0];
 /// Degrees by which each finger spreads from the middle one.
 const SPREAD: [f32; 5] = [-38.0, -7.0, 0.0, 7.0, 14.0];
@@ -141,7 +141,7 @@ pub struct HandScript {
 }
 
 impl HandScript {
-    /// When the last key is reached, in microseconds.
+    /// Returns the time of the last key, in microseconds.
     pub fn end_us(&self) -> u64 {
         self.performers.iter().filter_map(|p| p.keys.last()).map(|k| k.t_us).max().unwrap_or(0)
     }

@@ -1,5 +1,5 @@
-//! What a tracker makes of a hand: noise, hands lost and found under another number, fingers it
-//! cannot see, a clock that runs at its own pace. Seeded: the same frames for the same seed.
+//! Errors of a tracker: noise, hands lost and found under another number, hidden fingers, a
+//! drifting clock. Seeded: the same frames for the same seed.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::faults::Rng;
 use crate::sample::{Finger, Hand, Hands, MAX_HANDS};
 
-/// How far from perfect. All zero by default: a tracker that sees everything.
+/// Strength of the errors. All zero by default: a tracker that sees everything.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Jitter {
@@ -70,7 +70,7 @@ impl JitterState {
         Vec3::new(self.normal(), self.normal(), self.normal()) * sigma
     }
 
-    /// What the tracker sees of these hands.
+    /// Returns the hands as the tracker sees them.
     pub fn apply(&mut self, hands: &Hands) -> Hands {
         let mut seen = Hands { frame: hands.frame, ..Hands::default() };
         for hand in hands.as_slice() {

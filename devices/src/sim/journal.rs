@@ -8,18 +8,18 @@ use glam::{Vec2, vec2, vec3};
 use super::hand::{HandKey, HandScript, Performer};
 use super::pen::{PenScript, Shape, Stroke};
 
-/// What every simulated device does, from the start of the simulation.
+/// Actions of every simulated device, from the start of the simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Journal {
     /// On a tablet of [`Journal::area_mm`].
     pub pen: PenScript,
     /// On another of the same size.
     pub serial_pen: PenScript,
-    /// What the hands do over the tracker.
+    /// Script of the hands over the tracker.
     pub hands: HandScript,
     /// Width and height of the tablets in mm.
     pub area_mm: Vec2,
-    /// When the last of them is done.
+    /// End of the last script, in microseconds.
     pub duration_us: u64,
 }
 

@@ -2,8 +2,7 @@
 
 use glam::{Vec2, vec2};
 
-/// How high over the surface the pen travels between strokes, as a share of what the device can
-/// sense.
+/// Height of the pen over the surface between strokes, as a share of the device's sensing range.
 const HOVER: f32 = 0.5;
 /// A pause longer than this is spent out of range: the hand rests.
 const REST_US: u64 = 1_200_000;
@@ -33,9 +32,9 @@ pub enum Shape {
         from: Vec2,
         /// Last place in mm.
         to: Vec2,
-        /// How far it swings to the side, in mm.
+        /// Amplitude of the sideways swing, in mm.
         swing: f32,
-        /// How many times it swings.
+        /// Number of swings.
         times: f32,
     },
 }
@@ -60,9 +59,9 @@ impl Shape {
 /// One touch of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// When the tip comes down, in microseconds.
+    /// Time of the tip's contact, in microseconds.
     pub from_us: u64,
-    /// When it is lifted, in microseconds.
+    /// Time of the lift, in microseconds.
     pub to_us: u64,
     /// The way of the tip.
     pub shape: Shape,
@@ -140,7 +139,7 @@ impl PenScript {
         &self.strokes
     }
 
-    /// When the pen has left for good.
+    /// Returns the time at which the pen has left for good.
     pub fn end_us(&self) -> u64 {
         self.strokes.last().map_or(0, |s| s.to_us + HOVER_US + 1)
     }

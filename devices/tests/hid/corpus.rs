@@ -8,7 +8,7 @@ use sculptd_devices::catalogue::{Catalogue, Identification};
 use sculptd_devices::recording::{Player, RecordingError, hid_recorder};
 use sculptd_devices::{Body, DeviceId, Sample, Tool};
 
-/// What must hold of any stream of pen samples.
+/// Checks the properties of any stream of pen samples.
 fn lawful(name: &str, samples: &[Sample]) {
     let mut last = 0;
     let mut tip = false;

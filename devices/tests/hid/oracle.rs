@@ -60,7 +60,7 @@ fn compare(oracle: &str, recording: &Path) -> Tally {
         });
         tally.compared += 1;
         let kernel_in = row.n("tool_pen") + row.n("tool_rubber") > 0;
-        // The kernel keeps its puck on a tool of its own, which the oracle does not record.
+        // The kernel reports its puck as a separate tool, which the oracle does not record.
         let ours_in = pen.is_some_and(|p| p.in_range && p.tool != Tool::Mouse);
         tally.check("proximity", kernel_in == ours_in);
         let Some(p) = pen.filter(|_| kernel_in && ours_in) else { continue };

@@ -17,7 +17,7 @@ fn tablet(vid: u16, pid: u16, name: &str, descriptor: &str) -> Identity {
     Identity { vid, pid, name: name.to_owned(), descriptor, ..Identity::default() }
 }
 
-/// What comes out of these reports, with the time of each sample.
+/// Returns the samples decoded from these reports, each with its time.
 fn play(mut who: Identity, reports: &[(u64, Vec<u8>)]) -> Vec<(u64, Pen)> {
     who.seen_lengths = vec![reports[0].1.len()];
     let stamped = |(t_us, bytes): &(u64, Vec<u8>)| Stamped {
@@ -134,7 +134,7 @@ fn the_third_button_of_a_kamvas_shares_its_bit_with_the_eraser() {
     assert_eq!(said(&pens), expected);
 }
 
-/// What the kernel's HID-BPF program describes: tip, two barrel buttons, button 0x4A.
+/// Report that the kernel's HID-BPF program describes: tip, two barrel buttons, button 0x4A.
 const KAMVAS_BPF: &str = "05 0d 09 02 a1 01 85 08 09 20 a1 00 \
     15 00 25 01 75 01 95 03 09 42 09 44 09 5a 81 02 05 \
     09 09 4a 95 01 81 02 95 03 81 03 05 0d 09 32 95 01 81 02 05 01 65 11 55 0e 09 30 75 18 \
@@ -179,7 +179,7 @@ fn the_second_button_of_an_artist_24_does_not_cut_its_stroke() {
     }
 }
 
-/// As an Artist 24's, with invert after the eraser, which its own pens have.
+/// Like an Artist 24's, with invert after the eraser, which its pens have.
 const PRO_16_GEN_2: &str = "05 0d 09 02 a1 01 85 07 09 20 a1 00 \
     09 42 09 44 09 45 09 3c 15 00 25 01 75 01 95 04 81 \
     02 95 01 81 03 09 32 95 01 81 02 95 02 81 03 75 10 95 01 35 00 a4 05 01 09 30 65 13 55 \
@@ -214,7 +214,7 @@ const SIRIUS: &str = "05 0d 09 02 a1 01 85 10 09 20 a1 00 \
 
 #[test]
 fn a_barrel_button_of_a_waltop_in_the_air_is_no_contact() {
-    // Its pen rests at a pressure of its own: 5 counts, or more on a worn one.
+    // Its pen rests at a nonzero pressure: 5 counts, or more on a worn one.
     for rest in [5u16, 70, 300] {
         let report = |(flags, pressure): (u8, u16)| {
             let [low, high] = pressure.to_le_bytes();

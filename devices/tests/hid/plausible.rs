@@ -1,7 +1,7 @@
-//! Every real recording with pressure: nothing is saturated but what the person pressed, and no
-//! size contradicts the descriptor or the catalogue.
+//! Every real recording with pressure: only what the person pressed is saturated, and no size
+//! contradicts the descriptor or the catalogue.
 //!
-//! How a hard press is told from a wrong maximum: [`sculptd_devices::pressure_use`].
+//! The criteria for a hard press and a wrong maximum: [`sculptd_devices::pressure_use`].
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! A cut in the clay as plain data: triangles out, triangles in, and what was there when it was
-//! computed. It can be sent, kept and played again; it is made only where all that it was computed
-//! from is still so.
+//! A cut in the clay as plain data: the triangles removed, the triangles added, and the state of
+//! the pages that it was computed from. It can be sent, stored and replayed. It applies only where
+//! that state is unchanged.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::super::page::{Page, PageTopology};
 use super::super::snapshot::Snapshot;
 
-/// Where a vertex is: page, and local index of one of its own.
+/// The place of a vertex: its page and its local index among the page's owned vertices.
 pub type Home = (u32, u16);
 
-/// A corner of a triangle that is put in.
+/// A corner of an added triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Corner {
     /// A vertex that is in the clay already.
@@ -23,7 +23,7 @@ pub enum Corner {
 /// A vertex that comes with the new triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NewVertex {
-    /// Where it is; finite.
+    /// The position; every coordinate must be finite.
     pub place: Vec3,
     /// RGBA, sRGB.
     pub colour: [u8; 4],
@@ -31,14 +31,14 @@ pub struct NewVertex {
     pub mask: f32,
 }
 
-/// What is taken out and put in. What comes has the border of what goes.
+/// The triangles to remove and to add. Both sets have the same border.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cut {
-    /// The box that was looked at: the pages that meet it are among `seen`.
+    /// Lower corner of the inspected box: every page that meets the box is among `seen`.
     pub lo: Vec3,
     /// The upper corner of that box.
     pub hi: Vec3,
-    /// Page and stamp of each page that was looked at or will be written or is beside one,
+    /// Page and stamp of each page that was inspected, will be written or is next to one,
     /// ascending.
     seen: Vec<(u32, u64)>,
     /// Page, index of the triangle in it.
@@ -47,12 +47,12 @@ pub struct Cut {
     pub(super) new: Vec<NewVertex>,
 }
 
-/// What came of a cut that was made.
+/// The result of an applied cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Grafted {
-    /// Pages written anew or added, and pages that are as they were.
+    /// The number of pages that were rewritten or added.
     pub written: usize,
-    /// Pages that are as they were.
+    /// The number of pages shared with the old clay.
     pub shared: usize,
 }
 
@@ -82,7 +82,7 @@ impl Cut {
         cut
     }
 
-    /// Pages that were looked at, those that are written among them.
+    /// Returns the number of inspected pages, including those to be written.
     pub fn page_count(&self) -> usize {
         self.seen.len()
     }
@@ -102,8 +102,8 @@ impl Cut {
         &self.new
     }
 
-    /// Whether the clay is, around the cut, as it was when it was computed. False for any cut that
-    /// makes no sense.
+    /// Returns true if the clay around the cut still has the state that the cut was computed from.
+    /// Returns false for any cut that is not valid.
     pub(crate) fn fits(&self, clay: &Snapshot) -> bool {
         let there = |p: u32| self.seen.binary_search_by_key(&p, |s| s.0).is_ok();
         let count = clay.page_count();
@@ -150,7 +150,7 @@ pub(super) fn touched(clay: &Snapshot, cut: &Cut) -> Vec<Home> {
     out
 }
 
-/// The pages to write, and those that share a triangle with one of them; both ascending.
+/// Returns the pages to write, and the pages that share a triangle with them; both ascending.
 pub(super) fn concerned(clay: &Snapshot, touched: &[Home]) -> (Vec<u32>, Vec<u32>) {
     let mut inner: Vec<u32> = touched.iter().map(|h| h.0).collect();
     inner.dedup();

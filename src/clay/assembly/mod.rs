@@ -27,7 +27,7 @@ use sculptd_geometry::job::Job;
 /// dab copies little, large enough that its border is not most of it.
 pub const PAGE_VERTICES: usize = 512;
 
-/// Why no clay can be built of a mesh.
+/// The reason why no clay can be built from a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// The mesh has no triangles.
@@ -43,7 +43,7 @@ pub enum BuildError {
         triangle: usize,
         /// The vertex that it names.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         count: usize,
     },
     /// A vertex has a coordinate that is infinite or not a number.
@@ -55,7 +55,7 @@ pub enum BuildError {
     /// There are more vertices than `u32` can number.
     #[error("{vertices} vertices are more than 4,294,967,295 numbers can tell apart")]
     TooMany {
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
     #[error(
@@ -67,9 +67,9 @@ pub enum BuildError {
     Tangled {
         /// A vertex of the page.
         vertex: u32,
-        /// What there is too much of.
+        /// The quantity that exceeds its limit.
         reason: &'static str,
-        /// How many there can be.
+        /// The limit of that quantity.
         limit: usize,
     },
     /// The job was cancelled.
@@ -77,7 +77,7 @@ pub enum BuildError {
     Cancelled,
 }
 
-/// Which page a vertex is in, and where.
+/// The page of each vertex, and its local index there.
 #[derive(Debug)]
 pub(super) struct Homes {
     pub(super) page: Vec<u32>,

@@ -1,9 +1,9 @@
-//! Clay with some triangles taken out and others put in: only the pages around them are written,
-//! all others are shared.
+//! Clay with some triangles removed and others added: only the pages around them are written, all
+//! others are shared.
 //!
-//! A page is written again when one of its own vertices lost or got a triangle. Its vertices that
-//! other pages know stay at their place in it, so those pages stand; the rest fills the places
-//! between, and what is left over makes new pages. A page beside only takes over the normals that
+//! A page is rewritten if one of its owned vertices lost or gained a triangle. Vertices that other
+//! pages refer to keep their index, so those pages remain valid. The remaining vertices fill the
+//! gaps, and any surplus makes new pages. A neighbouring page only receives the normals that
 //! turned.
 
 use std::collections::BTreeMap;
@@ -30,10 +30,10 @@ struct SplicedRegion {
     masks: Vec<f32>,
     /// In the new pages.
     homes: Homes,
-    /// Number in the whole clay; of those that stay.
+    /// The numbers, in the whole clay, of the vertices that stay.
     ids: Vec<u32>,
     outer: BTreeMap<Home, u32>,
-    /// Where the vertices that stay were in the old pages; as many as there are of them.
+    /// The former places of the vertices that stay, one for each of them.
     from: Vec<Home>,
 }
 
@@ -50,15 +50,16 @@ impl SplicedRegion {
 }
 
 impl Cut {
-    /// Whether it can be made in this clay: it fits, and the pages around can hold the result.
-    /// Costs about as much as making it.
+    /// Returns true if the cut applies to this clay: it fits, and the pages around can hold the
+    /// result. Costs about as much as applying it.
     pub fn can_be_made(&self, clay: &Snapshot) -> bool {
         self.fits(clay) && remake(clay, self).is_some()
     }
 }
 
-/// The pages that the cut makes new, and the numbers that the next new vertex and triangle get. The
-/// cut must fit. None where the pages around cannot hold the result: then build all anew.
+/// Returns the pages that the cut rewrites, and the numbers of the next new vertex and triangle.
+/// The cut must fit. Returns `None` if the pages around cannot hold the result; rebuild the whole
+/// clay then.
 pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     let Cut { removed, added, new, .. } = cut;
     // As in a cut of the topology: numbers only run up.
@@ -92,7 +93,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     }
     stay.sort_unstable();
 
-    // Which of the inner pages' vertices stay, and which of them must stay where they are.
+    // The vertices of the inner pages that stay, and those of them that must keep their index.
     let mut lives: Vec<Vec<bool>> = inner.iter().map(|&p| vec![true; old.page(p).own()]).collect();
     let mut fixed: Vec<Vec<bool>> = inner.iter().map(|&p| vec![false; old.page(p).own()]).collect();
     for h in &dirty {
@@ -199,7 +200,7 @@ pub(crate) fn remake(old: &Snapshot, cut: &Cut) -> Option<Remade> {
     Some(Remade { pages: pages.into_iter().collect(), next: [next_vertex, next_triangle] })
 }
 
-/// Which vertices each written page owns, in order.
+/// Returns the vertices that each written page owns, in order.
 fn lay_out(
     old: &Snapshot,
     inner: &[u32],

@@ -44,10 +44,10 @@ pub struct Picture {
     pub width: u32,
     /// Pixels.
     pub height: u32,
-    /// 0 lowest to 65535 highest; `width * height` of them. What is transparent is low: brightness
-    /// times the alpha channel.
+    /// `width * height` values from 0 (lowest) to 65535 (highest): brightness times the alpha
+    /// channel, so transparent pixels are low.
     pub heights: Vec<u16>,
-    /// The alpha channel, as many; empty for a picture that is opaque everywhere.
+    /// The alpha channel, of the same length; empty for a picture that is opaque everywhere.
     #[serde(default)]
     pub cover: Vec<u16>,
 }
@@ -56,7 +56,7 @@ pub struct Picture {
 const MOST: u64 = 1 << 24;
 
 impl Picture {
-    /// Whether the sizes and the heights agree.
+    /// Returns true if the sizes and the heights agree.
     pub fn is_sane(&self) -> bool {
         let pixels = u64::from(self.width) * u64::from(self.height);
         let fits = |rows: &[u16]| rows.len() as u64 == pixels;
@@ -72,7 +72,7 @@ impl Picture {
     /// Says what is wrong: not a picture, too large, empty.
     pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
         let HeightPicture { width, height: rows, pixels } = read_height_picture(bytes, MOST)?;
-        // What is transparent is low.
+        // Transparent pixels are low.
         let height = |[luma, alpha]: [u16; 2]| {
             ((u32::from(luma) * u32::from(alpha) + 32_767) / 65_535) as u16
         };
@@ -103,7 +103,7 @@ impl Picture {
         self.between(&self.heights, s, t)
     }
 
-    /// How opaque the picture is at `s`, `t`: 0 to 1.
+    /// Returns the opacity of the picture at `s`, `t`, from 0 to 1.
     pub fn cover(&self, s: f32, t: f32) -> f32 {
         if self.cover.is_empty() { 1.0 } else { self.between(&self.cover, s, t) }
     }
@@ -185,7 +185,7 @@ impl Alpha {
 }
 
 impl Alpha {
-    /// How opaque the alpha is at `s`, `t`: 0 to 1. Those that the program makes are opaque.
+    /// Returns the opacity of the alpha at `s`, `t`, from 0 to 1. Built-in alphas are opaque.
     pub fn cover(self, s: f32, t: f32, picture: Option<&Picture>) -> f32 {
         match (self, picture) {
             (Alpha::Picture, Some(picture)) => picture.cover(s, t),
@@ -224,7 +224,7 @@ fn hash(i: i32, j: i32, seed: u32) -> f32 {
     ((x ^ x >> 15) >> 8) as f32 / (1u32 << 24) as f32
 }
 
-/// Smooth noise of so many cells, repeating along `s`.
+/// Smooth noise of this many cells, repeating along `s`.
 fn noise(s: f32, t: f32, cells: i32, seed: u32) -> f32 {
     let (x, y) = (s * cells as f32, t * cells as f32);
     let (i, j) = (x.floor(), y.floor());
@@ -319,7 +319,7 @@ mod tests {
         let heights: Vec<u16> = (0..64u32).map(|i| (i * i * 16 % 65_536) as u16).collect();
         let opaque = Picture { width: 16, height: 4, heights, cover: Vec::new() };
         let cover: Vec<u16> = (0..64u32).map(|i| (i * 1040 % 65_536) as u16).collect();
-        // What is transparent is low.
+        // Transparent pixels are low.
         let heights = opaque.heights.iter().zip(&cover).map(|(&h, &c)| h.min(c)).collect();
         let clear = Picture { heights, cover, ..opaque };
         for picture in [opaque, clear] {

@@ -11,7 +11,7 @@ use sculptd_geometry::portable::PortableMath;
 /// Faces fade out over this much of the cosine to the eye.
 const FRONT_FADE: f32 = 0.2;
 
-/// What one dab leaves alone, found out before it acts.
+/// The automatic masking of one dab, computed before the dab acts.
 #[derive(Debug, Clone, Copy)]
 pub struct AutoMasking {
     on: bool,
@@ -47,7 +47,7 @@ impl AutoMasking {
         }
     }
 
-    /// Whether anything may be left alone.
+    /// Returns true if the dab may leave vertices alone.
     pub fn is_on(&self) -> bool {
         self.on
     }
@@ -89,8 +89,8 @@ impl AutoMasking {
     }
 }
 
-/// How hollow the surface is at a vertex: its mean curvature by the heights of its neighbours over
-/// the tangent plane, in one over mesh units. Above 0 in a hollow, below 0 on a ridge; -1/r on a
+/// Returns the mean curvature at a vertex, in one over mesh units, computed from the heights of its
+/// neighbours over the tangent plane. It is above 0 in a hollow and below 0 on a ridge; -1/r on a
 /// ball of radius r.
 pub fn hollow(page: &PageIn<'_>, v: usize) -> f32 {
     let (p, n) = (page.positions.get(v), page.normals.get(v));

@@ -10,8 +10,8 @@ use super::footprint::Footprint;
 use crate::brush::surface_query::SurfaceQuery;
 use crate::{PageIn, Reach};
 
-/// What is held lies no further from the pen than this, in radii: the nearest point of the border
-/// within one, along the border within another, and behind it within a third.
+/// The greatest distance of a held vertex from the pen, in radii: the nearest border point within
+/// one, along the border within another, and behind the border within a third.
 const FAR: f32 = 3.0;
 
 /// One dab of boundary, made ready.
@@ -37,7 +37,7 @@ impl Brush for BoundaryBrush {
         None
     }
 
-    /// The walk says how far it is; see `change`.
+    /// `change` measures the distance by the walk.
     #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         let far = dab.radius * FAR;

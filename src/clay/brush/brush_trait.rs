@@ -11,35 +11,37 @@ use super::weights::BLOCK;
 use crate::brush::surface_query::{Scratch, SurfaceQuery};
 use crate::{Kernel, PageIn, Reach};
 
-/// What runs a kernel over the clay.
+/// Runs a kernel over the clay.
 pub trait RunKernel {
     /// Runs one kernel over what `reach` touches.
     fn run_kernel<K: Kernel>(&mut self, reach: &Reach, kernel: &K);
 
-    /// Whether the surface about a dab folds; see [`SurfaceQuery::is_folded`]. It is not looked at
-    /// where [`RunKernel::keep_flat`] was told of the dab before it in the same stroke.
+    /// Returns true if the surface around a dab folds; see [`SurfaceQuery::is_folded`]. Skips the
+    /// test and returns false if [`RunKernel::keep_flat`] was called for the previous dab of the
+    /// stroke.
     fn is_folded(&mut self, dab: &Dab<'_>) -> bool;
 
-    /// Nothing within this dab turned away.
+    /// Records that no surface within this dab turns away from it.
     fn keep_flat(&mut self, dab: &Dab<'_>);
 }
 
 /// A vertex that a brush looks at.
 #[derive(Debug, Clone, Copy)]
 pub struct VertexContext<'a> {
-    /// The page that it is an own vertex of.
+    /// The page that owns the vertex.
     pub page: &'a PageIn<'a>,
     /// The page's number, and the vertex in it.
     pub number: u32,
     /// See [`VertexContext::number`].
     pub v: usize,
-    /// Where it is.
+    /// The current position.
     pub p: Vec3,
-    /// Where the dab measures it: where the stroke found it, or where it is.
+    /// The position at which the dab measures the vertex: the one at the start of the stroke, or
+    /// the current one.
     pub at: Vec3,
-    /// How much the brush does here, 0 to 1: its fade, less what is masked.
+    /// The weight of the brush here, 0 to 1: its fade, reduced by the mask.
     pub weight: f32,
-    /// What was found out while the brush was made ready.
+    /// Data computed while the brush was prepared.
     pub scratch: &'a Scratch,
 }
 
@@ -141,18 +143,18 @@ impl<'a> BlockContext<'a> {
     }
 }
 
-/// What is to change at a vertex. Several images' changes add up.
+/// The change of a vertex. The changes of several images add up.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct VertexChange {
-    /// Added to where it is.
+    /// Offset added to the position.
     pub by: Vec3,
-    /// Where it is to be from where the stroke found it, instead of where it is now.
+    /// Offset from the position at the start of the stroke, which replaces the current position.
     pub held: Option<Vec3>,
     /// Added to the mask.
     pub mask: f32,
     /// The share of the brush's colour that is laid on, 0 to 1.
     pub dye: f32,
-    /// The face set that it is in from now on, 0 for none; `None`: that which it is in.
+    /// The new face set, 0 for none; `None` keeps the current one.
     pub set: Option<u16>,
 }
 
@@ -176,44 +178,44 @@ impl VertexChange {
 
 /// A brush: one type, one file. A value of it is one dab, made ready.
 pub trait Brush: Copy + Sync {
-    /// How the brush is held.
+    /// The grip of the brush.
     const GRIP: Grip = Grip::Surface;
     /// The numbers that only this brush has, [`super::settings::EXTRAS`] at most.
     const OWN_NUMBERS: &'static [OwnNumber] = &[];
-    /// Whether it can be measured on the surface as the stroke found it; see
+    /// True if the brush can measure the surface at the start of the stroke; see
     /// [`super::BrushSettings::accumulate`].
     const FOUND: bool = false;
-    /// How often a dab goes over the clay; each pass sees what the one before did.
+    /// The number of passes of a dab over the clay; each pass reads the result of the one before.
     const PASSES: usize = 1;
-    /// Whether the mask protects from it; a brush that paints the mask must not be stopped by it.
+    /// True if the mask protects from the brush. False for brushes that paint the mask.
     const MASKED: bool = true;
-    /// Whether triangles may be cut under it: not if it needs to know where vertices were when the
-    /// stroke began.
+    /// True if triangles under the brush may be split and collapsed: false for a brush that needs
+    /// the positions at the start of the stroke.
     const CUTS: bool = matches!(Self::GRIP, Grip::Surface | Grip::Tow);
 
-    /// What the dab needs to know, found out before anything moves.
+    /// Prepares the brush: computes all that the dab needs before any vertex moves.
     fn ready(dab: &Dab<'_>, on: &mut SurfaceQuery<'_>) -> Self;
 
-    /// What part of space it concerns.
+    /// Returns the region of space that the dab can change.
     fn reach(dab: &Dab<'_>) -> Reach {
         dab.ball(1.0)
     }
 
-    /// What the dab covers, and how much it does there; `None` for a brush whose
-    /// [`Brush::share`] says so vertex by vertex.
+    /// Returns the area that the dab covers and its weights there; `None` for a brush that computes
+    /// each vertex's weight in [`Brush::share`].
     fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
         Some(Footprint::ball(dab))
     }
 
-    /// How much a brush without a footprint does to a vertex, 0 to 1, mask left out of account; 0
-    /// outside. `at`: where the dab measures the vertex; for an anchored brush where it was at the
-    /// start of the stroke.
+    /// Returns the weight of a brush without a footprint at a vertex, 0 to 1, without the mask; 0
+    /// outside. `at` is the position at which the dab measures the vertex; for an anchored brush,
+    /// the position at the start of the stroke.
     #[inline(always)]
     fn share(&self, _dab: &Dab<'_>, _page: &PageIn<'_>, _v: usize, _at: Vec3) -> f32 {
         0.0
     }
 
-    /// What changes at a vertex within the reach.
+    /// Returns the change of a vertex within the reach.
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange;
 
     /// Whether [`Brush::change_block`] says what [`Brush::change`] does.

@@ -15,7 +15,7 @@ use crate::brush::surface_query::{Plane, SurfaceQuery};
 #[derive(Debug, Clone, Copy)]
 pub struct ClayBrush {
     plane: Plane,
-    /// How fast this dab goes to the plane.
+    /// The pace of this dab towards the plane; see [`Dab::pace_of`].
     pace: f32,
 }
 
@@ -55,8 +55,8 @@ impl Brush for ClayBrush {
     }
 }
 
-/// Moves what lies under the plane (over it, if `sign` is negative) towards it at this pace, by its
-/// weight.
+/// Moves a vertex under the plane (over it, if `sign` is negative) towards the plane at this pace,
+/// scaled by its weight.
 pub(super) fn coat(plane: &Plane, sign: f32, pace: f32, spot: &VertexContext<'_>) -> VertexChange {
     let h = plane.height(spot.p);
     if h * sign >= 0.0 {

@@ -21,7 +21,7 @@ pub struct ClayStripsBrush {
     plane: Plane,
     along: Vec3,
     across: Vec3,
-    /// How fast this dab goes to the plane.
+    /// The pace of this dab towards the plane; see [`Dab::pace_of`].
     pace: f32,
     /// 1 a disc, 0 a square.
     round: f32,

@@ -56,8 +56,8 @@ pub fn closed(page: &PageIn<'_>, v: usize) -> (Vec3, f32) {
     let cc_high = Vec4::new(bb_high.y, bb_high.z, bb_high.w, last);
     let (b_low, c_low) = cotangents(bb_low, bc_low, cc_low);
     let (b_high, c_high) = cotangents(bb_high, bc_high, cc_high);
-    // What weighs neighbour i is of triangle i and of the one before; the last triangle's second
-    // corner is the first one.
+    // The weight of neighbour i comes from triangle i and the one before; the last triangle's
+    // second corner is the first one.
     let mut c = [0.0, c_low.x, c_low.y, c_low.z, c_low.w, c_high.x, c_high.y, c_high.z, c_high.w];
     (c[0], c[n]) = (c[n], 0.0);
     let own = |lanes: [f32; 4]| Vec4::from_array(lanes);

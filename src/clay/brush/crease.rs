@@ -16,7 +16,7 @@ use super::footprint::{Footprint, FootprintShape};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::SurfaceQuery;
 
-/// How wide the floor of the groove is rounded, in radii.
+/// Rounding width of the groove's floor, in radii.
 const FLOOR: f32 = 0.08;
 
 /// One dab of crease.
@@ -25,14 +25,14 @@ pub struct CreaseBrush {
     normal: Vec3,
     /// The direction of the stroke, along which nothing is drawn together.
     along: Vec3,
-    /// How fast it draws together.
+    /// The pace of the pinch towards the stroke's line.
     pinch: f32,
     /// Squared, mesh units: added to the squared distance from the middle.
     round: f32,
 }
 
 impl CreaseBrush {
-    /// What leads a vertex to the stroke's line, in the tangent plane.
+    /// Returns the vector in the tangent plane from a vertex to the stroke's line.
     fn inward(&self, dab: &Dab<'_>, p: Vec3) -> Vec3 {
         let d = dab.touch - p;
         let flat = d - self.normal * d.dot(self.normal);

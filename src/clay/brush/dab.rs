@@ -1,7 +1,7 @@
-//! One dab: what a brush is told of the place where it works.
+//! One dab: the input of a brush at one place.
 //!
 //! A dab may have images (mirrors, turns). Images whose reaches overlap act together: each reads
-//! the clay as it was before any of them, and what they do is added up. So a symmetric stroke on a
+//! the clay in its state before any of them, and their changes add up. So a symmetric stroke on a
 //! symmetric form stays symmetric also where it meets itself on the mirror.
 
 use glam::Vec3;
@@ -31,54 +31,55 @@ pub fn part(pace: f32, weight: f32) -> f32 {
 /// The way over which the direction of a stroke is averaged, in radii.
 pub const HEADING: f32 = 0.5;
 
-/// The sharpest bend that [`Dab::bend`] tells, in inverse radii.
+/// The sharpest bend in [`Dab::bend`], in inverse radii.
 pub const SHARPEST: f32 = 0.7;
 
-/// How a brush is held.
+/// The way a brush follows the pen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grip {
-    /// It lies on the surface: one dab a spacing.
+    /// The brush stays on the surface: one dab per spacing.
     Surface,
-    /// It holds what was under it when the pen came down; a dab says how far it was drawn since
-    /// then.
+    /// The brush holds the clay that was under it when the pen came down; a dab gives the motion
+    /// since then.
     Anchor,
-    /// It takes the clay along, parallel to the view, and goes along itself; a dab says how far it
-    /// came since the last.
+    /// The brush drags the clay parallel to the view and moves with it; a dab gives the motion
+    /// since the last one.
     Tow,
 }
 
 /// One dab, in mesh units.
 #[derive(Debug, Clone, Copy)]
 pub struct Dab<'a> {
-    /// What the person set.
+    /// The user's settings.
     pub settings: &'a BrushSettings,
-    /// The middle of the dab: on the surface as the stroke found it if `found`, else as it is.
+    /// The middle of the dab: on the surface at the start of the stroke if `found`, else on the
+    /// current surface.
     pub centre: Vec3,
-    /// Unit length, out of the clay at `centre` (leaning to the pen where the settings say so).
+    /// Unit vector out of the clay at `centre` (leaning to the pen where the settings ask for it).
     pub normal: Vec3,
-    /// Where the pen touches the surface as it is.
+    /// The point where the pen touches the current surface.
     pub touch: Vec3,
-    /// The dab is measured on the surface as the stroke found it.
+    /// True if the dab is measured on the surface at the start of the stroke.
     pub found: bool,
-    /// Mesh units, pressure counted in.
+    /// In mesh units, pressure included.
     pub radius: f32,
-    /// 0 to 1, pressure counted in.
+    /// 0 to 1, pressure included.
     pub strength: f32,
-    /// The way that the dab stands for, in fifths of the radius: strengths are those of a dab for
-    /// which this is 1.
+    /// The length of stroke that the dab represents, in fifths of the radius. Strengths apply to a
+    /// dab for which this is 1.
     pub span: f32,
-    /// How fast a brush goes to its goal with this dab: [`Dab::pace_of`] at the rate `strength`.
+    /// The pace of a brush towards its goal with this dab: [`Dab::pace_of`] at the rate `strength`.
     pub pace: f32,
     /// The direction of the stroke, averaged over half a radius; of any length, zero at its start.
     pub heading: Vec3,
-    /// Where the stroke goes here: `heading`, which lags behind where the stroke bends, turned on
-    /// by its lag. Of any length, zero at the start of a stroke.
+    /// The direction of the stroke here: `heading`, corrected for its lag where the stroke bends.
+    /// Of any length, zero at the start of a stroke.
     pub course: Vec3,
-    /// How the stroke bends: towards the middle of the circle that it follows, one over that
-    /// circle's radius long ([`SHARPEST`] at most), and upright upon `course`. Zero for a stroke
-    /// that goes straight or turns on the spot.
+    /// The curvature of the stroke: points towards the middle of the circle that it follows, with
+    /// the length one over the radius ([`SHARPEST`] at most), perpendicular to `course`. Zero for a
+    /// stroke that goes straight or turns on the spot.
     pub bend: Vec3,
-    /// Which of the brush's passes it is, from 0.
+    /// The index of the brush's pass, from 0.
     pub pass: usize,
     /// 1, or -1 for the other way round.
     pub sign: f32,
@@ -91,11 +92,11 @@ pub struct Dab<'a> {
     pub eye: Vec3,
     /// Unit, to the right of the view.
     pub right: Vec3,
-    /// How the eye sees the work.
+    /// The camera's view of the clay.
     pub lens: Lens,
     /// 1, or -1 in an image that is mirrored.
     pub hand: f32,
-    /// Which of the images it is; 0 the brush itself.
+    /// The index of the image; 0 is the brush itself.
     pub image: usize,
     /// Length of the stroke up to here, and a number that differs from stroke to stroke.
     pub travelled: f32,
@@ -108,7 +109,7 @@ pub struct Dab<'a> {
 }
 
 impl Dab<'_> {
-    /// What a brush that raises lays down with this dab: its height, negative to carve.
+    /// Returns the height that a raising brush adds with this dab; negative to carve.
     pub fn height(&self) -> f32 {
         self.sign * self.strength * self.span * self.radius
     }
@@ -118,9 +119,9 @@ impl Dab<'_> {
         self.sign * self.strength * self.radius
     }
 
-    /// How fast a brush goes to its goal with this dab, if it goes `rate` of the way there (0 to 1;
-    /// taken as [`FASTEST`] at most) with a dab for which `span` is 1. The paces of several dabs
-    /// add up, so that neither their spacing nor their number changes how far they go together.
+    /// Returns the pace of a brush towards its goal with this dab. `rate` is the share of the way
+    /// that a dab with a `span` of 1 covers (0 to 1; clamped to [`FASTEST`]). The paces of several
+    /// dabs add up, so neither their spacing nor their number changes how far they go together.
     pub fn pace_of(&self, rate: f32) -> f32 {
         -ln(1.0 - rate.clamp(0.0, FASTEST)) * self.span
     }
@@ -141,7 +142,7 @@ impl Dab<'_> {
         s.falloff.at(x, &s.curve)
     }
 
-    /// How much a vertex with the normal `n` belongs to the side that the dab lies on: 1 where it
+    /// Returns the weight of a vertex with the normal `n` by its side of the surface: 1 where it
     /// faces as the dab does, 0 from 120 degrees on, so that a thin plate's far side stays.
     #[inline(always)]
     pub fn facing(&self, n: Vec3) -> f32 {

@@ -1,8 +1,8 @@
 //! Density: brings the triangles to the wanted size and evens them along the surface; the form
 //! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]);
-//! its own file turns it on.
+//! It cuts triangles as every brush with dynamic topology does
+//! ([`super::options::TopologySettings`]); its preset turns that on.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;

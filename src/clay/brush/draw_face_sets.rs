@@ -1,6 +1,6 @@
-//! Draw face sets: what the stroke passes over comes into one face set. A stroke begins a new set,
-//! or draws that which [`SET`] names; the other way round it goes on with the set that it began on,
-//! which may be none. Which set that is, is found once a stroke: [`Dab::draws`].
+//! Draw face sets: adds the vertices under the stroke to one face set. A stroke begins a new set or
+//! draws the set given by [`SET`]. Inverted, it extends the set that it began on, which may be
+//! none. [`Dab::draws`] finds the set once a stroke.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;

@@ -25,7 +25,7 @@ use crate::{PageIn, Reach};
 /// The brush's size as a share of its radius: the circle drawn on the surface is where about a
 /// tenth of the motion is left.
 const SIZE: f32 = 0.75;
-/// Beyond so many radii the motion left is under a part in a thousand, and is let go.
+/// Beyond this many radii the remaining motion is under a thousandth, and is dropped.
 const FAR: f32 = 4.0;
 
 /// One dab of elastic, made ready.
@@ -35,7 +35,7 @@ pub struct ElasticBrush {
     weights: [f32; 3],
     /// `b / a`.
     b: f32,
-    /// What the three sum to at the middle.
+    /// The sum of the three at the middle.
     middle: f32,
     by: Vec3,
 }

@@ -36,7 +36,7 @@ pub enum FootprintShape {
     },
 }
 
-/// What a dab covers, and how it fades to its rim.
+/// The area of a dab, and its fade to the rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// Its form.

@@ -1,10 +1,10 @@
-//! The way from dab to dab over the surface as the stroke found it.
+//! The path from dab to dab over the surface as it was at the start of the stroke.
 //!
-//! Dabs lie a spacing apart, and between them the surface may rise and fall. The way is followed in
-//! pieces of one length, each end of which lies on the surface under the line of sight, so that
-//! what is laid along the stroke does not depend on where its dabs happen to lie. A dab's centre
-//! will not do for an end: it lies where the clay that is touched was before it was raised, and
-//! swerves with the relief that the stroke itself has laid down.
+//! Dabs are a spacing apart, and between them the surface may rise and fall. The path is followed
+//! in pieces of one length. Each end of a piece is the surface point under the line of sight, so
+//! the result along the stroke does not depend on the positions of its dabs. A dab's centre does
+//! not serve as an end: it is where the touched clay was before it was raised, and it swerves with
+//! the relief of the stroke itself.
 
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ use crate::{Clay, Ray, Reach};
 const PIECE: f32 = 0.03;
 /// Pieces of one way at most: the widest spacing is a radius.
 const MOST: f32 = 40.0;
-/// How far from a place, in radii, the surface under it is looked for.
+/// The search distance for the surface under a place, in radii.
 const DEEP: f32 = 0.5;
 
 /// The way to a dab that is measured on the surface as the stroke found it.
@@ -54,7 +54,8 @@ impl FoundPath<'_> {
         known
     }
 
-    /// Where the line of sight through a place meets the surface as it was.
+    /// Returns the point where the line of sight through a place meets the surface at the start of
+    /// the stroke.
     fn under(&self, at: Vec3) -> Option<StrokePlace> {
         let Dab { lens, eye, .. } = self.dab;
         let eye = if lens.parallel { *eye } else { (lens.eye - at).try_normalize()? };
@@ -66,8 +67,8 @@ impl FoundPath<'_> {
         (facing && hit.t <= 2.0 * deep).then_some(StrokePlace::Found(hit.position, hit.normal))
     }
 
-    /// Where the line of sight to the dab's touch meets the tangent plane at its centre, or the
-    /// centre itself, where the plane lies aslant and tells little of the surface.
+    /// Returns the point where the line of sight to the dab's touch meets the tangent plane at its
+    /// centre. Returns the centre where the plane is too oblique to approximate the surface.
     fn beside(&self) -> StrokePlace {
         let Dab { eye, normal, centre, touch, radius, .. } = *self.dab;
         let slant = eye.dot(normal);
@@ -82,7 +83,7 @@ impl FoundPath<'_> {
 struct Bow {
     from: Vec3,
     to: Vec3,
-    /// How far the parabola leaves the chord halfway, times four.
+    /// Four times the offset of the parabola from the middle of the chord.
     bow: Vec3,
     /// Length of the chord as it is seen, mesh units.
     chord: f32,

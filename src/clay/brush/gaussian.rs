@@ -15,7 +15,7 @@ use crate::{Kernel, PageIn, PageOut};
 
 /// The standard deviation of the bell, in the unit in which the radius is [`REACH`].
 pub const SIGMA: f32 = 0.7;
-/// Where the profile ends.
+/// The distance at which the profile ends.
 pub const REACH: f32 = 3.5;
 
 /// One dab of gaussian, made ready.

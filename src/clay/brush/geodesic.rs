@@ -12,16 +12,16 @@ use crate::{Clay, PAGE_VERTICES, Page, Reach};
 /// A vertex by its page and its place in it.
 pub type Key = (u32, u16);
 
-/// What is kept of a vertex. Together, since a walk in charts reads most of it at every edge.
+/// The data of a vertex, kept together: a walk in charts reads most of it at every edge.
 #[derive(Debug, Clone, Copy)]
 struct Mark {
-    /// Infinite where nobody came.
+    /// Infinite where the walk did not come.
     distance: f32,
-    /// Which source reached it, and which one it took its coordinates from; 0: none.
+    /// The source that reached it, and the source of its coordinates; 0: none.
     owner: [u32; 2],
-    /// Coordinates on a texture, where it has them: those of its source.
+    /// The texture coordinates from its source, where it has them.
     place: [f32; 2],
-    /// The coordinates that are told: between those of two sources.
+    /// The reported coordinates, interpolated between those of two sources.
     told: [f32; 2],
     /// The surface's own directions carried along: `u` and normal.
     frame: [Vec3; 2],
@@ -37,11 +37,11 @@ impl Mark {
     };
 }
 
-/// What is kept for a page that was walked.
+/// The data of a visited page.
 #[derive(Debug, Default)]
 struct Block {
     page: u32,
-    /// One an own vertex.
+    /// One mark for each owned vertex.
     marks: Vec<Mark>,
 }
 
@@ -49,7 +49,7 @@ struct Block {
 /// order of a walk.
 const WORTH: f32 = 0.9;
 
-/// Which surface is walked over.
+/// The state of the surface that is walked over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WalkedSurface {
     /// As it is.
@@ -66,7 +66,7 @@ pub struct Geodesic {
     blocks: Vec<Block>,
     used: usize,
     heap: BinaryHeap<Reverse<(u32, u32, u16)>>,
-    /// Vertices of a border, and how far along it they are.
+    /// The vertices of a border, and their distances along it.
     border: Vec<(Key, f32)>,
 }
 
@@ -123,7 +123,7 @@ impl Geodesic {
         block
     }
 
-    /// How far the walk had come at a vertex; `None` where it never was.
+    /// Returns the distance of a vertex along the walk; `None` if the walk did not reach it.
     #[inline]
     pub fn distance(&self, page: u32, v: usize) -> Option<f32> {
         self.mark(page, v).map(|m| m.distance).filter(|d| d.is_finite())
@@ -147,8 +147,8 @@ impl Geodesic {
         (mark.owner[1] == owner).then_some((mark.place, mark.frame))
     }
 
-    /// Sets how far a vertex is, if that is nearer than before, and lets the walk go on from it.
-    /// Says whether it was nearer.
+    /// Sets the distance of a vertex, if that is nearer than before, and continues the walk from
+    /// it. Returns true if it was nearer.
     #[inline(always)]
     pub fn offer(&mut self, mesh: &Clay, key: Key, distance: f32, owner: u32) -> bool {
         let mark = self.mark_mut(mesh, key);
@@ -209,7 +209,7 @@ impl Geodesic {
         }
     }
 
-    /// A vertex that has its source's coordinates tells others.
+    /// A vertex that has its source's coordinates passes them to others.
     pub fn tell(&mut self, mesh: &Clay, key: Key, place: [f32; 2]) {
         self.mark_mut(mesh, key).told = place;
     }
@@ -219,17 +219,17 @@ impl Geodesic {
         self.mark(page, v as usize).map_or((0, [f32::NAN; 2]), |m| (m.owner[1], m.place))
     }
 
-    /// Whether the mesh has other pages than when the walk began.
+    /// Returns true if the number of pages changed since the walk began.
     pub fn is_stale(&self, mesh: &Clay) -> bool {
         self.block_of.len() != mesh.page_count()
     }
 
-    /// Which source reached a vertex; 0: none.
+    /// Returns the source that reached a vertex; 0: none.
     pub fn owner(&self, page: u32, v: usize) -> u32 {
         self.mark(page, v).map_or(0, |m| m.owner[0])
     }
 
-    /// Whether a vertex has its coordinates from this source.
+    /// Returns true if a vertex has its coordinates from this source.
     pub fn is_settled(&self, (page, v): Key, owner: u32) -> bool {
         self.mark(page, v as usize).is_some_and(|m| m.owner[1] == owner)
     }
@@ -298,10 +298,10 @@ impl Geodesic {
         }
     }
 
-    /// Distances over the edges from the border of the surface, on the surface as it was before the
-    /// stroke, as far as `radius`; the border is taken as far as `radius` along itself from its
-    /// vertex nearest to `centre`, which lies within `radius` of it. Each vertex's place is
-    /// `[distance of its border along the border, 0]`.
+    /// Measures distances over the edges from the border of the surface, up to `radius`, on the
+    /// surface at the start of the stroke. The border extends `radius` along itself from its vertex
+    /// nearest to `centre`, which is within `radius` of `centre`. Each vertex's place is `[distance
+    /// of its border along the border, 0]`.
     pub fn measure_from_border(&mut self, mesh: &Clay, centre: Vec3, radius: f32) {
         self.begin(mesh);
         let mut seed: Option<(f32, Key)> = None;

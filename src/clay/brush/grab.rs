@@ -17,7 +17,7 @@ impl Brush for GrabBrush {
     }
 
     fn reach(dab: &Dab<'_>) -> Reach {
-        // What is held is now between where it was and where it was drawn last.
+        // The held clay is now between its first position and the last one that it was drawn to.
         Reach::Capsule { from: dab.centre, to: dab.centre + dab.last, radius: dab.radius }
     }
 

@@ -1,4 +1,4 @@
-//! Inflate: every vertex along its own normal, so that the form swells, or shrinks.
+//! Inflate: moves every vertex along its normal, so that the form swells, or shrinks.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;

@@ -34,7 +34,7 @@ impl Brush for LayerBrush {
     #[inline]
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let normal = spot.page.normal_before(spot.v);
-        // How high the stroke has raised it, in the direction of the brush.
+        // The height that the stroke has raised it so far, in the direction of the brush.
         let so_far = (spot.p - spot.page.before(spot.v)).dot(normal) * dab.sign;
         let goal = dab.whole_height().abs() * spot.weight;
         if goal > so_far {

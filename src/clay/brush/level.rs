@@ -9,8 +9,8 @@ use super::dab::{Dab, part};
 use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 
-/// One dab of a brush that levels. `SIDE`: 1 what lies over the plane, -1 what lies under it, 0
-/// both. The other way round 1 and -1 change places, and 0 goes away from the plane.
+/// One dab of a levelling brush. `SIDE` selects the clay to level: 1 above the plane, -1 below it,
+/// 0 both. Inverted, 1 and -1 change places, and 0 moves away from the plane.
 #[derive(Debug, Clone, Copy)]
 pub struct LevelBrush<const SIDE: i8> {
     plane: Plane,

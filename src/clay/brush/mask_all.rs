@@ -8,15 +8,15 @@ use super::mask_blur::{sharper, slope};
 use crate::brush::automask::hollow;
 use crate::{Kernel, PageIn, PageOut, Reach};
 
-/// What is done to the whole mask.
+/// An operation on the whole mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskAction {
-    /// Everything is free.
+    /// Clears the mask.
     Clear,
-    /// Everything is protected.
+    /// Masks everything.
     Fill,
-    /// Free becomes protected, protected free.
+    /// Inverts the mask.
     Invert,
     /// To the mean of the neighbours.
     Blur,
@@ -26,8 +26,8 @@ pub enum MaskAction {
     Grow,
     /// The least.
     Shrink,
-    /// What is hollow by at least so much is protected: mean curvature, times a tenth of the work's
-    /// bounding radius.
+    /// Masks hollows of at least this value: mean curvature times a tenth of the clay's bounding
+    /// radius.
     Cavity(f32),
 }
 
@@ -41,7 +41,7 @@ impl MaskAction {
 /// An action on a work of this bounding radius.
 #[derive(Debug, Clone, Copy)]
 pub struct MaskAll {
-    /// What is done.
+    /// The operation.
     pub action: MaskAction,
     /// The bounding radius, mesh units.
     pub extent: f32,

@@ -10,7 +10,7 @@ use crate::brush::surface_query::SurfaceQuery;
 #[derive(Debug, Clone, Copy)]
 pub struct MaskBlurBrush;
 
-/// The mean mask of a vertex's neighbours, less its own; 0 where there are none.
+/// Returns the mean mask of a vertex's neighbours minus the vertex's mask; 0 without neighbours.
 pub(super) fn slope(page: &PageIn<'_>, v: usize) -> f32 {
     let ring = page.ring(v);
     let n = ring.len();
@@ -18,7 +18,7 @@ pub(super) fn slope(page: &PageIn<'_>, v: usize) -> f32 {
     if n > 0 { sum / n as f32 - page.mask(v) } else { 0.0 }
 }
 
-/// What sharpens: away from the mean of the neighbours, and from one half.
+/// Returns the sharpening change: away from the mean of the neighbours and from one half.
 pub(super) fn sharper(page: &PageIn<'_>, v: usize) -> f32 {
     (page.mask(v) - 0.5) * 0.5 - slope(page, v)
 }

@@ -60,7 +60,7 @@ macro_rules! brushes {
     ($($name:literal $variant:ident $module:ident::$brush:ident,)*) => {
         $(pub mod $module;)*
 
-        /// Which brush a dab is of.
+        /// The kind of brush.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum BrushKind {
             $(
@@ -84,17 +84,17 @@ macro_rules! brushes {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::OWN_NUMBERS,)* }
             }
 
-            /// How the brush is held.
+            /// Returns the grip of the brush.
             pub fn grip(self) -> Grip {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::GRIP,)* }
             }
 
-            /// Whether it can be measured on the surface as the stroke found it.
+            /// Returns true if it can be measured on the surface at the start of the stroke.
             pub fn found(self) -> bool {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::FOUND,)* }
             }
 
-            /// Whether triangles may be cut under it.
+            /// Returns true if triangles under it may be split and collapsed.
             pub fn cuts(self) -> bool {
                 match self { $(BrushKind::$variant => <$module::$brush as Brush>::CUTS,)* }
             }

@@ -1,10 +1,10 @@
-//! Multiplane scrape: takes hills down to two planes that meet along the stroke as a roof does, so
-//! that a ridge with flat sides is left; the other way round it fills a valley up to them.
+//! Multiplane scrape: scrapes hills down to two planes that meet along the stroke like a roof,
+//! which leaves a ridge with flat sides. Inverted, it fills a valley up to them.
 //!
-//! Each dab leaves a roof of its own, and the lowest of them stays. So that the roofs of a stroke
-//! make one ridge, a roof is bent as the stroke is (its ridge lies along the circle that the stroke
-//! follows), reaches along the stroke only by a share of its width, and its ridge is rounded: a
-//! sharp one would follow every tremble of the hand.
+//! Each dab has its roof, and the lowest of them stays. Three measures make one ridge of the roofs
+//! of a stroke. A roof bends as the stroke does: its ridge follows the same circle. It reaches
+//! along the stroke only by a share of its width. Its ridge is rounded: a sharp one would follow
+//! every tremble of the hand.
 
 use glam::Vec3;
 
@@ -15,9 +15,9 @@ use super::preset::OwnNumber;
 use crate::brush::surface_query::{Plane, SurfaceQuery};
 use sculptd_geometry::portable::PortableMath;
 
-/// How wide the ridge is rounded, in radii.
+/// Rounding width of the ridge, in radii.
 const RIDGE: f32 = 0.33;
-/// How far a dab reaches along the stroke, as a share of how far it reaches across.
+/// The reach of a dab along the stroke, as a share of its reach across.
 const LENGTH: f32 = 0.5;
 
 /// One dab of multiplane scrape.
@@ -82,8 +82,8 @@ impl Brush for MultiplaneScrapeBrush {
     fn change(&self, dab: &Dab<'_>, spot: &VertexContext<'_>) -> VertexChange {
         let d = spot.p - self.centre;
         let (x, y) = (d.dot(self.along), d.dot(self.across));
-        // How far it is from the circle that the ridge follows, towards its middle: one over `bend`
-        // less the distance from that, free of cancellation where the ridge is straight.
+        // The distance from the circle of the ridge, towards its middle: one over `bend`, less the
+        // distance from the middle, free of cancellation where the ridge is straight.
         let (turned, off) = (self.bend * x, 1.0 - self.bend * y);
         let aside =
             (2.0 * y - self.bend * (x * x + y * y)) / (1.0 + (turned * turned + off * off).sqrt());

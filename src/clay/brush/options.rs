@@ -1,5 +1,5 @@
-//! What may be set on every brush: its images, what it leaves alone, how the pen's path becomes
-//! dabs.
+//! The settings common to every brush: its images, its automatic masking, the conversion of the
+//! pen's path to dabs.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub struct Mirror {
     /// Normal of one more plane of symmetry, of any length; zero: none.
     pub plane: [f32; 3],
-    /// Where it stands: from the work's middle along the normal, in bounding radii; -10 to 10.
+    /// Offset of the plane from the clay's middle along the normal, in bounding radii; -10 to 10.
     pub offset: f32,
-    /// Copies about the axis, the brush itself counted; 1 to 16.
+    /// The number of copies about the axis, including the brush itself; 1 to 16.
     pub radial: u8,
     /// 0, 1, 2: x, y, z through the work's middle.
     pub axis: u8,
@@ -23,33 +23,33 @@ impl Default for Mirror {
     }
 }
 
-/// What a dab leaves alone by itself.
+/// Automatic masking of a dab.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AutoMask {
-    /// Only what faces the eye; fades over the last 0.2 of the cosine.
+    /// Restricts the brush to clay that faces the eye; fades over the last 0.2 of the cosine.
     pub front_faces: bool,
-    /// The border of an open surface stays.
+    /// Protects the border of an open surface.
     pub boundary: bool,
-    /// Only what hangs together with the point under the pen, within the brush.
+    /// Restricts the brush to clay connected, within the brush, to the point under the pen.
     pub topology: bool,
-    /// Only what turns from the dab's normal by at most so much, fading over a third of it; 0:
-    /// everything; to 180 degrees.
+    /// Restricts the brush to clay within this angle of the dab's normal, fading over a third of
+    /// it; from 0 to 180 degrees, where 0 means everything.
     pub normal_degrees: f32,
-    /// Above 0 the more only hollows are touched, below 0 only ridges; -1 to 1.
+    /// Above 0 restricts the brush to hollows, below 0 to ridges; -1 to 1.
     pub cavity: f32,
-    /// Only the face set that the stroke began in; each image has its own.
+    /// Restricts the brush to the face set at the start of the stroke, for each image separately.
     pub face_sets: bool,
 }
 
 impl AutoMask {
-    /// Whether anything is left alone.
+    /// Returns true if any rule protects vertices.
     pub fn is_on(&self) -> bool {
         *self != AutoMask::default()
     }
 }
 
-/// What the wanted length of edges is measured by.
+/// The unit of the target edge length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Measure {
@@ -86,7 +86,7 @@ impl Default for TopologySettings {
     }
 }
 
-/// How the pen's path becomes dabs.
+/// The conversion of the pen's path to dabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
@@ -108,11 +108,11 @@ pub enum Method {
     Curve,
 }
 
-/// How the pen's path becomes dabs, and how the brush follows it.
+/// The conversion of the pen's path to dabs, and the way the brush follows the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathSettings {
-    /// The way from path to dabs.
+    /// The conversion from path to dabs.
     pub method: Method,
     /// Dabs go on while the pen rests, whatever the method.
     pub continuous: bool,
@@ -123,9 +123,9 @@ pub struct PathSettings {
     pub rope: f32,
     /// Pen reports that are averaged; 0 and 1: none; at most 64.
     pub average: u8,
-    /// How far dabs are strewn about the path, in radii; 0 to 2.
+    /// The random offset of dabs from the path, in radii; 0 to 2.
     pub jitter: f32,
-    /// What dabs are strewn by.
+    /// The seed of the random offsets.
     pub seed: u32,
     /// Strength counts over every fifth of the radius travelled, so that neither closer dabs nor
     /// more reports of the pen build up more. Off: each dab has the whole strength.

@@ -1,5 +1,5 @@
-//! A person's own brushes: a brush of the table with settings, a name, and a picture of heights of
-//! its own, as a text of TOML.
+//! User brushes: each is a brush of the table with settings, a name and an optional height picture,
+//! stored as TOML text.
 //!
 //! ```toml
 //! kind = "texture"            # the brush that it is made of
@@ -49,13 +49,13 @@ pub struct AlphaPicture {
     pub picture: Arc<Picture>,
 }
 
-/// What is wrong with the text of a brush.
+/// An error in the text of a brush.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {text}")]
 pub struct OwnBrushError {
     /// Counted from 1.
     pub line: usize,
-    /// What was found, and what was expected.
+    /// The value found, and the value expected.
     pub text: String,
 }
 
@@ -78,10 +78,11 @@ struct OwnBrushFile {
 /// Characters of a name at most.
 const LONGEST: usize = 64;
 
-/// Whether a brush may have this name: it is also the name of a file, and no other brush's.
+/// Checks that a brush may have this name. The name also serves as a file name and must differ from
+/// every built-in brush's.
 ///
 /// # Errors
-/// Says what is wrong with it.
+/// Returns a message that says what is wrong with the name.
 pub fn check_name(name: &str) -> Result<(), String> {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | ' ');
     if name.is_empty() || name.chars().count() > LONGEST || !name.chars().all(allowed) {
@@ -119,7 +120,8 @@ fn table_of(settings: &BrushSettings) -> Result<toml::Table, String> {
     text.parse().map_err(|e: toml::de::Error| e.to_string())
 }
 
-/// The line on which the last key of a path of tables is set, or as far as the path is there.
+/// Returns the line, from 1, that sets the last key of a path of tables, or the last key that
+/// exists.
 fn line_of(text: &str, path: &[&str]) -> usize {
     let Ok(whole) = DeTable::parse(text) else { return 1 };
     let (mut table, mut at) = (whole.get_ref(), 0);
@@ -212,7 +214,7 @@ impl OwnBrush {
     /// The text of the brush: every setting, so that it stays what it is when presets change.
     ///
     /// # Errors
-    /// Where a value cannot be written; none is known.
+    /// Returns an error if a value cannot be written; none is known.
     pub fn write(&self) -> Result<String, String> {
         let mut settings = table_of(&self.settings)?;
         for key in ["kind", "extra", "preset"] {

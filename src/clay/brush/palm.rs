@@ -1,4 +1,4 @@
-//! A palm: a disc that presses what stands before it flat.
+//! A palm: a disc that presses the clay in front of it flat.
 
 use glam::Vec3;
 

@@ -19,7 +19,7 @@ pub struct PlacedStamp {
     /// In the tangent plane, over half the stamp's width.
     along: Vec3,
     across: Vec3,
-    /// The middle on the view, and what half the stamp's width is there.
+    /// The middle in the view, and half the stamp's width there.
     middle: Vec2,
     reach: f32,
 }

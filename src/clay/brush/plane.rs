@@ -17,7 +17,7 @@ pub struct PlaneBrush {
     below: f32,
 }
 
-/// How fast the ends of the slab fade, as a share of its height.
+/// The fade at the ends of the slab, as a share of its height.
 const EDGE: f32 = 0.25;
 
 impl Brush for PlaneBrush {

@@ -1,10 +1,10 @@
-//! What each brush begins with.
+//! The initial settings of each brush.
 //!
-//! A brush's code declares its own numbers ([`OwnNumber`]: name, default, range, meaning). A
-//! preset is a text of TOML that a program lays over that: `about` says what the brush does,
-//! `[settings]` holds what differs from [`BrushSettings::default`], and `[extra]` gives values to
-//! the brush's own numbers by their names. [`Presets`] is a plain value: who has no texts uses
-//! [`Presets::default`], the defaults of the code alone.
+//! A brush's code declares its extra numbers ([`OwnNumber`]: name, default, range, meaning). A
+//! preset is TOML text that overrides them: `about` describes the brush, `[settings]` holds the
+//! differences from [`BrushSettings::default`], and `[extra]` sets the brush's extra numbers by
+//! name. [`Presets`] is a plain value: a program without such texts uses [`Presets::default`], the
+//! defaults of the code alone.
 
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -30,7 +30,7 @@ pub struct OwnNumber {
     pub about: &'static str,
 }
 
-/// What one brush begins with.
+/// The initial settings of one brush.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
     about: String,
@@ -88,8 +88,8 @@ impl Preset {
         self.settings
     }
 
-    /// What the text sets, `kind` and `extra` included: to be laid over the defaults and under what
-    /// a person wrote.
+    /// Returns the settings in the text, including `kind` and `extra`: they override the defaults,
+    /// and the user's settings override them.
     pub fn table(&self) -> &toml::Table {
         &self.table
     }
@@ -99,15 +99,15 @@ fn numbers(settings: &BrushSettings) -> toml::Value {
     settings.extra.iter().map(|v| toml::Value::Float(f64::from(*v))).collect::<Vec<_>>().into()
 }
 
-/// What every brush begins with, and a person's own brushes. Cloning it is cheap: all clones share
-/// both, so a list of own brushes that one of them is given is seen by all.
+/// The initial settings of every brush, and the user's brushes. Clones are cheap: they share both,
+/// so a list set through one clone is visible in all.
 #[derive(Debug, Clone)]
 pub struct Presets {
     /// In the order of [`BrushKind::ALL`].
     all: Arc<[Preset]>,
     /// In the order in which they are listed. Never read within a tick.
     own: Arc<RwLock<Arc<[OwnBrush]>>>,
-    /// Of a person, beside the own brushes. Never read within a tick.
+    /// The user's pictures, beside the user's brushes. Never read within a tick.
     pictures: Arc<RwLock<Arc<[AlphaPicture]>>>,
 }
 
@@ -148,7 +148,7 @@ impl Presets {
         self.own().iter().find(|own| own.name == name).cloned()
     }
 
-    /// Replaces the own brushes, here and in all clones.
+    /// Replaces the user's brushes, here and in all clones.
     pub fn set_own(&self, mut own: Vec<OwnBrush>) {
         own.sort_by(|a, b| (a.order, &a.name).cmp(&(b.order, &b.name)));
         *self.own.write().unwrap_or_else(PoisonError::into_inner) = own.into();
@@ -159,7 +159,7 @@ impl Presets {
         self.pictures.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Replaces the own pictures, here and in all clones.
+    /// Replaces the user's pictures, here and in all clones.
     pub fn set_pictures(&self, pictures: Vec<AlphaPicture>) {
         *self.pictures.write().unwrap_or_else(PoisonError::into_inner) = pictures.into();
     }
@@ -205,8 +205,8 @@ impl Presets {
         BrushSettings { symmetry: now.symmetry, mirror: now.mirror, ..*settings }
     }
 
-    /// Another brush in the same hand: its own settings, at the size and with the mirrors of `now`.
-    /// See [`Presets::recalled`]: for a brush that was never set.
+    /// Returns the settings of another brush at the size and with the mirrors of `now`. For a brush
+    /// that was never set; see [`Presets::recalled`].
     #[must_use]
     pub fn switched(&self, now: &BrushSettings, kind: BrushKind) -> BrushSettings {
         BrushSettings {

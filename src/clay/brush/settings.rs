@@ -1,7 +1,6 @@
-//! What a person sets on a brush. Plain data: it travels in a command
-//! and is part of the world.
+//! The settings of a brush. Plain data: they travel in a command and are part of the world.
 //!
-//! What each brush begins with is told by [`super::preset`].
+//! [`super::preset`] holds the initial settings of each brush.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -13,7 +12,7 @@ use super::options::{AutoMask, Mirror, PathSettings, TopologySettings};
 use super::stamp::Stamp;
 use sculptd_geometry::portable::PortableMath;
 
-/// How pressure (0 to 1) becomes a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
+/// The curve from pressure (0 to 1) to a factor: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PressureCurve {
@@ -39,14 +38,14 @@ impl PressureCurve {
     }
 }
 
-/// Numbers that only some brushes have; each brush's file names its own.
+/// The number of extra settings of a brush; each brush's file names them.
 pub const EXTRAS: usize = 4;
 
 /// A brush as a person set it. Plain data: it is part of commands and of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BrushSettings {
-    /// Which brush it is.
+    /// The kind of brush.
     pub kind: BrushKind,
     /// Share of the work's bounding radius at load; 0.001 to 1. Multiplied out once, when the work
     /// is loaded or the setting changes, so that the brush does not breathe while the form grows.
@@ -59,39 +58,38 @@ pub struct BrushSettings {
     pub negative: bool,
     /// Distance between dabs as a share of the radius; 0.02 to 1.
     pub spacing: f32,
-    /// How pressure scales the strength.
+    /// The effect of pressure on the strength.
     pub pressure_strength: PressureCurve,
-    /// How pressure scales the radius.
+    /// The effect of pressure on the radius.
     pub pressure_radius: PressureCurve,
     /// Mirror over the planes x = 0, y = 0, z = 0 through the work's own middle at load.
     pub symmetry: [bool; 3],
     /// Any plane, and turns about an axis.
     pub mirror: Mirror,
-    /// How the brush fades from its middle to its rim.
+    /// The fade of the brush from its middle to its rim.
     pub falloff: Falloff,
     /// Of a custom falloff: values at x = 0, 1/8, ... 1, each 0 to 1.
     pub curve: [f32; CURVE],
-    /// The budget of a vertex over one stroke: how far it may get from where the stroke found it,
-    /// in heights of one full dab (`strength * radius`). 0: no bound; else 1 to 1000. 1 is what
-    /// others call "accumulate off".
+    /// The greatest distance that a stroke may move a vertex, in heights of one full dab: multiples
+    /// of `strength * radius`. 0: no bound; else 1 to 1000. Other programs call 1 "accumulate off".
     pub saturation: f32,
     /// The share of the radius over which brushes that need a plane average the surface; 0.05 to 2.
     pub normal_radius: f32,
     /// Brushes that need a plane leave alone what is further from it than so many radii; 0:
     /// nothing; to 2.
     pub plane_trim: f32,
-    /// How much the dab's direction leans from the surface normal to the pen's own, 0 to 1. Without
-    /// a tilt: not at all.
+    /// Lean of the dab's direction from the surface normal to the pen's axis, 0 to 1. No effect
+    /// without a tilt.
     pub tilt: f32,
     /// RGBA, sRGB: for brushes that paint.
     pub colour: [u8; 4],
     /// For brushes that press a picture of heights.
     pub alpha: Alpha,
-    /// How the alpha is laid between the brush and the clay.
+    /// The placement of the alpha between the brush and the clay.
     pub stamp: Stamp,
-    /// What dabs leave alone by themselves.
+    /// Automatic masking of dabs.
     pub auto: AutoMask,
-    /// How the pen's path becomes dabs.
+    /// The conversion of the pen's path to dabs.
     pub path: PathSettings,
     /// Dynamic topology under the brush.
     pub topology: TopologySettings,
@@ -109,9 +107,9 @@ pub struct BrushSettings {
     /// The brush follows the pen by a string of so many radii (at least a few pixels), which takes
     /// the tremble out of a hand and keeps a resting brush at rest. 0: no string; to 1.
     pub steady: f32,
-    /// Which preset it began as: 0 that of the program for its kind, else a person's own brush, see
-    /// [`super::own_brush::preset_number`]. Changes nothing that the brush does: by it and the kind
-    /// the world remembers how each brush was set.
+    /// The preset that it began as: 0 the built-in one for its kind, else a user brush; see
+    /// [`super::own_brush::preset_number`]. Does not change the brush's effect: the world remembers
+    /// the settings of each brush by kind and preset.
     pub preset: u32,
 }
 
@@ -150,8 +148,8 @@ impl Default for BrushSettings {
 }
 
 impl BrushSettings {
-    /// A brush with the defaults of the code: those of [`BrushSettings::default`], and of its own
-    /// numbers what its file in this folder declares.
+    /// Returns the settings declared in the code: those of [`BrushSettings::default`] and the
+    /// brush's extra numbers.
     pub fn new(kind: BrushKind) -> BrushSettings {
         let mut settings = BrushSettings { kind, ..BrushSettings::default() };
         for (value, number) in settings.extra.iter_mut().zip(kind.own_numbers()) {
@@ -160,8 +158,7 @@ impl BrushSettings {
         settings
     }
 
-    /// What tells brushes apart that are remembered each by itself: the kind, and which preset of
-    /// that kind it began as.
+    /// Returns the key under which a brush's settings are remembered: its kind and its preset.
     pub fn key(&self) -> (BrushKind, u32) {
         (self.kind, self.preset)
     }
@@ -192,7 +189,10 @@ impl BrushSettings {
         self
     }
 
-    /// What is out of range, in words: the key, the value, the range.
+    /// Checks the range of every number.
+    ///
+    /// # Errors
+    /// Returns the key, the value and the range of the first number out of range.
     pub fn check(&self) -> Result<(), String> {
         let mut wrong = None;
         let mut copy = *self;

@@ -1,8 +1,8 @@
 //! Simplify: draws small triangles together to the wanted size, and leaves large ones; the form
 //! stays.
 //!
-//! The cutting is that of every brush that cuts ([`super::options::TopologySettings`]);
-//! its own file turns it on.
+//! It cuts triangles as every brush with dynamic topology does
+//! ([`super::options::TopologySettings`]); its preset turns that on.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::Dab;

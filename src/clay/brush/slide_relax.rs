@@ -19,7 +19,7 @@ const SAFE: f32 = 0.4;
 /// One dab of slide relax, made ready.
 #[derive(Debug, Clone, Copy)]
 pub struct SlideRelaxBrush {
-    /// Where to; none: each to the middle of its neighbours.
+    /// The displacement; `None`: each vertex moves to the middle of its neighbours.
     by: Option<Vec3>,
 }
 
@@ -43,9 +43,8 @@ impl Brush for SlideRelaxBrush {
             shortest = shortest.min((spot.page.point(k) - spot.p).length_squared());
         }
         let most = SAFE * dab.span.min(1.0) * shortest.sqrt();
-        // The falloff shapes the way that is left after the bound: were it bounded afterwards, the
-        // whole inside of the brush would go as one, and a rim of the stroke would tell how closely
-        // its dabs lay.
+        // The falloff scales the step after the bound. Bounded afterwards, the whole inside of the
+        // brush would move as one, and the rim of the stroke would show the spacing of its dabs.
         let flat = (by - n * by.dot(n)).clamp_length_max(most) * spot.weight;
         VertexChange::by(put_back(spot, flat))
     }

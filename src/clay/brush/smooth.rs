@@ -7,9 +7,9 @@
 //! the triangle's doubled area `|b x c|` is under both its cotangents: at `c` it is `(c.c - b.c) /
 //! |b x c|`, at `b` it is `(b.b - b.c) / |b x c|`.
 //!
-//! How far a vertex is from the middle of the dab is told by the way through the air where the
-//! surface is open there, and by the way along the surface (by Dijkstra over the edges) where it
-//! folds: a finger is evened and the one beside it is not.
+//! The distance of a vertex from the middle of the dab is the straight-line distance where the
+//! surface is open there. Where it folds, it is the distance along the surface (by Dijkstra over
+//! the edges): the brush smooths one finger and not the one beside it.
 
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
@@ -32,12 +32,12 @@ const BLOCK: usize = 64;
 #[derive(Debug, Clone, Copy)]
 pub struct SmoothBrush {
     centre: Vec3,
-    /// What faces away from it is left alone; zero: nothing is.
+    /// The vertices that face away from this normal are left alone; zero: none are.
     normal: Vec3,
     radius: f32,
     /// The share of the way to the weighted mean of the ring, at the centre.
     lambda: f32,
-    /// The surface folds: a walk along it tells how far a vertex is.
+    /// The surface folds: the distance of a vertex is measured along it.
     folded: bool,
 }
 
@@ -186,7 +186,7 @@ impl Brush for SmoothBrush {
     #[inline(always)]
     fn share(&self, dab: &Dab<'_>, _: &PageIn<'_>, _: usize, p: Vec3) -> f32 {
         let fade = faded((p - self.centre).length_squared(), dab.radius);
-        // The walk tells it; see `change`.
+        // `change` measures the distance by the walk.
         if self.folded && fade > 0.0 { 1.0 } else { fade }
     }
 

@@ -7,7 +7,7 @@
 use glam::{Mat3, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How the alpha is laid over the clay.
+/// The placement of the alpha over the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StampBy {
@@ -26,7 +26,7 @@ pub enum StampBy {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stamp {
-    /// How it is laid.
+    /// Its placement.
     pub by: StampBy,
     /// Its width: in widths of the brush, a stencil's in heights of the view; 0.05 to 10.
     pub size: f32,
@@ -44,10 +44,10 @@ impl Default for Stamp {
     }
 }
 
-/// How an eye sees the work: enough to find where a point is on the view.
+/// A view of the clay: enough to project a point to the view.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Lens {
-    /// Where the eye is, mesh units.
+    /// The eye's position, in mesh units.
     pub eye: Vec3,
     /// Unit: right, up, and back towards the eye.
     pub right: Vec3,
@@ -80,8 +80,8 @@ impl Lens {
         if self.parallel { self.half } else { self.half * (self.eye - p).dot(self.back) }
     }
 
-    /// Where a point is seen, from the view's middle, in view heights, right and up; `None` behind
-    /// the eye.
+    /// Returns the projection of a point, from the view's middle, right and up, in view heights;
+    /// `None` behind the eye.
     pub fn seen(&self, p: Vec3) -> Option<Vec2> {
         let (d, half) = (p - self.eye, self.half_at(p));
         (half > 0.0).then(|| Vec2::new(d.dot(self.right), d.dot(self.up)) * (0.5 / half))

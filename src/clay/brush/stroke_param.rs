@@ -2,18 +2,17 @@
 //! Schmidt, Grimm, Wyvill 2006, "Interactive decal compositing with discrete exponential maps").
 //!
 //! Each vertex near the stroke gets `(u, v)`: `u` along the stroke by arc length, `v` across it, 0
-//! on the axis. Each sample of the stroke makes a chart about itself: coordinates are carried
-//! outwards in the order of distance, a vertex takes the mean of what its neighbours say so far,
-//! each weighing 1 / its distance, and each says: my own place, and from there along the edge, laid
-//! into my tangent plane at its full length. The direction of `u` is carried by the smallest turn
-//! that takes one normal to the other. How far a vertex is from a sample is told by its
-//! coordinates.
+//! on the axis. Each sample of the stroke makes a chart about itself and carries coordinates
+//! outwards in the order of distance. A vertex takes the mean of its visited neighbours' estimates,
+//! each weighted by 1 / its distance. An estimate is the neighbour's place plus the edge, unrolled
+//! into its tangent plane at full length. The smallest rotation from one normal to the other
+//! carries the direction of `u`. The coordinates give the distance of a vertex from a sample.
 //!
-//! A vertex is in the chart of the sample that is nearest, and what lies between two samples is in
-//! both of theirs: it takes a mean that goes over from the one to the other along the stroke, so
-//! that how closely the samples lie decides little. With `u1` and `u2` what two samples at `s1` and
-//! `s2` say, a sample at `s` between would say `u1 + (u2 - u1) (s - s1) / (s2 - s1)`; the vertex
-//! lies beside the one that says `s` itself.
+//! A vertex is in the chart of the nearest sample, and a vertex between two samples is in both
+//! charts: it takes a mean that blends from one to the other along the stroke, so that the spacing
+//! of the samples matters little. If two samples at `s1` and `s2` give `u1` and `u2`, a sample at
+//! `s` between them would give `u1 + (u2 - u1) (s - s1) / (s2 - s1)`; the vertex belongs to the
+//! sample that gives `s` itself.
 //!
 //! Samples lie `STEP` apart along the stroke, by arc length from its beginning, wherever dabs
 //! lie: between two dabs the path is the cubic that touches the surface at both. The direction of
@@ -30,7 +29,7 @@ use crate::{Clay, Page, Reach};
 /// A sample of a stroke on the surface as it was.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StrokeSample {
-    /// Where it lies, mesh units.
+    /// The position, in mesh units.
     pub point: Vec3,
     /// Unit, of the surface there.
     pub normal: Vec3,
@@ -55,7 +54,8 @@ const STEP: f32 = 0.19;
 const MOST: f32 = 6.0;
 /// Neighbours of a vertex that are remembered from one look at its ring to the next.
 const OPEN: usize = 12;
-/// How fast charts may differ along the stroke: more is a fold, where coordinates are not one.
+/// The greatest difference of charts along the stroke: beyond it is a fold, where the coordinates
+/// are not unique.
 const FOLD: f32 = 0.7;
 
 /// A stroke being unrolled.
@@ -63,17 +63,17 @@ const FOLD: f32 = 0.7;
 pub struct StrokeParameters {
     /// The coordinates of each vertex.
     pub walk: Geodesic,
-    /// Which stroke it is.
+    /// The number of the stroke.
     stroke: u32,
     last: Option<StrokeSample>,
     /// The sample before the last one.
     before: Option<StrokeSample>,
-    /// Where the stroke stands, the normal there, and its length up to there.
+    /// The end of the stroke so far, the normal there, and the length up to there.
     end: Option<(Vec3, Vec3)>,
     length: f32,
-    /// Where the pen touched the clay last, and before that.
+    /// The last two places where the pen touched the clay, newest first.
     touches: [Option<Vec3>; 2],
-    /// Where along the stroke the next sample lies.
+    /// The position of the next sample along the stroke.
     next: f32,
     /// Samples so far; a vertex remembers which one it belongs to.
     count: u32,
@@ -85,8 +85,8 @@ impl StrokeParameters {
         self.walk.owner(page, v)
     }
 
-    /// How far a place is from the stroke as far as it came: from its axis, and before its
-    /// beginning or beyond its end from that.
+    /// Returns the distance of a place from the stroke so far: from its axis, or from its beginning
+    /// or end where the place is beyond them.
     pub fn off_stroke(&self, [u, v]: [f32; 2]) -> f32 {
         let beyond = (-u).max(u - self.length).max(0.0);
         Vec2::new(beyond, v).length()
@@ -97,8 +97,8 @@ impl StrokeParameters {
         self.count
     }
 
-    /// Where the pen touched the clay last, and before that, as [`StrokeParameters::touch`] was
-    /// told in this stroke and on this clay.
+    /// Returns the last two places where the pen touched the clay, newest first, as passed to
+    /// [`StrokeParameters::touch`] in this stroke and on this clay.
     pub fn touched(&self, mesh: &Clay, stroke: u32) -> [Option<Vec3>; 2] {
         let same = self.stroke == stroke && !self.walk.is_stale(mesh);
         if same { self.touches } else { [None; 2] }
@@ -109,10 +109,10 @@ impl StrokeParameters {
         self.touches = touches;
     }
 
-    /// Goes on to a place on the surface; coordinates are carried as far as `radius`,
-    /// which should be a little more than the brush's, so that what lies beside the stroke between
-    /// two samples is reached from one of them. Returns whether vertices have coordinates: a
-    /// stroke has no direction before its second sample, which then also serves the first.
+    /// Extends the stroke to a place on the surface. Coordinates are carried as far as `radius`,
+    /// which should be a little more than the brush's, so that every vertex beside the stroke
+    /// between two samples is reached from one of them. Returns true if vertices have coordinates:
+    /// a stroke has no direction before its second sample, which then also serves the first.
     pub fn step(&mut self, mesh: &Clay, stroke: u32, to: StrokePlace, radius: f32) -> bool {
         if self.stroke != stroke || self.walk.is_stale(mesh) {
             self.walk.begin(mesh);
@@ -224,7 +224,7 @@ impl StrokeParameters {
         let near = Reach::Sphere { centre: from.point, radius };
         mesh.each_page_before(&near, look);
         let Some((_, key)) = seed else { return };
-        // Takes coordinates in this chart, and tells what lies between it and the one before.
+        // Takes coordinates in this chart, and interpolates those between it and the chart before.
         let settle = |walk: &mut Geodesic, key: Key, place: [f32; 2], frame: [Vec3; 2]| {
             let (source, old) = walk.source(key);
             walk.settle(mesh, key, place, frame);

@@ -28,7 +28,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Whether the connected part of an image holds the vertex.
+    /// Returns true if the vertex is in the connected part of an image.
     pub fn is_marked(&self, image: usize, page: u32, v: usize) -> bool {
         self.walks.get(image).is_some_and(|w| w.distance(page, v).is_some())
     }
@@ -48,7 +48,7 @@ impl Scratch {
         self.walks.get(image)
     }
 
-    /// The walk of an image, to be begun anew.
+    /// Returns the walk of an image, so that the caller can restart it.
     pub fn walk_mut(&mut self, image: usize) -> &mut Geodesic {
         let image = image.min(IMAGES - 1);
         while self.walks.len() <= image {
@@ -65,8 +65,8 @@ const AT_ONCE: usize = 64;
 /// Sums kept apart while a page is added up.
 const LANES: usize = 4;
 
-/// What one page adds to a mean plane, lane by lane: of the weighted places from the centre their
-/// coordinates, of the weighted normals theirs, and the weights.
+/// The sums of one page for a mean plane, by lane: the weighted offsets from the centre, the
+/// weighted normals, and the weights.
 type PageSums = [[f64; LANES]; 7];
 
 /// The clay before a dab.
@@ -78,7 +78,7 @@ pub struct SurfaceQuery<'a> {
     pub workers: &'a Workers,
     /// Memory kept from dab to dab.
     pub scratch: &'a mut Scratch,
-    /// Which of the images that act together this is.
+    /// The index of this image in its group of images that act together.
     pub image: usize,
 }
 
@@ -89,7 +89,7 @@ pub struct Plane {
     pub point: Vec3,
     /// Unit length.
     pub normal: Vec3,
-    /// What is further away is none of its concern.
+    /// Vertices farther away than this are ignored.
     pub trim: f32,
 }
 
@@ -102,15 +102,15 @@ impl Plane {
     }
 }
 
-/// Which vertices count for a mean plane.
+/// Selects the vertices that count for a mean plane.
 struct MeanPlane {
     centre: Vec3,
-    /// What faces away from it does not count.
+    /// Vertices that face away from this normal do not count.
     normal: Vec3,
     radius: f32,
 }
 
-/// Adds up the own vertices of a page, compiled for this processor.
+/// Sums over a page's owned vertices, compiled for this processor.
 struct AddPage<'a> {
     mean: &'a MeanPlane,
     page: &'a Page,
@@ -161,10 +161,10 @@ impl WideWork for AddPage<'_> {
 }
 
 impl SurfaceQuery<'_> {
-    /// The plane through the surface under a dab: middle and mean normal of the vertices within
-    /// `normal_radius`, those near the rim counted less, those that face away not at all; moved by
-    /// `offset` radii along its normal. In double precision, so that images of one dab agree to the
-    /// last bits.
+    /// Returns the plane through the surface under a dab: middle and mean normal of the vertices
+    /// within `normal_radius`, moved by `offset` radii along its normal. Vertices near the rim
+    /// count less, vertices that face away do not count. In double precision, so that images of one
+    /// dab agree to the last bits.
     pub fn plane(&mut self, dab: &Dab<'_>, offset: f32) -> Plane {
         self.plane_of(dab, offset, dab.found)
     }
@@ -228,15 +228,15 @@ impl SurfaceQuery<'_> {
         self.scratch.walk_mut(image).flood(self.mesh, dab.centre, dab.normal, dab.radius);
     }
 
-    /// Whether the surface within a dab turns away from it by more than a right angle, so that the
-    /// way along the surface is told badly by the way through the air: it folds, or belongs to
-    /// something else nearby.
+    /// Returns true if the surface within a dab turns away from it by more than a right angle. The
+    /// straight-line distance then misrepresents the distance along the surface: the surface folds,
+    /// or belongs to something else nearby.
     pub fn is_folded(&self, dab: &Dab<'_>) -> bool {
         folded(self.mesh, dab)
     }
 
-    /// Measures along the surface, as it is, how far each vertex is from the dab's centre: by
-    /// Dijkstra over the edges, no further than the radius.
+    /// Measures each vertex's distance from the dab's centre along the current surface, by Dijkstra
+    /// over the edges, up to the radius.
     pub fn measure(&mut self, dab: &Dab<'_>) {
         let image = self.image;
         let from = (dab.centre, dab.normal);
@@ -268,7 +268,7 @@ impl SurfaceQuery<'_> {
             all.push(StrokeParameters::default());
         }
         let one = &mut all[image];
-        // What is a radius off the axis halfway between two dabs is further from both.
+        // A vertex that is a radius off the axis, halfway between two dabs, is farther from both.
         let radius = dab.radius * 1.05;
         if !dab.found {
             let place = StrokePlace::Now(dab.centre, dab.normal);
@@ -288,7 +288,8 @@ pub(super) fn folded(mesh: &Clay, dab: &Dab<'_>) -> bool {
     any
 }
 
-/// Whether an own vertex of a page is within a dab and faces away, compiled for this processor.
+/// Finds an owned vertex of a page that is within a dab and faces away, compiled for this
+/// processor.
 struct FoldedPage<'a> {
     dab: &'a Dab<'a>,
     page: &'a Page,

@@ -30,7 +30,8 @@ impl Brush for SurfaceSmoothBrush {
     const PASSES: usize = 2;
 
     fn ready(dab: &Dab<'_>, _: &mut SurfaceQuery<'_>) -> Self {
-        // What a dab does grows with the square of lambda: the square is shared out over the way.
+        // The effect of a dab grows with the square of lambda, so the square is divided along the
+        // path.
         let lambda = (dab.strength * MOST * dab.span.max(0.0).sqrt()).min(MOST);
         let back = -lambda / (1.0 - PASS_BAND * lambda);
         SurfaceSmoothBrush { factor: if dab.pass == 0 { lambda } else { back } }

@@ -53,7 +53,7 @@ impl Brush for TextureBrush {
         dab.ball(wide(dab))
     }
 
-    /// All that the dab may have to do with; what it does there is told by the coordinates.
+    /// Returns the area that the dab may change; the coordinates decide the change there.
     fn footprint(&self, dab: &Dab<'_>) -> Option<Footprint> {
         let ball = Footprint::ball(dab);
         let radius = if self.newest > 0 { dab.radius * wide(dab) } else { f32::MIN_POSITIVE };
@@ -75,15 +75,15 @@ impl Brush for TextureBrush {
         let (s, t) = (u / (2.0 * dab.radius * dab.extra(0)), 0.5 + 0.5 * v * dab.hand / width);
         let t = if (0.0..=1.0).contains(&t) { t } else { t - t.floor() };
         let (alpha, picture) = (dab.settings.alpha, spot.scratch.picture());
-        // Where the picture is transparent the surface stays, whatever the floor.
+        // Transparent parts of the picture leave the surface as it is, whatever the floor.
         let relief = alpha.at(s, t, picture) - dab.extra(1) * alpha.cover(s, t, picture);
         let h = dab.whole_height() * relief * dab.fade(far * far) * spot.weight;
         VertexChange::held(spot.page.normal_before(spot.v) * h)
     }
 }
 
-/// How far a dab reaches, in radii: it does again what lies between the last two samples of the
-/// stroke, and where a dab is measured on the surface as it is, that may have been raised since.
+/// Returns the reach of a dab, in radii. It recomputes the stretch between the last two samples of
+/// the stroke, which may have been raised since if the dab is measured on the current surface.
 fn wide(dab: &Dab<'_>) -> f32 {
     let raised = if dab.found { 0.0 } else { dab.strength };
     1.05 + 1.1 * dab.settings.spacing.max(0.2) + raised

@@ -71,7 +71,8 @@ impl Tool<'_> {
         let Some(first) = dabs.first() else { return };
         let stamped = first.settings.stamp.by != StampBy::Off;
         let plain = !first.settings.auto.is_on() && !stamped && first.settings.saturation == 0.0;
-        // Which images act together: those whose balls overlap, directly or by others between them.
+        // Groups the images that act together: those whose balls overlap, directly or through
+        // others.
         let balls: [(Vec3, f32); IMAGES] =
             std::array::from_fn(|i| dabs.get(i).map_or((Vec3::ZERO, 0.0), |d| ball(&B::reach(d))));
         let mut group: [u8; IMAGES] = std::array::from_fn(|i| i as u8);
@@ -152,7 +153,7 @@ struct Member<'a, B> {
 }
 
 impl<B: Brush> Member<'_, B> {
-    /// Whether vertices are measured where the stroke found them.
+    /// Returns true if vertices are measured at their positions at the start of the stroke.
     fn before(&self) -> bool {
         self.dab.found || matches!(B::GRIP, Grip::Anchor)
     }
@@ -327,8 +328,8 @@ fn blend(old: u8, new: u8, t: f32) -> u8 {
     rounded
 }
 
-/// Where a vertex comes to rest that may not get further from `before` than `limit`: the step is
-/// cut where it leaves the ball, so the last one ends exactly on it. One that is outside already
+/// Returns the new position of a vertex that must stay within `limit` of `before`. The step is cut
+/// where it leaves the ball, so the last one ends exactly on it. A vertex that is outside already
 /// (its budget is spent) stays, unless it comes nearer.
 #[inline(always)]
 fn held(before: Vec3, p: Vec3, by: Vec3, limit: f32, grip: Grip) -> Vec3 {

@@ -29,7 +29,7 @@ impl Brush for TopologicalBrush {
         None
     }
 
-    /// The walk says how far it is; see `change`.
+    /// `change` measures the distance by the walk.
     #[inline]
     fn share(&self, dab: &Dab<'_>, page: &PageIn<'_>, v: usize, _: Vec3) -> f32 {
         if (page.before(v) - dab.centre).length_squared() < dab.radius * dab.radius {

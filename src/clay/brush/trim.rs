@@ -1,7 +1,7 @@
-//! Trim: cuts off what stands over a plane set a little below the surface, as a knife does:
-//! whatever the middle of the brush goes over comes to lie on the plane. The other way round it
-//! fills to a plane set over the surface. The surface is that which the stroke found (unless the
-//! stroke accumulates), so a stroke does not dig itself in.
+//! Trim: cuts off the clay above a plane set a little below the surface, as a knife does: the clay
+//! under the middle of the brush ends on the plane. Inverted, it fills to a plane above the
+//! surface. The surface is that at the start of the stroke (unless the stroke accumulates), so a
+//! stroke does not dig itself in.
 
 use super::brush_trait::{Brush, VertexChange, VertexContext};
 use super::dab::{Dab, part};

@@ -1,6 +1,6 @@
-//! The coordinates of a block of vertices, each in a row of its own: what a loop over vertices
-//! needs to run in wide instructions. A page keeps a vertex as one row of four; four rows at a time
-//! are turned into one row a coordinate, and back.
+//! The coordinates of a block of vertices, one row for each coordinate: the layout that a loop over
+//! vertices needs to run in wide instructions. A page stores a vertex as one row of four. Four rows
+//! at a time are transposed to one row per coordinate, and back.
 
 use glam::{Mat4, Vec3, Vec4};
 

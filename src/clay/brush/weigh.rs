@@ -11,14 +11,14 @@ use super::weights::{BLOCK, MOST, Weights, facing};
 use crate::PageIn;
 use sculptd_geometry::simd::wide::{Wide, WideWork, dispatch};
 
-/// What a dab leaves out of its footprint, and where it measures vertices.
+/// The rules that exclude vertices from a dab's footprint, and the positions that it measures.
 #[derive(Debug, Clone, Copy)]
 pub struct WeightRules {
-    /// Places and normals are those when the stroke began.
+    /// True to use positions and normals at the start of the stroke.
     pub before: bool,
-    /// What is masked is left alone.
+    /// True to leave masked vertices alone.
     pub masked: bool,
-    /// What faces away from this normal is left alone, as [`super::Dab::facing`] has it.
+    /// Vertices that face away from this normal are left alone; see [`super::Dab::facing`].
     pub facing: Option<Vec3>,
 }
 

@@ -18,18 +18,18 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Room for one page's weights. A closure that took it would be a function of its own, which
-    /// the compiler may leave outside of what [`sculptd_geometry::simd::wide::dispatch`] compiles
-    /// for the processor.
+    /// Returns room for one page's weights. Not a closure parameter: the compiler may leave a
+    /// closure outside the code that [`sculptd_geometry::simd::wide::dispatch`] compiles for the
+    /// processor.
     #[inline(always)]
     pub fn zero() -> Weights {
         Weights { weight: [0.0; MOST] }
     }
 
-    /// The weight of each own vertex of `page` by its squared distance to `centre`: `profile(d2) *
-    /// (1 - mask)` within `radius2`, else 0. Returns how many lie within.
-    /// What faces away from `normal` is left alone as [`super::Dab::facing`] has it; a normal of
-    /// zero: nothing is. Says also whether something within turns away by more than a right angle.
+    /// Computes the weight of each owned vertex of `page` by its squared distance to `centre`:
+    /// `profile(d2) * (1 - mask)` within `radius2`, else 0. Returns how many are within, and
+    /// whether a vertex within turns away by more than a right angle. Vertices that face away from
+    /// `normal` are left alone as in [`super::Dab::facing`]; a zero normal leaves none alone.
     #[inline(always)]
     pub fn sphere(
         &mut self,
@@ -77,13 +77,13 @@ impl Weights {
         &mut self.weight
     }
 
-    /// What was computed, block by block; zeros beyond the last own vertex.
+    /// Returns the computed weights, block by block; zeros beyond the last owned vertex.
     #[inline(always)]
     pub(super) fn blocks(&self) -> impl Iterator<Item = &[f32; BLOCK]> {
         self.weight.as_chunks::<BLOCK>().0.iter()
     }
 
-    /// What was computed, one an own vertex.
+    /// Returns the computed weights, one for each owned vertex.
     #[inline]
     pub fn of(&self, page: &PageIn<'_>) -> &[f32] {
         &self.weight[..page.own().min(MOST)]

@@ -30,12 +30,11 @@ impl Clay {
         apart
     }
 
-    /// Brings the triangles of some pages, as far as they lie in the ball beside each, to the
-    /// wanted size, and those near them; `budget` of counted work for each. The pages must lie
-    /// apart ([`Clay::pages_apart`]). Bit `i` of the number is set where page `i` was not done
-    /// with.
+    /// Brings the triangles of some pages to the target size, as far as they are in the ball beside
+    /// each, and those near them; `budget` of counted work for each. The pages must be apart
+    /// ([`Clay::pages_apart`]). Bit `i` of the number is set if page `i` was not finished.
     ///
-    /// Nothing is done to clay that has layers, which are kept by vertex.
+    /// Leaves clay with layers unchanged: layers are stored by vertex.
     pub fn adapt_pages(
         &mut self,
         wanted: &mut [(u32, Detail)],

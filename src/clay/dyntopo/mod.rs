@@ -45,7 +45,7 @@ impl Clay {
     /// the open undo step, if there is one.
     ///
     /// A budget of [`crate::LEAST_TOPOLOGY_BUDGET`] or more always gets on with at least one page.
-    /// Nothing is done to clay that has layers, which are kept by vertex.
+    /// Leaves clay with layers unchanged: layers are stored by vertex.
     pub fn adapt_topology(&mut self, balls: &[Detail], budget: usize, workers: &Workers) -> Cuts {
         let used = self.next_vertex.max(self.next_triangle);
         if used >= LAST_NUMBER || self.layer_count() > 0 || !balls.iter().all(Detail::is_sane) {

@@ -63,7 +63,7 @@ fn checked(mesh: &TriMesh) -> (i64, f64, u32) {
     (euler, least, about.into_iter().max().unwrap_or(0))
 }
 
-/// One random dab with dynamic topology in a budget of its own.
+/// Applies one random dab with dynamic topology and a separate budget.
 fn dab(clay: &mut Clay, dice: &mut Dice, workers: &Workers, sum: &mut Cuts) {
     let from = dice.direction();
     let Some(hit) = clay.pick(Ray { origin: from * 5.0, dir: -from }) else { return };
@@ -86,7 +86,7 @@ fn dab(clay: &mut Clay, dice: &mut Dice, workers: &Workers, sum: &mut Cuts) {
     clay.end_step();
 }
 
-/// One dab of a random brush that lies on the surface, at its own strength.
+/// Applies one dab of a random brush with the surface grip, at its default strength.
 fn random_brush(clay: &mut Clay, hit: &Hit, radius: f32, dice: &mut Dice, workers: &Workers) {
     let kinds: Vec<_> = BrushKind::ALL.iter().filter(|k| k.grip() == Grip::Surface).collect();
     let kind = *kinds[(dice.next() * kinds.len() as f32) as usize];

@@ -12,50 +12,49 @@ use crate::page::Page;
 use crate::ray::Hit;
 use crate::snapshot::Snapshot;
 
-/// What is done to the face sets of an object. Plain data: a part of commands.
+/// An edit of the face sets of an object. Plain data: a part of commands.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SetsEdit {
-    /// What is masked by half or more and not hidden becomes a new set.
+    /// Makes a new set of the visible vertices masked by half or more.
     FromMask,
-    /// What is not hidden becomes a new set.
+    /// Makes a new set of the visible vertices.
     FromVisible,
-    /// The sets of what is not hidden are these, computed from the clay of this revision: see
+    /// Assigns these sets to the visible vertices, computed from the clay of this revision: see
     /// [`super::partition`].
     Assign {
         /// [`Clay::revision`] of the clay that they were computed from.
         revision: u64,
-        /// For each page its number and the sets of its own vertices.
+        /// The number of each page, and the sets of its owned vertices.
         pages: Arc<Vec<(u32, Vec<u16>)>>,
     },
-    /// No vertex is in a set any more. What is hidden stays hidden.
+    /// Removes every vertex from its set. Hidden vertices stay hidden.
     Clear,
-    /// A set is hidden.
+    /// Hides a set.
     Hide(u16),
-    /// A set is shown.
+    /// Shows a set.
     Show(u16),
-    /// What is masked by half or more is hidden.
+    /// Hides the vertices masked by half or more.
     HideMasked,
-    /// What was hidden is shown, what was shown is hidden.
+    /// Shows the hidden vertices, and hides the visible ones.
     Invert,
-    /// All but this set is hidden, and the set shown; 0 is what is in no set.
+    /// Shows this set and hides everything else; 0 is the vertices in no set.
     Isolate(u16),
-    /// Nothing is hidden any more.
+    /// Shows everything.
     ShowAll,
 }
 
-/// What is done with a part of the surface that is told vertex by vertex. Plain data: a part of
-/// commands.
+/// An edit of a part of the surface that is given vertex by vertex. Plain data: a part of commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PartEdit {
-    /// What of it is not hidden becomes a new set.
+    /// Makes a new set of the part's visible vertices.
     NewSet,
-    /// It is hidden.
+    /// Hides the part.
     Hide,
-    /// All but it is hidden.
+    /// Hides everything except the part.
     Isolate,
 }
 
-/// Why an edit of the face sets was not carried out. Nothing was changed.
+/// The reason why an edit of the face sets was rejected. Nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SetsError {
     /// There was nothing to do.
@@ -76,7 +75,7 @@ pub enum SetsError {
 }
 
 impl SetsEdit {
-    /// Whether it owns memory beyond its own size.
+    /// Returns true if it owns memory beyond its size.
     pub fn owns_memory(&self) -> bool {
         matches!(self, SetsEdit::Assign { .. })
     }
@@ -119,8 +118,8 @@ impl Snapshot {
         all.map(|(set, [vertices, hidden])| (set as u16, vertices, hidden)).collect()
     }
 
-    /// How many sets there are besides that of what is in none; 1 where there is no other but
-    /// something is hidden. Costs nothing to speak of where there are none.
+    /// Returns the number of sets, not counting the vertices in no set; 1 if there is no set but
+    /// something is hidden. Nearly free without face sets.
     pub fn face_set_count(&self) -> u64 {
         if !self.pages().any(|p| p.sets.is_some()) {
             return 0;
@@ -131,7 +130,7 @@ impl Snapshot {
 }
 
 impl Clay {
-    /// Whether any vertex is in a set or hidden.
+    /// Returns true if any vertex is in a set or hidden.
     pub fn has_sets(&self) -> bool {
         self.pages.iter().any(|p| p.sets.is_some())
     }
@@ -148,7 +147,7 @@ impl Clay {
         self.pages.get(hit.page as usize).map_or(0, |page| set_at(page, hit))
     }
 
-    /// New sets of the own vertices of some pages, ascending; halos follow.
+    /// Sets the face sets of the owned vertices of some pages, ascending, and updates the halos.
     pub(crate) fn put_sets(&mut self, changed: &[(u32, Vec<u16>)]) {
         let mut concerned: Vec<u32> = Vec::with_capacity(2 * changed.len());
         for (number, _) in changed {

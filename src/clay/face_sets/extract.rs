@@ -1,4 +1,4 @@
-//! A part of the surface as a solid of its own: the part, its offset along the normals, and a rim
+//! Extracts a part of the surface as a solid: the part, its offset along the normals, and a rim
 //! between the borders of both.
 
 use glam::Vec3;
@@ -9,7 +9,7 @@ use sculptd_geometry::TriMesh;
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::portable::PortableMath;
 
-/// Which part of the surface.
+/// A part of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceSetPart {
     /// Triangles whose corners are all masked by half or more.
@@ -18,7 +18,7 @@ pub enum FaceSetPart {
     Set(u16),
 }
 
-/// Why nothing was extracted.
+/// The reason why nothing was extracted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ExtractError {
     /// No triangle belongs to the part.
@@ -29,14 +29,14 @@ pub enum ExtractError {
     Thickness,
 }
 
-/// A closed shell about a part of the surface, hidden triangles left out. `thickness`, in the
-/// units of the mesh, is laid on along the normals of the part's vertices, outwards; a negative one
-/// inwards. A vertex where pieces of the part only touch is given to each of them, so that every
-/// edge of the result has two triangles. Where the part bends more sharply than the thickness
-/// allows, the shell meets itself.
+/// Returns a closed shell around a part of the surface, without hidden triangles. `thickness`, in
+/// mesh units, extends outwards along the normals of the part's vertices; a negative one extends
+/// inwards. A vertex where pieces of the part only touch is duplicated for each of them, so that
+/// every edge of the result has two triangles. Where the part bends more sharply than the thickness
+/// allows, the shell intersects itself.
 ///
 /// # Errors
-/// Where nothing belongs to the part, or the thickness is 0 or no number.
+/// Returns an error if the part is empty, or the thickness is 0 or not finite.
 pub fn extract(
     clay: &Snapshot,
     part: FaceSetPart,
@@ -62,7 +62,7 @@ pub fn extract(
     if chosen.is_empty() {
         return Err(ExtractError::Nothing);
     }
-    // Each corner is a vertex of its own until triangles on both sides of an edge join theirs.
+    // Each corner is a separate vertex until triangles on both sides of an edge join theirs.
     let mut joined = DisjointSets::new(3 * chosen.len());
     // Lesser end, greater end, whether it is walked from the greater to the lesser, first corner.
     let mut edges: Vec<(u32, u32, bool, u32)> = Vec::with_capacity(3 * chosen.len());
@@ -80,7 +80,7 @@ pub fn extract(
                 joined.join(one.3, after(other.3));
                 joined.join(after(one.3), other.3);
             }
-            // The border, or an edge of more than two triangles, each of which gets its own rim.
+            // The border, or an edge of more than two triangles, each of which gets a separate rim.
             _ => rim.extend(all.iter().map(|e| e.3)),
         }
     }

@@ -11,15 +11,16 @@ use crate::snapshot::Snapshot;
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::portable::PortableMath;
 
-/// What parts one set from another.
+/// The rule that separates one set from another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Partition {
-    /// Each part that hangs together is a set.
+    /// Makes a set of each connected part.
     Loose,
-    /// A set grows from its first triangle over all that turn from that one's normal by at most so
-    /// many degrees, 0 to 180.
+    /// Grows a set from its first triangle over all triangles within this angle of its normal, in
+    /// degrees, 0 to 180.
     Normals(f32),
-    /// Sets meet where the surface bends by more than so many degrees over an edge, 0 to 180.
+    /// Separates sets at edges where the surface bends by more than this angle, in degrees, 0 to
+    /// 180.
     Crease(f32),
 }
 

@@ -1,14 +1,14 @@
-//! Face sets: groups of the surface, and which part of it is hidden.
+//! Face sets: groups of the surface, and the visibility of its parts.
 //!
 //! Laws kept here:
-//! * A vertex has one number of 16 bits: its set, 0 for none, and whether it is hidden. A triangle
-//!   is hidden where all its corners are, so that what is hidden and what is left after
+//! * A vertex has one number of 16 bits: its set, 0 for none, and a flag for hidden. A triangle is
+//!   hidden if all its corners are, so that the hidden part and the part left after
 //!   [`SetsEdit::Invert`] together cover the surface.
-//! * The numbers lie beside a page's points, behind an `Arc` of their own that dabs share. A page
-//!   without sets and without hidden vertices has none: it costs what it cost before.
-//! * What is hidden is not picked and not changed by brushes, masks and dynamic topology. Layers
-//!   are summed up there too, for the surface is their sum.
-//! * A copy in a halo says what its home says.
+//! * A page keeps the numbers next to its points, behind a separate `Arc` that dabs share. A page
+//!   without sets and without hidden vertices has none, and costs nothing extra.
+//! * Picking, brushes, masks and dynamic topology ignore hidden vertices. Layers are summed up
+//!   there too, because the surface is their sum.
+//! * A copy in a halo has the number of its home vertex.
 
 mod edit;
 mod extract;

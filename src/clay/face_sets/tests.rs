@@ -64,7 +64,7 @@ fn a_set_of_what_is_masked_is_hidden_isolated_shown_and_undone() {
     assert!(sets == [(0, vertices - cap, 0), (1, cap, 0)] && cap > vertices / 5, "{sets:?}");
     assert_eq!(clay.pick(down()).map(|hit| clay.set_at(&hit)), Some(1));
 
-    // What is hidden is not hit: the ray meets the far side from within.
+    // The ray does not hit the hidden part: it meets the far side from within.
     assert_eq!(edit(&mut clay, &SetsEdit::Hide(1)), Ok(1));
     assert_eq!(clay.snapshot().face_sets()[1], (1, cap, cap));
     for hit in [clay.pick(down()), clay.snapshot().pick(down())] {
@@ -174,7 +174,7 @@ fn a_local_boolean_keeps_the_sets_of_what_it_leaves() {
         assert!(made.shared > 0 && clay.verify_invariants() == Ok(()));
         let after = clay.snapshot().face_sets();
         assert_eq!(after.iter().map(|s| s.0).collect::<Vec<_>>(), [0, 2, 3]);
-        // What is new is in none; of both sets a few vertices went.
+        // New vertices are in no set; a few vertices of both sets are gone.
         assert!(after[0].1 < 400, "{after:?}");
         for k in [0, 1] {
             let gone = before[k].1 - after[k + 1].1;
@@ -226,7 +226,7 @@ fn loose_parts_become_sets_in_the_order_of_the_mesh() {
     let ball = icosphere(1.0, 8).positions.len() as u64;
     let sets = parted(&mut clay, Partition::Loose);
     assert_eq!(sets, [(1, ball, 0), (2, 8, 0), (3, ball, 0), (4, ball, 0)]);
-    // What is hidden keeps its set, and no number is given twice.
+    // Hidden vertices keep their set, and no number is given twice.
     edit(&mut clay, &SetsEdit::Hide(4)).expect("hidden");
     let sets = parted(&mut clay, Partition::Loose);
     assert_eq!(sets, [(4, ball, ball), (5, ball, 0), (6, 8, 0), (7, ball, 0)]);
@@ -305,7 +305,7 @@ fn an_extracted_part_is_closed_and_holds_its_thickness() {
         let (components, volume) = solid(&shell);
         assert_eq!(components, 1);
         // The cap from the height 1/2 on, between two spheres: pi/3 times the difference of their
-        // radii's cubes. Its border lies on whole triangles, which costs some percent.
+        // radii's cubes. Its border follows whole triangles, which costs some percent.
         assert!((least..most).contains(&volume), "{thickness}: {volume}");
     }
     assert_eq!(extract(&clay.snapshot(), FaceSetPart::Set(3), 0.1), Err(ExtractError::Nothing));

@@ -1,10 +1,10 @@
 //! An edit of the face sets on its way through the pages of an object, in portions.
 //!
 //! Laws kept here:
-//! * The portion is counted in vertices, those of pages that are only looked at included, so that a
+//! * The portion is counted in vertices, including those of pages that are only read, so that a
 //!   replay stops at the same page and no portion is larger than its share.
-//! * An edit that is refused has changed nothing: what may be refused by what lies in later pages
-//!   is looked for before the first one is written.
+//! * A rejected edit changes nothing: conditions that later pages may violate are checked before
+//!   the first page is written.
 
 use std::sync::Arc;
 
@@ -12,12 +12,12 @@ use super::{HIDDEN, MASKED, MOST_SETS, PartEdit, SetsEdit, SetsError};
 use crate::clay::Clay;
 use crate::page::Page;
 
-/// What is done to the face sets.
+/// An edit of the face sets.
 #[derive(Debug)]
 pub enum SetsTask {
     /// An edit of the whole object.
     Edit(SetsEdit),
-    /// Something is done with a part that is told vertex by vertex.
+    /// An edit of a part that is given vertex by vertex.
     Part(PartEdit),
 }
 
@@ -50,7 +50,7 @@ fn has(page: &Page, set: u16) -> bool {
 }
 
 impl SetsWork {
-    /// The sets of a page's own vertices afterwards; `None`: those that it has.
+    /// Returns the new sets of a page's owned vertices; `None` keeps the current ones.
     fn page(
         &mut self,
         number: u32,
@@ -135,10 +135,10 @@ impl SetsWork {
 
 impl Clay {
     /// Begins an edit of the face sets, which [`Clay::run_sets`] then carries out in portions.
-    /// Until it is done nothing else may change the clay. Costs a look at each page.
+    /// Until it is done nothing else may change the clay. Visits each page.
     ///
     /// # Errors
-    /// Where no number is left, or [`SetsError::Changed`].
+    /// Returns an error if no number is left, or [`SetsError::Changed`].
     pub fn begin_sets(&self, task: SetsTask) -> Result<SetsWork, SetsError> {
         let (mut set, mut looking) = (0, false);
         match &task {
@@ -161,12 +161,13 @@ impl Clay {
         Ok(SetsWork { task, set, looking, next: 0, given: 0, found: false, changed: false })
     }
 
-    /// Does a portion of an edit, as a part of the open undo step, until `budget` is spent or
-    /// nothing is left: a vertex costs `cost`. `holds` tells what a part is. `None`: there is more;
-    /// else the set that was made or that it was about, 0 for none.
+    /// Runs a portion of an edit, as a part of the open undo step, until `budget` is spent or
+    /// nothing is left: a vertex costs `cost`. `holds` returns true for the vertices of the part.
+    /// Returns `None` if there is more to do, else the set that was made or edited, 0 for none.
     ///
     /// # Errors
-    /// Where there was nothing to do, or no such set. Nothing was changed then.
+    /// Returns an error if there was nothing to do, or no such set. Nothing was changed
+    /// then.
     pub fn run_sets(
         &mut self,
         work: &mut SetsWork,
@@ -208,11 +209,12 @@ impl Clay {
         })
     }
 
-    /// Carries out an edit of the face sets at once, as a part of the open undo step: it looks at
-    /// every vertex. The set that was made or that it was about; 0 where it was about none.
+    /// Runs an edit of the face sets at once, as a part of the open undo step: it visits every
+    /// vertex. Returns the set that was made or edited; 0 for none.
     ///
     /// # Errors
-    /// Where there is nothing to do, no such set, or no number left. Nothing is changed then.
+    /// Returns an error if there is nothing to do, no such set, or no number left. Nothing
+    /// is changed then.
     pub fn edit_sets(&mut self, edit: &SetsEdit) -> Result<u16, SetsError> {
         let mut work = self.begin_sets(SetsTask::Edit(edit.clone()))?;
         let done = self.run_sets(&mut work, u64::MAX, 1, &|_, _| false);

@@ -9,10 +9,10 @@ use crate::layers::{
 };
 use crate::{Clay, DabReport, Workers};
 
-/// What is still to be done to pages after the list of layers was changed.
+/// The page updates that remain after a change of the list of layers.
 #[derive(Debug)]
 pub struct LayerJob {
-    /// What is to be done to each page.
+    /// The operation on each page.
     pub operation: LayerOperation,
     /// The pages, ascending.
     pub pages: Vec<u32>,
@@ -26,13 +26,13 @@ impl Clay {
         self.pages.first()?.layers.as_ref()?.stack.as_ref()
     }
 
-    /// How many layers there are.
+    /// Returns the number of layers.
     pub fn layer_count(&self) -> usize {
         self.layers().map_or(0, |s| s.layers.len())
     }
 
-    /// Whether strokes can change what is active: the base, or a layer that is visible and not of
-    /// an intensity near 0.
+    /// Returns true if strokes can change the active layer: it is the base, or it is visible and
+    /// its intensity is not near 0.
     pub fn takes_strokes(&self) -> bool {
         self.layers().is_none_or(|s| s.takes_strokes())
     }
@@ -222,11 +222,11 @@ impl Clay {
         out.sort_unstable();
     }
 
-    /// Whether each page that layers change is, to the bit, the sum of them. Not while a stroke or
-    /// an edit is under way.
+    /// Checks that each page changed by layers equals, to the bit, the sum of them. Not valid while
+    /// a stroke or an edit is under way.
     ///
     /// # Errors
-    /// Says what does not hold.
+    /// Returns the condition that does not hold.
     pub fn verify_layers(&self) -> Result<(), String> {
         let empty = LayerStack::default();
         let stack = self.layers().map_or(&empty, |s| s);

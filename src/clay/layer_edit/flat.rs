@@ -8,7 +8,7 @@ use crate::layers::Layer;
 /// The layers of an object by the places of vertices in [`Snapshot::to_tri`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlatLayers {
-    /// Where the vertices are without any layer.
+    /// The positions of the vertices without any layer.
     pub base: Vec<DVec3>,
     /// The layers from the lowest up, each with the vertices that it moves, ascending, and their
     /// offsets.

@@ -7,15 +7,16 @@ use glam::DVec3;
 use crate::layers::{LayerId, LayerOffsets, LayerRow, LayerStack, LayerSum, PageLayers};
 use crate::{Kernel, PageIn, PageOut};
 
-/// What is to be done to each page of a list. All but [`LayerOperation::Capture`] and
+/// An operation on each page of a list. All but [`LayerOperation::Capture`] and
 /// [`LayerOperation::Bake`] then set the surface to the sum of its layers.
 #[derive(Debug, Clone)]
 pub enum LayerOperation {
-    /// Nothing else: an intensity, the visibility or the order is another.
+    /// Only re-evaluates: an intensity, the visibility or the order changed.
     Evaluate,
-    /// What the open step did to the surface becomes offsets of the active layer, or the base.
+    /// Stores the open step's changes to the surface as offsets of the active layer, or in the
+    /// base.
     Capture,
-    /// The offsets of a layer go.
+    /// Removes the offsets of a layer.
     Drop(LayerId),
     /// The offsets of a layer, times a weight, are added to the base or to those of another layer,
     /// times another weight.
@@ -39,12 +40,12 @@ pub enum LayerOperation {
 }
 
 impl LayerOperation {
-    /// Whether the surface is the sum of its layers afterwards, whatever it was before.
+    /// Returns true if the surface is the sum of its layers afterwards, whatever it was before.
     fn evaluates(&self) -> bool {
         !matches!(self, LayerOperation::Capture | LayerOperation::Bake)
     }
 
-    /// What the page has of the layers afterwards; `None`: the same as before.
+    /// Returns the new layer data of the page; `None` keeps the current one.
     fn apply(&self, page: &PageIn<'_>, stack: &LayerStack) -> Option<PageLayers> {
         let old = page.layers();
         match self {
@@ -119,8 +120,8 @@ fn capture(page: &PageIn<'_>, stack: &LayerStack) -> Option<PageLayers> {
     let moved =
         |was: &dyn Fn(usize) -> glam::Vec3| (0..own).any(|v| was(v) != page.positions.get(v));
     let Some(sum) = old.and_then(|l| LayerSum::new(stack, l)) else {
-        // No layer changes the page yet. Where its triangles were changed, nobody knows where its
-        // vertices were: it stays a part of the base.
+        // No layer changes the page yet. If its triangles changed, the old positions of its
+        // vertices are unknown: the page stays a part of the base.
         let active = stack.active().filter(|l| l.takes_strokes())?.id;
         let new = PageLayers {
             base: Arc::new((0..own).map(|v| page.before(v).as_dvec3()).collect()),
@@ -136,7 +137,7 @@ fn capture(page: &PageIn<'_>, stack: &LayerStack) -> Option<PageLayers> {
         return None;
     }
     let mut new = old.cloned()?;
-    // What moves although the active layer takes no strokes belongs to the base.
+    // Movement goes to the base if the active layer takes no strokes.
     match stack.active().filter(|l| l.takes_strokes()) {
         Some(active) => new.put(active.id, offsets(page, &sum)),
         None => {

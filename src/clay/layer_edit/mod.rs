@@ -1,5 +1,5 @@
-//! What is done to the layers of an object: edits of the list, and what follows from them page by
-//! page. [`crate::layers`] says what layers are.
+//! Operations on the layers of an object: edits of the list, and the resulting page updates.
+//! [`crate::layers`] defines layers.
 
 mod edit;
 mod flat;

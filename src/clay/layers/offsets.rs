@@ -12,17 +12,17 @@ use super::stack::{LayerId, LayerStack, MAX_LAYERS};
 pub struct LayerRow {
     /// The layer.
     pub layer: LayerId,
-    /// One an own vertex, object frame, mesh units.
+    /// One offset per owned vertex, in the object frame, in mesh units.
     pub offsets: Arc<Vec<DVec3>>,
 }
 
-/// What a page has of its object's layers.
+/// The layer data of a page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PageLayers {
     /// The list of layers; in the first page only.
     pub(crate) stack: Option<Arc<LayerStack>>,
-    /// Where the own vertices are without any layer; empty where no layer changes the page, whose
-    /// surface is its base then.
+    /// The positions of the owned vertices without any layer; empty if no layer changes the page,
+    /// whose surface is then its base.
     pub(crate) base: Arc<Vec<DVec3>>,
     /// The layers that change the page, in no particular order.
     pub(crate) rows: Vec<LayerRow>,
@@ -39,7 +39,8 @@ impl PageLayers {
         &self.rows
     }
 
-    /// Where the own vertices are without any layer; empty where no layer changes the page.
+    /// Returns the positions of the owned vertices without any layer; empty if no layer changes the
+    /// page.
     pub fn base(&self) -> &[DVec3] {
         &self.base
     }
@@ -53,7 +54,7 @@ impl PageLayers {
         (!empty).then(|| Arc::new(self))
     }
 
-    /// Puts the offsets of a layer in place of those that it has.
+    /// Replaces the offsets of a layer.
     pub(crate) fn put(&mut self, layer: LayerId, offsets: Vec<DVec3>) {
         self.rows.retain(|r| r.layer != layer);
         if offsets.iter().any(|o| *o != DVec3::ZERO) {
@@ -61,7 +62,7 @@ impl PageLayers {
         }
     }
 
-    /// Whether it fits a page of so many own vertices.
+    /// Returns true if it fits a page of `own` owned vertices.
     pub(crate) fn fits(&self, own: usize) -> bool {
         let finite = |all: &[DVec3]| all.iter().all(|p| p.is_finite());
         let base = if self.rows.is_empty() { 0 } else { own };
@@ -76,9 +77,8 @@ impl PageLayers {
             })
     }
 
-    /// The layers of a page that is put together of vertices: where each is, and the layers of the
-    /// old page that it was an own vertex of, if it was one. A vertex that is new belongs to the
-    /// base.
+    /// Returns the layer data of a page assembled from vertices. Each vertex has a position, and
+    /// the layer data of its old page if it had one. A new vertex belongs to the base.
     pub(crate) fn gathered<'a>(
         vertices: impl ExactSizeIterator<Item = (Vec3, Option<(&'a PageLayers, usize)>)>,
     ) -> Option<Arc<PageLayers>> {
@@ -126,7 +126,7 @@ impl PageLayers {
         out
     }
 
-    /// What undo counts for it, bytes.
+    /// Returns its size in the undo budget, in bytes.
     pub(crate) fn weight(&self) -> usize {
         size_of::<PageLayers>() + self.base.len() * 24 * (1 + self.rows.len())
     }
@@ -139,7 +139,7 @@ pub struct LayerSum<'a> {
     base: &'a [DVec3],
     parts: [(&'a [DVec3], f64); MAX_LAYERS],
     count: usize,
-    /// Which part is the active layer.
+    /// The index of the active layer's part.
     active: Option<usize>,
 }
 
@@ -166,7 +166,7 @@ impl<'a> LayerSum<'a> {
         Some(sum)
     }
 
-    /// Where own vertex `v` is, with these offsets in the place of part `other`.
+    /// Returns the position of owned vertex `v`, with this offset in part `other`.
     #[inline(always)]
     fn with(&self, v: usize, other: usize, offset: DVec3) -> DVec3 {
         let mut p = self.base[v];
@@ -182,14 +182,14 @@ impl<'a> LayerSum<'a> {
         p
     }
 
-    /// Where own vertex `v` is.
+    /// Returns the position of owned vertex `v`.
     #[inline(always)]
     pub fn at(&self, v: usize) -> Vec3 {
         self.with(v, usize::MAX, DVec3::ZERO).as_vec3()
     }
 
-    /// Where own vertex `v` would be without the active layer; without any layer, where the base is
-    /// active.
+    /// Returns the position of owned vertex `v` without the active layer; without any layer if the
+    /// base is active.
     #[inline(always)]
     pub fn below(&self, v: usize) -> Vec3 {
         match self.active {
@@ -221,7 +221,7 @@ impl<'a> LayerSum<'a> {
         row.get(v).copied().unwrap_or(DVec3::ZERO)
     }
 
-    /// Where the base of own vertex `v` is to be, so that the vertex is at `p`.
+    /// Returns the base position of owned vertex `v` that puts the vertex at `p`.
     pub(crate) fn base_for(&self, v: usize, p: Vec3) -> DVec3 {
         let mut base = self.base[v] + (p.as_dvec3() - self.with(v, usize::MAX, DVec3::ZERO));
         for _ in 0..3 {

@@ -30,19 +30,19 @@ pub struct Layer {
     pub id: LayerId,
     /// Its name for people; several layers may have the same.
     pub name: String,
-    /// What its offsets are multiplied by, -[`MAX_INTENSITY`] to [`MAX_INTENSITY`].
+    /// The factor of its offsets, -[`MAX_INTENSITY`] to [`MAX_INTENSITY`].
     pub intensity: f32,
-    /// A layer that is not visible counts as one of intensity 0.
+    /// True if the layer is visible. An invisible layer counts as one of intensity 0.
     pub visible: bool,
 }
 
 impl Layer {
-    /// What its offsets are multiplied by.
+    /// Returns the factor of its offsets, 0 for an invisible layer.
     pub fn weight(&self) -> f64 {
         if self.visible { f64::from(self.intensity) } else { 0.0 }
     }
 
-    /// Whether a stroke can change it.
+    /// Returns true if a stroke can change it.
     pub fn takes_strokes(&self) -> bool {
         self.visible && self.intensity.abs() >= LEAST_INTENSITY
     }
@@ -75,13 +75,13 @@ impl LayerStack {
         self.layer(self.active?)
     }
 
-    /// Whether strokes can change what is active.
+    /// Returns true if strokes can change the active layer.
     pub fn takes_strokes(&self) -> bool {
         self.active().is_none_or(Layer::takes_strokes)
     }
 
-    /// Whether the list is in order: numbers once, intensities in their range, the active layer
-    /// there.
+    /// Returns true if the list is valid: unique numbers, intensities in range, and an active layer
+    /// that exists.
     pub fn is_sane(&self) -> bool {
         self.layers.len() <= MAX_LAYERS
             && self.active.is_none_or(|id| self.layer(id).is_some())
@@ -100,7 +100,7 @@ pub struct LayerOffsets {
     pub name: String,
     /// Its intensity.
     pub intensity: f32,
-    /// Whether it is visible.
+    /// True if it is visible.
     pub visible: bool,
     /// Numbers of vertices in the mesh that the clay was built from, ascending, each with its
     /// offset, object frame.
@@ -112,40 +112,40 @@ pub struct LayerOffsets {
 pub enum LayerEdit {
     /// A layer without offsets is added above the others and made active.
     Add(String),
-    /// Layers with offsets are added above the others. What is active stays.
+    /// Adds layers with offsets above the others. The active layer stays active.
     Import(Arc<Vec<LayerOffsets>>),
-    /// A layer is removed with what it does. Where it was active, the one below it is, or the base.
+    /// Removes a layer and its effect. If it was active, the one below becomes active, or the base.
     Remove(LayerId),
-    /// A layer gets another name.
+    /// Renames a layer.
     Rename(LayerId, String),
-    /// A layer goes to this place, 0 the lowest.
+    /// Moves a layer to this place, 0 the lowest.
     Move(LayerId, u32),
-    /// A layer gets another intensity, is shown or hidden.
+    /// Changes the intensity or visibility of a layer.
     Set {
         /// The layer.
         id: LayerId,
         /// Its intensity from now on; brought into range.
         intensity: Option<f32>,
-        /// Whether it is visible from now on.
+        /// The new visibility; `None` keeps the current one.
         visible: Option<bool>,
-        /// More changes of this layer follow, as while a slider is dragged: they become one step
-        /// of undo.
+        /// True while more changes of this layer follow, as during the drag of a slider: they
+        /// become one undo step.
         live: bool,
     },
-    /// Strokes change this layer from now on, or the base.
+    /// Makes this layer, or the base, the target of strokes.
     Activate(Option<LayerId>),
-    /// A layer is added to the one below it, or to the base, as both are seen. The result has
+    /// Merges a layer into the one below it, or into the base, as both are seen. The result has
     /// intensity 1.
     MergeDown(LayerId),
     /// A hidden twin of a layer is added right above it and made active.
     Duplicate(LayerId),
-    /// What a layer does is taken away; the layer stays.
+    /// Removes the effect of a layer; the layer stays.
     Clear(LayerId),
-    /// The surface becomes the base; there are no layers any more.
+    /// Makes the surface the base and removes all layers.
     Bake,
 }
 
-/// Why an edit of layers was not carried out. Nothing was changed.
+/// The reason why an edit of layers was rejected. Nothing was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LayerError {
     /// A number that no layer has.

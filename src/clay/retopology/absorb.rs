@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::edit::{CHANGED, Edit, NONE};
 use crate::page::Page;
 
-/// Where the pages of an edit lie in another: slot and first handle.
+/// The place of each page of one edit in another: slot and first handle.
 pub(crate) type SlotMap = Vec<(u32, u32)>;
 
 impl Edit {

@@ -65,7 +65,7 @@ impl Pass<'_> {
         let mut edges = [(a, b), (b, apex), (apex, a)].map(|(p, q)| (self.length2(p, q), p, q));
         edges.sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
         self.cuts.work += 4;
-        // Where triangles lie crumpled, one may have to turn farther than else.
+        // Crumpled triangles may have to turn farther than others.
         for least in [TURN, LAST_TURN] {
             if edges.iter().any(|&(_, p, q)| self.merge_edge(p, q, least, ball))
                 || self.slides && self.slide([a, b, apex], least, ball)
@@ -141,8 +141,8 @@ impl Pass<'_> {
         true
     }
 
-    /// Whether the surface stays a surface where `a` and `b` become one: the link condition, and
-    /// what bounds the number of neighbours. All rings about them are loaded then.
+    /// Returns true if merging `a` and `b` keeps the surface a manifold: the link condition, and
+    /// the bounds on the number of neighbours. Loads all rings around them.
     fn may_join(&mut self, a: u32, b: u32, c: u32, d: u32) -> bool {
         let e = &self.edit;
         let count = e.ring(a).len() + e.ring(b).len();
@@ -168,7 +168,7 @@ impl Pass<'_> {
         })
     }
 
-    /// What the triangles about `a` and `b` come to where both lie at `place`.
+    /// Returns the shape of the triangles around `a` and `b` with both moved to `place`.
     fn joined(&self, a: u32, b: u32, place: Vec3) -> JoinedShape {
         let mean = || self.mean_normal(&[a, b]);
         let (p, q) = (self.moved(a, b, place, mean), self.moved(b, a, place, mean));
@@ -180,8 +180,8 @@ impl Pass<'_> {
         }
     }
 
-    /// What the triangles about `v` come to where it lies at `place`; those with the vertex `gone`
-    /// go. `mean`: where slivers are said to face.
+    /// Returns the shape of the triangles around `v` with it moved to `place`, without those at the
+    /// vertex `gone`. `mean` gives the normal that slivers are compared with.
     fn moved(&self, v: u32, gone: u32, place: Vec3, mean: impl Fn() -> Vec3) -> JoinedShape {
         let e = &self.edit;
         let mut shape =
@@ -216,7 +216,7 @@ impl Pass<'_> {
         sum.normalize_or_zero()
     }
 
-    /// Draws `a` into `b`, which comes to lie at `place`; `c` and `d` are the wings' corners.
+    /// Merges `a` into `b`, which moves to `place`; `c` and `d` are the wings' corners.
     fn join(&mut self, [a, b, c, d]: [u32; 4], place: Vec4, colour: u32, ball: u8) {
         let e = &mut *self.edit;
         let mut around = [0u32; MOST_NEIGHBOURS];

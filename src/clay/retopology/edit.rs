@@ -1,9 +1,9 @@
-//! The part of the surface that is being changed: rings of neighbours, taken from the pages vertex
+//! The part of the surface that is being changed: rings of neighbours, copied from the pages vertex
 //! by vertex when an operation first needs them.
 //!
-//! A vertex is named by a handle: its page's base plus its own index there; vertices that are made
-//! get handles of their own. Handles count up in the order in which pages are met, which only the
-//! input decides.
+//! A handle names a vertex: its page's base plus the vertex's local index. New vertices get
+//! separate handles. Handles count up in the order in which pages are first visited, which depends
+//! only on the input.
 
 use std::sync::Arc;
 
@@ -43,13 +43,13 @@ pub(crate) struct EditPage {
     pub(crate) base: u32,
     /// Own vertices that it had.
     pub(crate) own: u32,
-    /// Where the handles of its halo begin in [`Edit::halo`]; [`NONE`]: not asked for yet.
+    /// The first handle of its halo in [`Edit::halo`]; [`NONE`] until it is requested.
     pub(super) halo: u32,
-    /// It will be written.
+    /// True if it will be written.
     pub(crate) dirty: bool,
-    /// It is too tangled to be changed.
+    /// True if it is too tangled to be changed.
     tangled: bool,
-    /// Its vertices may be changed.
+    /// True if its vertices may be changed.
     open: bool,
 }
 
@@ -183,7 +183,7 @@ impl Edit {
         s
     }
 
-    /// The handle of an own vertex of a page.
+    /// Returns the handle of an owned vertex of a page.
     pub(crate) fn handle(&mut self, pages: &[Arc<Page>], (page, local): (u32, u16)) -> u32 {
         let s = self.slot(pages, page);
         self.slots[s as usize].base + u32::from(local)
@@ -303,32 +303,32 @@ impl Edit {
         self.state[h as usize] & bits != 0
     }
 
-    /// Whether a vertex is no more.
+    /// Returns true if a vertex was removed.
     pub(crate) fn is_dead(&self, h: u32) -> bool {
         self.is(h, DEAD)
     }
 
-    /// Whether the ring of a vertex is here and not in its page.
+    /// Returns true if the ring of a vertex is loaded into this edit.
     pub(crate) fn has_ring(&self, h: u32) -> bool {
         self.is(h, CLOSED | OPEN)
     }
 
-    /// Whether a ring that is here is closed.
+    /// Returns true if a loaded ring is closed.
     pub(crate) fn is_closed(&self, h: u32) -> bool {
         self.is(h, CLOSED)
     }
 
-    /// Whether the ring or the place of a vertex is another now.
+    /// Returns true if the ring or the position of a vertex changed.
     pub(crate) fn is_changed(&self, h: u32) -> bool {
         self.is(h, CHANGED)
     }
 
-    /// Whether position and colour are here.
+    /// Returns true if position and colour are loaded.
     pub(crate) fn is_placed(&self, h: u32) -> bool {
         self.is(h, PLACED)
     }
 
-    /// Whether all of these lie in pages whose vertices may be changed.
+    /// Returns true if all of these belong to pages whose vertices may be changed.
     pub(super) fn are_open(&self, all: &[u32]) -> bool {
         self.limit.is_empty()
             || all.iter().all(|&h| self.slots[self.home[h as usize] as usize].open)
@@ -345,8 +345,8 @@ impl Edit {
         self.points[h as usize].truncate()
     }
 
-    /// Whether three vertices make a triangle in this order, judged by the first, whose ring is
-    /// here.
+    /// Returns true if three vertices form a triangle in this order, according to the first vertex,
+    /// whose ring must be loaded.
     pub(crate) fn has_triangle(&self, [a, b, c]: [u32; 3]) -> bool {
         if self.is_dead(a) {
             return false;

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 /// A vertex with this much mask stays where and as it is.
 pub(crate) const PROTECTED: f32 = 0.99;
 
-/// What is wanted of the triangles within a ball.
+/// The target for the triangles within a ball.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Detail {
     /// The centre of the ball, mesh units.
@@ -59,11 +59,11 @@ impl Detail {
     }
 }
 
-/// Which places of the surface may be changed, beside what the balls say. It says the same of a
-/// place whenever it is asked.
+/// The filter for places of the surface that may be changed, in addition to the balls. It must
+/// return the same result for a place each time.
 pub type Within<'a> = Option<&'a (dyn Fn(Vec3) -> bool + Sync)>;
 
-/// What was done.
+/// The result of the changes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cuts {
     /// Edges that were split.
@@ -94,10 +94,10 @@ impl Cuts {
 
 /// Pages that are looked through before what was found in them is changed.
 pub(crate) const SCANNED: usize = 16;
-/// What looking through a page counts, in operations: about 8 microseconds, where an operation
-/// takes a quarter of one.
+/// The cost of a scan of a page, in operations: about 8 microseconds, where an operation takes a
+/// quarter of one.
 pub const PAGE_SCAN: usize = 32;
-/// What writing a page counts, in operations: about 50 microseconds.
+/// The cost of writing a page, in operations: about 50 microseconds.
 pub const PAGE_WRITE: usize = 200;
 
 /// The least budget of [`Clay::adapt_topology`](crate::Clay::adapt_topology) that surely gets on:
@@ -169,7 +169,7 @@ impl TopologyBuffers {
             let number = known.unwrap_or_else(|| {
                 self.next_ball = self.next_ball.wrapping_add(1);
                 if self.next_ball == 0 {
-                    // Numbers begin anew: what was noted with old ones must not be taken for them.
+                    // Numbers restart here: marks with old numbers must not match.
                     self.visits.fill(PageVisit::NEVER);
                 }
                 self.next_ball

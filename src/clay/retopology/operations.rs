@@ -7,10 +7,10 @@
 //! fewer than three. An operation leaves no angle below 3 degrees that is smaller than the smallest
 //! about it before, and turns no triangle by more than about 70 degrees. Protected vertices stay.
 //!
-//! Brushes squeeze triangles, so a triangle with an angle below 3 degrees is mended wherever one of
-//! its corners lies in a ball: its longest edge is flipped, else two of its corners are joined,
+//! Brushes squeeze triangles, so a triangle with an angle below 3 degrees is repaired wherever one
+//! of its corners is in a ball. Its longest edge is flipped, else two of its corners are joined,
 //! else one is slid along the surface ([`super::collapse`]), which may then turn a triangle by 90
-//! degrees. A few cannot be mended: their angles stayed above 1 degree in 50,000 random dabs.
+//! degrees. A few cannot be repaired: their angles stayed above 1 degree in 50,000 random dabs.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -145,8 +145,8 @@ impl Pass<'_> {
         true
     }
 
-    /// Whether the budget is used up, with what writing the changed pages and half as many beside
-    /// them will count.
+    /// Returns true if the budget is used up, including the cost of writing the changed pages and
+    /// half as many neighbouring pages.
     pub(crate) fn is_spent(&self) -> bool {
         self.cuts.work + self.edit.dirty.len() * (PAGE_WRITE + PAGE_WRITE / 2) >= self.budget
     }
@@ -163,7 +163,7 @@ impl Pass<'_> {
         self.balls[ball as usize].contains(self.edit.at(h)) && self.is_free(h)
     }
 
-    /// Whether a vertex may be changed, whatever ball it lies in.
+    /// Returns true if a vertex may be changed, whatever ball it is in.
     pub(super) fn is_free(&self, h: u32) -> bool {
         self.edit.points[h as usize].w < PROTECTED
             && self.edit.sets[h as usize] & HIDDEN == 0

@@ -40,7 +40,7 @@ pub(crate) struct PageRebuild {
 }
 
 impl PageRebuild {
-    /// Makes room for so many pages, and for what writing them usually needs.
+    /// Makes room for this many pages, and for the usual needs of writing them.
     pub(crate) fn reserve(&mut self, pages: usize) {
         let blank = Arc::default();
         self.spare.resize_with(pages, || PageWrite::new(&blank));
@@ -222,7 +222,8 @@ impl PageRebuild {
         self.items = items;
     }
 
-    /// Which page is home to which triangle: new ones, and those of vertices that moved house.
+    /// Assigns a home page to each new triangle, and to each triangle of a vertex that moved to
+    /// another page.
     fn share_out(&mut self, edit: &mut Edit, pages: &[Arc<Page>], next_triangle: &mut u32) {
         let mut created = std::mem::take(&mut edit.created);
         created.retain(|&t| edit.has_triangle(t));

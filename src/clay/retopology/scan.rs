@@ -10,7 +10,7 @@ use crate::page::Page;
 /// Balls that are looked at in one pass, at most.
 pub(crate) const BALLS: usize = 16;
 
-/// What is to be done with an edge.
+/// An operation on an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum EdgeTask {
     Split,
@@ -28,16 +28,16 @@ pub(crate) struct Candidate {
     pub(crate) rank: u32,
     /// Page and own index of both ends, the lower page or index first.
     pub(crate) ends: [(u32, u16); 2],
-    /// Which ball asks for it.
+    /// The index of the ball that requests it.
     pub(crate) ball: u8,
 }
 
-/// What one task found, and its memory.
+/// The result of one task, and its memory.
 #[derive(Debug, Default)]
 pub(crate) struct PageScan {
     pub(crate) page: u32,
     pub(crate) found: Vec<Candidate>,
-    /// For each row the balls that it lies in, a bit each.
+    /// The balls that contain each row, one bit each.
     inside: Vec<u16>,
 }
 
@@ -48,10 +48,10 @@ impl PageScan {
         PageScan { page: 0, found, inside: Vec::with_capacity(4 * PAGE_VERTICES) }
     }
 
-    /// Finds each triangle's longest edge where it is too long, its shortest where it is too
-    /// short, and its longest where the triangle is badly shaped; each once, the most urgent first.
-    /// A triangle with an angle below 3 degrees is found where one corner lies in a ball: brushes
-    /// squeeze triangles at their rim too.
+    /// Finds each triangle's longest edge if it is too long, its shortest if it is too short, and
+    /// its longest if the triangle is badly shaped; each once, the most urgent first. A triangle
+    /// with an angle below 3 degrees is included if one corner is in a ball: brushes squeeze
+    /// triangles at their rim too.
     pub(crate) fn scan(&mut self, page: &Page, balls: &[Detail], within: Within<'_>) {
         self.found.clear();
         self.find(page, balls, within);

@@ -1,4 +1,5 @@
-//! What is found in one page, changed by one task: it touches no vertex beyond the pages beside.
+//! One task applies the changes found in one page: it touches no vertex beyond the neighbouring
+//! pages.
 
 use std::sync::Arc;
 
@@ -40,7 +41,7 @@ impl TopologyTask {
         scan.page = page;
         scan.scan(&pages[page as usize], balls, within);
         let start = Cuts { work: super::PAGE_SCAN, ..Cuts::default() };
-        // What is kept stays where it is.
+        // Protected vertices stay in place.
         let slides = false;
         let mut pass = Pass { edit, queues, pages, balls, within, slides, cuts: start, budget };
         let all = pass.run(&scan.found);

@@ -20,10 +20,10 @@ pub(crate) struct PageWrite {
     pub(super) own: Vec<u32>,
     /// Triangles that it gets, and their numbers.
     pub(super) given: Vec<([u32; 3], u32)>,
-    /// Its vertices were put in order anew: so are its triangles.
+    /// True if its vertices were reordered; its triangles are reordered then too.
     pub(super) reorder: bool,
     pub(super) page: Arc<Page>,
-    /// It is too tangled for a page.
+    /// True if it is too tangled for a page.
     pub(super) failed: bool,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct WriteTask {
     pub(super) rows: Vec<Vec4>,
 }
 
-/// What all tasks read.
+/// The input shared by all tasks.
 pub(super) struct WriteInput<'a> {
     pub(super) edit: &'a Edit,
     pub(super) pages: &'a [Arc<Page>],
@@ -91,7 +91,7 @@ pub(super) fn owner(edit: &Edit, corners: [u32; 3]) -> u32 {
     }
 }
 
-/// Whether a triangle of before is still there, and not among the created.
+/// Returns true if an old triangle still exists and is not among the created ones.
 pub(super) fn survives(edit: &Edit, corners: [u32; 3]) -> bool {
     !corners.iter().all(|&h| edit.is_changed(h))
         || (edit.has_triangle(corners) && edit.created.binary_search(&canonical(corners)).is_err())
@@ -151,8 +151,8 @@ impl WriteTask {
         page.refit(u32::MAX);
     }
 
-    /// The face sets of the page: each vertex has that which it had, a new one that of the vertex
-    /// that it was made beside.
+    /// Returns the face sets of the page: a vertex keeps its set, and a new vertex gets the set of
+    /// the vertex next to which it was made.
     fn sets(&self, own: &[u32], shared: &WriteInput<'_>) -> Option<Arc<PageSets>> {
         let of = |h: u32| {
             if shared.edit.is_placed(h) {
@@ -267,7 +267,7 @@ impl WriteTask {
                 self.triangles.push((local, id));
             }
         }
-        // What is new lies beside what it shares a vertex with.
+        // A new triangle goes next to one that it shares a vertex with.
         self.given.clear();
         for &(corners, id) in given {
             let local = corners.map(|h| self.translate(slot, own.len(), edit, h));
@@ -314,7 +314,7 @@ impl WriteTask {
     }
 }
 
-/// Where a vertex is in the new pages, as a number that orders the halo.
+/// Returns the place of a vertex in the new pages, as a number that orders the halo.
 fn key(edit: &Edit, h: u32) -> u64 {
     let page = edit.slots[edit.home[h as usize] as usize].page;
     u64::from(page) << 16 | u64::from(edit.local[h as usize])

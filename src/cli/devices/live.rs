@@ -24,7 +24,7 @@ use sculptd_daemon::config::DevicesConfig;
 
 /// Samples between the adaptors and the table.
 const CHANNEL: usize = 4096;
-/// How often the table is drawn.
+/// Interval between two drawings of the table, in microseconds.
 const DRAW_US: u64 = 500_000;
 /// Reports that wait for the file before they are dropped and counted.
 const TAPPED: usize = 65_536;

@@ -17,12 +17,12 @@ use sculptd_daemon::config::DevicesConfig;
 
 #[derive(Debug, Subcommand)]
 pub enum DevicesCommand {
-    /// What is plugged in: what can be used, and why the rest cannot.
+    /// List the connected devices, and why a device cannot be used.
     List {
         #[command(flatten)]
         source: Source,
     },
-    /// A live table of every device: rates, jitter, losses, and what it says.
+    /// Show a live table of every device: rates, jitter, losses and values.
     Watch {
         #[command(flatten)]
         source: Source,
@@ -46,11 +46,11 @@ pub enum DevicesCommand {
         recording: PathBuf,
         #[command(flatten)]
         source: Source,
-        /// Times its own speed; 0: as fast as the machine can.
+        /// Playback speed, as a factor of the recorded speed; 0: as fast as the machine can.
         #[arg(long, default_value_t = 1.0)]
         speed: f64,
     },
-    /// Print what a recording's device said, one row a sample.
+    /// Print the samples of a recording, one row per sample.
     Decode {
         /// A hid-recorder file, a tracker's frames or a recording of ours.
         recording: PathBuf,
@@ -62,7 +62,7 @@ pub enum DevicesCommand {
     },
 }
 
-/// Where models come from, besides the built-in ones.
+/// Additional sources of tablet models.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Source {
     /// A folder of further tablet files. May be repeated.

@@ -51,7 +51,7 @@ impl Table {
         Table { stats, lines: BTreeMap::new() }
     }
 
-    /// Whether no device has sent anything.
+    /// Returns true if no device has sent anything.
     pub(super) fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }

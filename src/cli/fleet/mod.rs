@@ -34,11 +34,11 @@ pub struct FleetArgs {
     /// The staff's key; without it, `fleets/NAME/staff.key` in the user's data folder.
     #[arg(long, value_name = "FILE", global = true)]
     pub key: Option<PathBuf>,
-    /// Where to listen for installations, as tcp/0.0.0.0:7447. May be repeated.
+    /// Listen for installations on this endpoint, as tcp/0.0.0.0:7447. May be repeated.
     #[arg(long, value_name = "ENDPOINT", global = true)]
     pub listen: Vec<String>,
-    /// Whom to connect to, as tcp/hall.example:7447. May be repeated. Installations on the local
-    /// network are found without it.
+    /// Connect to this endpoint, as tcp/hall.example:7447. May be repeated. Installations on the
+    /// local network are found without it.
     #[arg(long, value_name = "ENDPOINT", global = true)]
     pub connect: Vec<String>,
     /// Do not look for installations on the local network.
@@ -59,25 +59,24 @@ pub enum FleetCommand {
         #[arg(value_parser = fleet_name)]
         name: String,
     },
-    /// Make the key of an installation. Bring the file there, and name it in its settings.
+    /// Create the key of an installation. Copy the file to it, and name it in its settings.
     Key {
         /// The installation's name.
         #[arg(value_parser = fleet_name)]
         installation: String,
-        /// Where to write it; without it, NAME.key in the current folder.
+        /// Write the key to this file; default: NAME.key in the current folder.
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
-    /// Every installation: those that are there, and those that were.
+    /// List every installation, connected or not.
     List,
-    /// Tell every change as it comes; with --json one object a line.
+    /// Print every change as it happens; with --json one object per line.
     Follow {
         /// End after so many seconds.
         #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
         limit_s: Option<f64>,
     },
-    /// Show a text to the staff on the spot, until somebody presses it away; an empty text takes it
-    /// away.
+    /// Show a text to the staff on site until somebody dismisses it; an empty text removes it.
     Message {
         text: String,
         #[command(flatten)]
@@ -88,26 +87,26 @@ pub enum FleetCommand {
         #[command(flatten)]
         to: Recipients,
     },
-    /// The newest lines of the logs.
+    /// Print the newest lines of the logs.
     Logs {
         #[command(flatten)]
         to: Recipients,
         #[arg(long, value_name = "N", default_value_t = 100)]
         lines: u32,
     },
-    /// Bring a settings file (kiosk.toml without its table [fleet]) to all installations: to one
-    /// first, which is watched, then to the others. Where one fails it is taken back from all. Ends
-    /// with 1 if it was.
+    /// Roll out a settings file (kiosk.toml without its table [fleet]) to all installations: to one
+    /// first, which is watched, then to the others. A failure on one reverts all. Exits with 1 if
+    /// reverted.
     Rollout {
         file: PathBuf,
-        /// The installation that is first.
+        /// The installation to change first.
         #[arg(long, value_name = "INSTALLATION")]
         canary: String,
-        /// How long each is watched.
+        /// Time to watch each installation, in seconds.
         #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "300")]
         watch: f64,
     },
-    /// Bring the settings back that were in place before the last ones.
+    /// Restore the settings that were in use before the last ones.
     Rollback {
         #[command(flatten)]
         to: Recipients,
@@ -116,10 +115,10 @@ pub enum FleetCommand {
 
 #[derive(Debug, clap::Args)]
 pub struct Recipients {
-    /// The installations that are asked.
+    /// Names of the installations.
     #[arg(required_unless_present = "all")]
     pub installations: Vec<String>,
-    /// All that are there.
+    /// Address all connected installations.
     #[arg(long, conflicts_with = "installations")]
     pub all: bool,
 }

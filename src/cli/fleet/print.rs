@@ -83,7 +83,7 @@ pub fn change(what: &str, name: &str, entry: &RegistryEntry, json: bool) {
     let _ = std::io::stdout().flush();
 }
 
-/// What became of requests.
+/// Prints the results of requests.
 pub fn answers(ends: &BTreeMap<String, RequestEnd>, json: bool) {
     let of = |(name, end): (&String, &RequestEnd)| {
         let mut value = match end {

@@ -1,5 +1,4 @@
-//! Events for a client that subscribed: what changed since the last look, a line each, until the
-//! client has gone.
+//! Events for a subscribed client: one line for each change, until the client disconnects.
 
 use std::io::Write;
 use std::os::unix::net::UnixStream;
@@ -13,10 +12,10 @@ use super::host::{Host, locked};
 use super::status_reply::losses;
 use sculptd_control::event::{Event, EventNotice, HistoryState, JournalState, MeshState};
 
-/// Between two looks: what changes in between is one event.
+/// Interval between two checks; several changes within it make one event.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// The state that each event tells of.
+/// Returns the current state for each kind of event.
 pub(super) fn look(host: &Host) -> Vec<Event> {
     let s = host.published.load();
     let brush = serde_json::to_value(s.brush).and_then(serde_json::from_value);
@@ -36,8 +35,8 @@ pub(super) fn look(host: &Host) -> Vec<Event> {
     ]
 }
 
-/// Writes what is no longer as `before`, on a thread of its own; it ends with `gone`, or when
-/// nobody reads.
+/// Starts a thread that writes each state that differs from `before`. It ends once `gone` is set or
+/// a write fails.
 pub(super) fn start(
     host: &Host,
     mut before: Vec<Event>,

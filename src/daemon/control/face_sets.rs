@@ -17,10 +17,10 @@ use sculptd_control::scene::ObjectReply;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::job::Job;
 
-/// What a method that changes face sets answers.
+/// Result of a method that changes face sets.
 pub(super) type SetsDone = Result<FaceSetReply, RpcError>;
 
-/// Where creases and turns part sets unless it is said, degrees.
+/// Default crease or bend angle that separates face sets, in degrees.
 const USUAL_DEGREES: f32 = 40.0;
 
 /// The face sets of the active object.
@@ -38,12 +38,12 @@ pub(super) fn list(shown: &Published) -> FaceSetsReply {
     }
 }
 
-/// How many face sets the active object has; 1 where it has none but a part of it is hidden.
+/// Returns the number of face sets of the active object; 1 if it has none but part of it is hidden.
 pub(super) fn count(host: &Host) -> u64 {
     host.published.load().mesh.face_set_count()
 }
 
-/// Hands an edit to the loop and waits for what came of it.
+/// Sends an edit to the loop and waits for its result.
 pub(super) fn edit(host: &Host, edit: SetsEdit) -> SetsDone {
     let made = u64::from(matches!(edit, SetsEdit::FromMask | SetsEdit::FromVisible));
     let done = ask(host, SceneCommand::Sets(edit))?;

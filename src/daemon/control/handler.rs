@@ -53,14 +53,14 @@ pub const MAX_PICTURE_FILE: u64 = 256 << 20;
 
 const SENT: SentReply = SentReply { sent: true };
 
-/// What a method that is about one object answers.
+/// Result of a method that acts on one object.
 type ObjectDone = Result<asked_scene::ObjectReply, RpcError>;
 type CombineDone = Result<asked_scene::CombineReply, RpcError>;
 
 /// Answers one request by its name.
 ///
 /// # Errors
-/// As [`Request::read`], and what the method refuses.
+/// As [`Request::read`], and the error of the method.
 pub fn call(host: &Host, name: &str, params: Value) -> Result<Value, RpcError> {
     method::answer(host, Request::read(name, params)?)
 }
@@ -77,8 +77,8 @@ fn merge<T: Serialize + DeserializeOwned>(now: &T, named: impl Serialize) -> Res
     serde_json::from_value(all).map_err(bad)
 }
 
-/// The brush in hand with the named settings. Another brush comes with its own settings, and what
-/// else is named is laid over them. A person's own brush may come with a picture as well.
+/// Returns the brush in hand with the named settings applied. A named brush starts from its preset;
+/// the other named settings are applied over it. A user brush may also bring a picture.
 fn merged_brush(
     presets: &brush::Presets,
     shown: &Published,

@@ -28,33 +28,33 @@ pub struct KeptThickness {
     pub(super) reply: ThicknessReply,
 }
 
-/// What a request may touch. Cloning it gives another handle to the same.
+/// Everything that a request may access. A clone is another handle to the same state.
 #[derive(Debug, Clone)]
 pub struct Host {
     pub commands: CommandSender,
     pub published: Arc<ArcSwap<Published>>,
-    /// What each brush begins with.
+    /// Presets of each brush.
     pub presets: Presets,
     /// The wall thickness of the object, as last asked for.
     pub thickness: Arc<Mutex<Option<KeptThickness>>>,
     /// The Boolean under way.
     pub joining: Arc<Mutex<Option<Arc<Job>>>>,
-    /// How the session file stands; `None`: the run is not recorded.
+    /// Health of the session file; `None` if the run is not recorded.
     pub journal: Option<Health>,
     /// The history of the session, if one is kept.
     pub history: Option<Handle>,
-    /// The pen of `stroke`; `None`: nothing takes its samples.
+    /// The pen of `stroke`; `None` if nothing receives its samples.
     pub pen: Option<Arc<Mutex<VirtualPen>>>,
-    /// How the window stands, and whether another was asked for.
+    /// State of the window, and the request for a new one.
     pub window: WindowLink,
-    /// Raised by `shutdown` and `window`.
+    /// Set by `shutdown` and `window`.
     pub stop: Arc<AtomicBool>,
     /// The tick of the newest effect that this client's requests had.
     pub effect: Arc<AtomicU64>,
 }
 
 impl Host {
-    /// A host without session and pen, whose `stop` is its own.
+    /// Creates a host without session and pen, with a new `stop` flag.
     pub fn new(
         commands: CommandSender,
         published: Arc<ArcSwap<Published>>,
@@ -101,13 +101,12 @@ impl Host {
         }
     }
 
-    /// Returns a handle for one client, with a record of its own effects.
+    /// Returns a handle for one client, with a separate record of that client's effects.
     pub fn for_client(&self) -> Host {
         Host { effect: Arc::default(), ..self.clone() }
     }
 
-    /// Takes the one place for a Boolean. It is given back when the guard is dropped, by a panic
-    /// too.
+    /// Reserves the only place for a Boolean. The guard frees it when dropped, also on panic.
     pub(super) fn begin_boolean(&self) -> Result<BooleanPlace<'_>, RpcError> {
         let job = Arc::new(Job::default());
         let mut place = locked(&self.joining);

@@ -8,7 +8,7 @@ use sculptd_control::RpcError;
 use sculptd_control::layers::{LayerAddParams, LayerInfo, LayerReply, LayerSetParams, LayersReply};
 use sculptd_engine::scene::SceneCommand;
 
-/// What a method about a layer answers.
+/// Result of a method that acts on a layer.
 pub(super) type LayerDone = Result<LayerReply, RpcError>;
 
 /// The layers of the active object.
@@ -29,12 +29,12 @@ pub(super) fn list(shown: &Published) -> LayersReply {
     }
 }
 
-/// How many layers the active object has.
+/// Returns the number of layers of the active object.
 pub(super) fn count(host: &Host) -> u64 {
     host.published.load().mesh.layers().map_or(0, |s| s.layers.len() as u64)
 }
 
-/// Hands an edit to the loop and waits for what came of it.
+/// Sends an edit to the loop and waits for its result.
 pub(super) fn edit(host: &Host, edit: LayerEdit) -> LayerDone {
     let done = ask(host, SceneCommand::Layers(edit))?;
     Ok(LayerReply { layer: (done.id != u32::MAX).then_some(done.id) })

@@ -15,25 +15,25 @@ use sculptd_engine::answer::Answer;
 /// For the loop to say what came of a command.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Where commands go to and what the loop shows.
+/// Link to the loop: its command queue and its published state.
 #[derive(Debug, Clone, Copy)]
 pub struct LoopLink<'a> {
     /// The bounded queue of the loop.
     pub commands: &'a CommandSender,
     /// The newest state.
     pub published: &'a Arc<ArcSwap<Published>>,
-    /// Raised when the daemon ends.
+    /// Set when the daemon ends.
     pub stop: &'a AtomicBool,
     /// The tick of the newest effect that this client's requests had.
     pub effect: &'a AtomicU64,
 }
 
 impl LoopLink<'_> {
-    /// Hands a command to the loop and waits for what came of it: the published state shows the
-    /// effect when this returns.
+    /// Sends a command to the loop and waits for its result. The published state shows the effect
+    /// when this returns.
     ///
     /// # Errors
-    /// Where the world refused it, and where no answer came.
+    /// Returns an error if the world refused the command, or if no answer came.
     pub fn carry_out(&self, command: impl Into<QueuedCommand>) -> Result<Answer, RpcError> {
         let failed = |e: &dyn std::fmt::Display| RpcError::failed(e.to_string());
         let answered = self.commands.carry_out(command, PATIENCE).map_err(|e| failed(&e))?;
@@ -46,7 +46,7 @@ impl LoopLink<'_> {
         Target { published: self.published, commands: self.commands }
     }
 
-    /// Whether the daemon ends.
+    /// Returns true once the daemon is ending.
     pub fn stopped(&self) -> bool {
         self.stop.load(Relaxed)
     }

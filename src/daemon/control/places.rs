@@ -1,6 +1,6 @@
-//! Who is connected. There are few places, and nobody keeps one by doing nothing: where all are
-//! taken, a newcomer gets the place of a client that floods, else of the one that has been silent
-//! for the longest time. Who waits for a reply, is subscribed to events or has just come stays.
+//! The connected clients. Places are limited, and an idle client cannot keep one. When all are
+//! taken, a newcomer replaces a client that floods, otherwise the one that has been silent longest.
+//! A client that waits for a reply, is subscribed to events or has just connected keeps its place.
 
 use std::net::Shutdown;
 use std::os::unix::net::UnixStream;
@@ -12,7 +12,7 @@ use sculptd_devices::Clock;
 
 /// A client that was silent for so long gives way, microseconds.
 const SILENT_US: u64 = 1_000_000;
-/// So long nobody who has just come gives way, microseconds.
+/// Time for which a new client cannot be replaced, in microseconds.
 const GRACE_US: u64 = 250_000;
 
 /// The places, all of one kind.
@@ -26,18 +26,18 @@ pub(super) struct ClientPlaces {
 /// A connected client.
 #[derive(Debug)]
 struct ConnectedClient {
-    /// To end the connection; `None`: it stays whatever comes.
+    /// Used to end the connection; `None` if the client can never be replaced.
     stream: Option<UnixStream>,
     came_us: u64,
-    /// When its last request was answered.
+    /// Time of its last answered request, in microseconds.
     last_us: AtomicU64,
-    /// A request of it is being answered.
+    /// True while one of its requests is being answered.
     is_busy: AtomicBool,
     is_subscribed: AtomicBool,
     is_flooding: AtomicBool,
 }
 
-/// A taken place; given back when dropped, by a panic too.
+/// A taken place, freed when dropped, also on panic.
 #[derive(Debug)]
 pub(super) struct ClientPlace {
     client: Arc<ConnectedClient>,

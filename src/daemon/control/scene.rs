@@ -158,7 +158,7 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
             let held = host.published.load().thing.clone();
             let held = held.ok_or_else(|| RpcError::failed("nothing is in the hands"))?;
             let clay = Clay::build(&held.plain, &Job::default()).map_err(failed)?;
-            // A transform that is named is in the place of the hands'.
+            // A transform in the request replaces that of the hands.
             if params.transform.is_none() {
                 transform = held.place.to_object();
             }
@@ -243,7 +243,7 @@ pub(super) fn combine(
     Ok(CombineReply { id: object_of(done.answer), seconds, ..done.made })
 }
 
-/// A mesh in the place of the active object, with its morph targets as layers.
+/// Replaces the active object with a mesh; its morph targets become layers.
 pub(super) fn load(host: &Host, loaded: startup::Loaded) -> Result<LoadReply, RpcError> {
     let vertices = loaded.mesh.vertex_count() as u64;
     let command = Command::Replace(NewClay::new(Arc::new(loaded.plain), false));

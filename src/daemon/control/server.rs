@@ -42,17 +42,17 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens. A client that sends nothing for [`IDLE_SECONDS`] is disconnected unless it is
-    /// subscribed.
+    /// Listens on the socket at `path`. A client that sends nothing for [`IDLE_SECONDS`] is
+    /// disconnected unless it is subscribed.
     ///
     /// # Errors
-    /// Where another daemon listens there, where the folder is another user's, and what the system
-    /// says.
+    /// Returns an error if another daemon listens there, if another user owns the folder, or if the
+    /// system reports one.
     pub fn start(path: &Path, host: Host) -> Result<Self, ServeError> {
         Server::start_with_idle(path, host, Duration::from_secs(IDLE_SECONDS))
     }
 
-    /// As [`Server::start`], with another time that a silent client keeps its place.
+    /// As [`Server::start`], with a different idle time.
     ///
     /// # Errors
     /// As [`Server::start`].
@@ -103,7 +103,7 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
             return;
         }
         let Ok(stream) = stream else { continue };
-        // A client that reads nothing must not hold up those that wait to be accepted.
+        // A client that does not read must not delay the clients that wait to be accepted.
         let _ = stream.set_write_timeout(Some(WRITE_PATIENCE));
         if !allowed(&stream, user_id()) {
             refuse(&stream, "another user's daemon");
@@ -130,9 +130,9 @@ fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &Atomic
 
 const TOO_MANY: &str = "too many clients at a time; only 'shutdown' and 'cancel' are answered";
 
-/// Serves on a thread of its own, which holds the place.
+/// Serves a client on a separate thread, which owns the place.
 fn start(place: ClientPlace, serve: impl FnOnce(ClientPlace) + Send + 'static) {
-    // Where no thread can be started the closure is dropped, and the place and the stream with it.
+    // If the thread cannot start, the closure is dropped, and with it the place and the stream.
     let client = std::thread::Builder::new().name("sculptd-client".into());
     let _ = client.spawn(move || serve(place));
 }
@@ -156,13 +156,13 @@ pub fn allowed(stream: &UnixStream, owner: u32) -> bool {
     }
 }
 
-/// Whether user `peer` may drive the daemon of user `owner`.
+/// Returns true if user `peer` may control the daemon of user `owner`.
 pub fn permitted(peer: u32, owner: u32) -> bool {
     peer == owner || peer == 0
 }
 
-/// The answer to one request while every other place is taken: to what ends the daemon, or what
-/// holds a place. `None`: no request came in time.
+/// Answers one request while every other place is taken: the methods that end the daemon or report
+/// who holds a place. Returns `None` if no request came in time.
 fn answer_owner(mut stream: &UnixStream, host: &Host) -> Option<Response> {
     let clock = Clock::monotonic();
     let until = clock.now_us() + OWNER_PATIENCE.as_micros() as u64;
@@ -217,7 +217,7 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
         let (response, subscribes) = answer(host, line.trim_ascii(), asked > MAX_RATE);
         // Who does not read its replies keeps nobody out.
         place.set_busy(false);
-        // Taken before the client is told: nothing after its answer is missed.
+        // The state is read before the reply is sent, so that no later change is missed.
         let before =
             (subscribes && !std::mem::replace(&mut subscribed, true)).then(|| events::look(host));
         if response.is_some_and(|r| !write_line(&locked(&out), &r)) {
@@ -227,15 +227,15 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
             place.set_subscribed();
             let _ = events::start(host, before, out.clone(), gone.clone());
         }
-        // What follows an oversized line cannot be told apart from it.
+        // After an oversized line, the start of the next request is unknown.
         if !whole {
             return;
         }
     }
 }
 
-/// Reads one line, or as much of it as a message may have. `false`: the client has gone, was silent
-/// for too long (a subscriber may be), or takes longer than that for one line.
+/// Reads one line, or as much of it as a message may have. Returns `false` if the client has
+/// disconnected, was silent too long (unless subscribed), or takes too long for one line.
 fn read_line(
     lines: &mut BufReader<UnixStream>,
     line: &mut Vec<u8>,

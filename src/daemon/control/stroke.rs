@@ -37,21 +37,21 @@ pub struct VirtualPen {
 /// A brush for one stroke.
 #[derive(Debug)]
 pub struct LentBrush {
-    /// What the stroke is made with.
+    /// Settings for the stroke.
     pub settings: BrushSettings,
-    /// The picture of heights that the brush brings along.
+    /// The height picture of the brush.
     pub picture: Option<Arc<Picture>>,
-    /// What the brush of this kind is set to again afterwards, where it is not the one in hand.
+    /// Settings to restore for a brush of this kind afterwards, if it is not the one in hand.
     pub kept: Option<BrushSettings>,
 }
 
-/// What does what no picture does: flat, and lowest.
+/// Returns a flat picture of height 0, which acts as if there were none.
 fn no_picture() -> Arc<Picture> {
     Arc::new(Picture { width: 1, height: 1, heights: vec![0], cover: Vec::new() })
 }
 
 impl VirtualPen {
-    /// A pen on the loop's channel. `clock` is the one that the loop runs by.
+    /// Creates a pen on the loop's channel. `clock` is the loop's clock.
     pub fn new(factory: &SenderFactory, clock: Clock) -> Self {
         VirtualPen { sender: factory.sender(), clock }
     }
@@ -197,8 +197,8 @@ fn in_view(shown: &Published, stroke: &StrokeParams) -> Result<Vec<ViewPoint>, R
         .collect()
 }
 
-/// Where a point of space is seen; `None` where it lies outside the view, behind the eye, or behind
-/// the surface.
+/// Returns the view position of a point in world space; `None` if it is outside the view, behind
+/// the camera, or hidden by the surface.
 fn seen(shown: &Published, at: Vec3) -> Option<Vec2> {
     let view = shown.camera.project(at)?;
     if !(view.cmpge(Vec2::ZERO).all() && view.cmple(Vec2::ONE).all()) {

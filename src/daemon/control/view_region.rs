@@ -10,10 +10,10 @@ use sculptd_control::face_sets::{FaceSetRegionAction, FaceSetRegionParams};
 use sculptd_engine::mask_region::MaskRegion;
 use sculptd_engine::view_region::{SetsRegion, ViewRegion};
 
-/// The engine's form of a region.
+/// Converts a region to the engine's form.
 ///
 /// # Errors
-/// Where it is none: a line without a length, a polygon of too few or too many corners.
+/// Returns an error for a line of length 0, or a polygon with too few or too many corners.
 pub(super) fn region(asked: asked::ViewRegion) -> Result<ViewRegion, RpcError> {
     let ends = |[x, y, u, v]: [f32; 4]| [Vec2::new(x, y), Vec2::new(u, v)];
     let region = match asked {
@@ -31,19 +31,19 @@ pub(super) fn region(asked: asked::ViewRegion) -> Result<ViewRegion, RpcError> {
     Err(RpcError::bad_params(text))
 }
 
-/// The engine's form of a request to mask a region.
+/// Converts a request to mask a region to the engine's form.
 ///
 /// # Errors
-/// Where the region is none.
+/// As [`region`].
 pub(super) fn mask_region(params: asked::MaskRegionParams) -> Result<MaskRegion, RpcError> {
     let asked::MaskRegionParams { region: asked, mask, front_faces } = params;
     Ok(MaskRegion { region: region(asked)?, mask, front_faces })
 }
 
-/// The engine's form of a request about the face sets of a region.
+/// Converts a request about the face sets of a region to the engine's form.
 ///
 /// # Errors
-/// Where the region is none.
+/// As [`region`].
 pub(super) fn sets_region(params: FaceSetRegionParams) -> Result<SetsRegion, RpcError> {
     let edit = match params.action {
         FaceSetRegionAction::Make => PartEdit::NewSet,

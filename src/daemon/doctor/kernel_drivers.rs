@@ -1,10 +1,10 @@
-//! Which kernel module has each tablet, and what that means for its reports.
+//! Reports which kernel module drives each tablet, and the effect on its reports.
 //!
-//! Under Linux a module stands between the tablet and `/dev/hidraw*`. Some leave the reports as the
-//! tablet sends them; some put a report descriptor of their own in the place of the tablet's, and
-//! `hid_uclogic` and HID-BPF programs change the reports, too. The last kind is read by that
-//! descriptor (`sculptd_devices::catalogue`), so nothing is to be done; but a tablet that needs its
-//! module to send more than a mouse does, and does not have it, sends little.
+//! Under Linux a module sits between the tablet and `/dev/hidraw*`. Some modules pass the tablet's
+//! reports on unchanged; some replace the tablet's report descriptor with another. `hid_uclogic`
+//! and HID-BPF programs change the reports, too. Those reports are parsed by the replaced
+//! descriptor (`sculptd_devices::catalogue`) and need no repair. Some tablets send more than a
+//! mouse does only with their module; without it they send little.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use super::Check;
 use sculptd_devices::catalogue::Catalogue;
 
 const NAME: &str = "kernel drivers of tablets";
-/// Modules that put another descriptor in the place of the tablet's.
+/// Modules that replace the tablet's report descriptor.
 const REWRITE: [&str; 5] = ["uclogic", "kye", "waltop", "holtek", "viewsonic"];
 /// Huion, Gaomon and UC-Logic itself: only strings that hidraw cannot ask for switch these from a
 /// mouse's reports to a pen's.
@@ -50,7 +50,7 @@ impl HidrawNode {
         })
     }
 
-    /// What the driver is called, with its module where that is known.
+    /// Returns the driver's name, with its module if known.
     fn driver(&self) -> String {
         match (&self.module, self.driver.as_str()) {
             (Some(module), _) => format!("module {module}"),

@@ -1,4 +1,4 @@
-//! Whether every tablet may be read by this user, each on its own node: an open gamepad beside a
+//! Checks that this user may read every tablet, each on its separate node: an open gamepad beside a
 //! closed tablet proves nothing.
 
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ fn identity(device: &Path) -> Option<Identity> {
     })
 }
 
-/// What a node is read as: a tablet's name, nothing, or unknown.
+/// Device found on a node: a tablet with its name, another device, or unknown.
 enum Kind {
     Tablet(String),
     Other,
@@ -232,7 +232,7 @@ mod tests {
         let nodes = [node(0), node(1)];
         let line = repair(nodes.iter(), &nodes[0]);
         assert_eq!(line.matches("056A:0357").count(), 1, "{line}");
-        // What the shell makes of it, without the superuser.
+        // The same line as the shell sees it, without the superuser.
         let tried = line
             .replace("sudo tee /etc/udev/rules.d/70-sculptd-tablets.rules", "cat")
             .replace("sudo udevadm control --reload", "true")

@@ -266,7 +266,7 @@ fn upright(radius: f64, height: f64, around: u32) -> PolyMesh {
     mesh
 }
 
-/// Where a new operand begins: the active object.
+/// The active object, as the start of a new operand.
 fn body(world: &World) -> Operand {
     Operand { mesh: placed(world, world.scene().active().id), carve: false }
 }

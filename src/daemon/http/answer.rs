@@ -1,4 +1,4 @@
-//! Who may ask, and what a request gets.
+//! Checks whether a client may ask, and builds the answer to a request.
 
 use std::fs::File;
 use std::io::Read;
@@ -17,7 +17,7 @@ use super::bounds::{OutgoingRate, PIECE};
 /// Why a request gets nothing, in words for its sender.
 pub type Refusal = (StatusCode, &'static str);
 
-/// What a request gets.
+/// Answer to a request.
 #[derive(Debug)]
 pub struct Answer {
     status: StatusCode,
@@ -40,7 +40,7 @@ impl Answer {
     /// Status 200 with the bytes that the file has now.
     ///
     /// # Errors
-    /// What the system says of the file.
+    /// Returns the system's error for the file.
     pub fn file(kind: &'static str, path: &Path) -> std::io::Result<Self> {
         let file = File::open(path)?;
         let facts = file.metadata()?;
@@ -74,7 +74,7 @@ impl From<Refusal> for Answer {
     }
 }
 
-/// What is still to be sent.
+/// The part of the answer still to be sent.
 #[derive(Debug)]
 enum Rest {
     Text(Option<Bytes>),
@@ -172,7 +172,7 @@ pub fn permitted<'a>(
     if request.method() != Method::GET {
         return Err((StatusCode::METHOD_NOT_ALLOWED, "GET only"));
     }
-    // A target with a host of its own is for proxies.
+    // A target that names a host is meant for proxies.
     let path = request.uri().path();
     let plain = request.uri().authority().is_none() && path.starts_with('/');
     plain.then_some(path).ok_or(BAD)

@@ -24,7 +24,7 @@ pub const SLOWEST: u64 = 4096;
 /// Most bytes a second that go out, of all connections together. What readers who do not read have
 /// in their kernel's buffers goes out at this rate before a quick one gets its turn.
 pub const FASTEST: u64 = 256 << 20;
-/// How far ahead of that rate they may go before they wait. A timer that waits for less than a
+/// Time by which a connection may exceed that rate before it waits. A timer for less than a
 /// millisecond waits for a millisecond.
 const AHEAD: Duration = Duration::from_millis(20);
 /// Bytes that the kernel holds for one connection in each direction (it doubles them).
@@ -32,7 +32,7 @@ pub const SOCKET_BUFFER: usize = 64 << 10;
 /// Bytes of a file that are read at a time.
 pub const PIECE: usize = 32 << 10;
 
-/// How one connection stands. Times are on the server's clock, microseconds.
+/// State of one connection. Times are on the server's clock, in microseconds.
 #[derive(Debug)]
 pub struct Progress {
     begun_us: u64,
@@ -64,7 +64,7 @@ impl Progress {
         self.last_us.store(now_us, Relaxed);
     }
 
-    /// Whether the connection may go on.
+    /// Returns true if the connection may continue.
     pub fn within_bounds(&self, now_us: u64) -> bool {
         let age = now_us.saturating_sub(self.begun_us);
         let quiet = now_us.saturating_sub(self.last_us.load(Relaxed));

@@ -25,7 +25,7 @@ use super::bounds::{
 };
 use sculptd_devices::Clock;
 
-/// How often the bounds of a connection are looked at.
+/// Interval at which the bounds of connections are checked.
 const LOOK: Duration = Duration::from_millis(250);
 /// Wait after a connection that could not be accepted (too many open files).
 const AGAIN: Duration = Duration::from_millis(100);
@@ -42,12 +42,12 @@ pub struct HttpServer {
 }
 
 impl HttpServer {
-    /// Listens on `at` and answers by `handler`, on a thread of the name `thread`. The handler is
-    /// made from the address, whose port is the one that was found free if 0 was asked for, and the
-    /// table of the connections.
+    /// Listens on `at` and answers with `handler`, on a thread named `thread`. The handler is
+    /// created from the address and the table of connections. If port 0 was requested, the address
+    /// has the port that the system chose.
     ///
     /// # Errors
-    /// What the system says of the address or the thread.
+    /// Returns the system's error for the address or the thread.
     pub fn start<H>(
         at: SocketAddr,
         thread: &str,
@@ -79,7 +79,7 @@ impl HttpServer {
         Ok(HttpServer { at, stop: Some(stop), thread: Some(thread) })
     }
 
-    /// Where it listens.
+    /// Returns the address of the listening socket.
     pub fn address(&self) -> SocketAddr {
         self.at
     }
@@ -160,7 +160,7 @@ async fn serve(
     let (asked, time) = (progress.clone(), clock.clone());
     let service = service_fn(move |request: Request<hyper::body::Incoming>| {
         asked.asked(time.now_us());
-        // What a request carries beside its head is not read.
+        // The body of a request is not read.
         let answer = handler(&request.map(|_| ()));
         ready(Ok::<_, Infallible>(answer.respond(pace.clone())))
     });

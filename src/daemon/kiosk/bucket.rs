@@ -7,14 +7,14 @@ use object_store::aws::AmazonS3Builder;
 use object_store::path::Path;
 use object_store::{ClientOptions, ObjectStore, ObjectStoreExt, PutPayload, RetryConfig};
 
-/// How long a connection may take, and one work: some 20 MB over a poor line.
+/// Time limits for a connection and for one sculpture: some 20 MB over a slow line.
 const CONNECT: Duration = Duration::from_secs(5);
 const WHOLE: Duration = Duration::from_secs(300);
-/// How often a sending looks whether the program ends.
+/// Interval at which a transfer checks whether the program is ending.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// An open place. Keys come from the environment (`AWS_ACCESS_KEY_ID`, `AWS_ENDPOINT`, ...): no
-/// secret stands in a settings file.
+/// An open bucket. Keys come from the environment (`AWS_ACCESS_KEY_ID`, `AWS_ENDPOINT`, ...), so
+/// that no settings file contains a secret.
 #[derive(Debug)]
 pub struct Bucket {
     store: Box<dyn ObjectStore>,
@@ -32,7 +32,7 @@ impl Bucket {
         let said = |e: object_store::Error| format!("{place}: {e}");
         let (store, prefix): (Box<dyn ObjectStore>, Path) = if url.scheme() == "s3" {
             let prefix = Path::from_url_path(url.path()).map_err(|e| format!("{place}: {e}"))?;
-            // The spool tries again by itself, and ends when it is told to.
+            // The spool itself retries, and stops on request.
             let retry =
                 RetryConfig { max_retries: 0, retry_timeout: WHOLE, ..RetryConfig::default() };
             let line = ClientOptions::new().with_connect_timeout(CONNECT).with_timeout(WHOLE);

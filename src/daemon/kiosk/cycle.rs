@@ -2,26 +2,26 @@
 
 /// Wrong numbers in a row before the keypad is locked.
 const TRIES: u32 = 3;
-/// How long it then is, seconds.
+/// Duration of the lock after that, in seconds.
 const LOCKED_S: f64 = 60.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Nobody is there: recordings play.
+    /// No visitor: recordings play.
     Attract,
     Working,
     /// Nobody has touched anything for a while; any touch goes back to `Working`.
     Countdown,
 }
 
-/// What the cycle asks for.
+/// Action that the cycle requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KioskAct {
-    /// A visitor came: what the attract loop made goes.
+    /// A visitor came: remove the result of the attract loop.
     Begin,
-    /// The visitor left: the work may be kept, then everything is put back.
+    /// The visitor left: keep the sculpture if configured, then reset everything.
     End { seconds: u64 },
-    /// Staff gave the right number.
+    /// Staff entered the correct PIN.
     Quit,
 }
 

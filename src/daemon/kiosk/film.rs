@@ -24,7 +24,7 @@ pub struct AttractRecording {
     ends_us: u64,
 }
 
-/// Whether something of the sample is at work: a tip on the surface, a hand in view.
+/// Returns true if the sample shows activity: a tip on the surface, or a hand in view.
 fn touches(sample: &Sample) -> bool {
     match &sample.body {
         Body::Pen(pen) => pen.tip,
@@ -101,8 +101,8 @@ impl AttractRecording {
         self.next = 0;
     }
 
-    /// Sends what is due `now_us` after the beginning, which lies at `began_us` on the clock. False
-    /// when all is over.
+    /// Sends the samples due at `now_us` after the beginning, which is at `began_us` on the clock.
+    /// Returns false once the recording has ended.
     pub fn play(&mut self, began_us: u64, now_us: u64, to: &mut Sender) -> bool {
         while let Some(sample) = self.samples.get(self.next).filter(|s| s.t_us <= now_us) {
             to.push(Sample { t_us: began_us + sample.t_us, ..*sample });
@@ -158,7 +158,7 @@ mod tests {
             film.samples.iter().filter(|s| touches(s)).map(|s| s.t_us).collect();
         assert_eq!(touched.len(), 200);
         assert_eq!(touched[0], REST_US);
-        // A stroke keeps its own time.
+        // The timing within a stroke does not change.
         assert_eq!(touched[99] - touched[0], 990_000);
         let pause = touched[100] - touched[99];
         assert!((PAUSE_US..PAUSE_US + 300_000).contains(&pause), "{pause}");

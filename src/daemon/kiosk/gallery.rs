@@ -8,12 +8,12 @@ use super::names::{number, sent};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{write_beside, write_mesh};
 
-/// Adds a work and writes the page anew. Each is written beside and renamed; the page is made from
-/// the folder, so a cut between the two is mended by the next.
+/// Adds a sculpture and rewrites the page. Each file is written under a temporary name and renamed.
+/// The page lists the folder, so the next call repairs an interruption between the two.
 pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
-    // A number is never given twice, even where staff has emptied the folder: a work that was sent
-    // would be written over.
+    // A number is never used twice, even if staff has emptied the folder: a sculpture that was
+    // already sent would be overwritten.
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));

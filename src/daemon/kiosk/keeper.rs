@@ -34,10 +34,10 @@ const RATE_HZ: f64 = 50.0;
 /// Ids of attract recordings: what they draw is nobody's touch.
 const ATTRACT_IDS: std::ops::Range<u16> = RECORDING_IDS + 50..RECORDING_IDS + 66;
 
-/// What stands for the hands among the pens that are felt.
+/// Id of the hands in the list of touching pens.
 const HAND: u16 = u16::MAX;
 
-/// What every visitor begins with.
+/// Initial state for every visitor.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub plain: Arc<TriMesh>,
@@ -57,36 +57,36 @@ impl Start {
     }
 }
 
-/// What a screen reads and presses.
+/// State exchanged with the screen.
 #[derive(Debug, Default)]
 pub struct KioskDesk {
     pub view: Mutex<Option<View>>,
-    /// Something on the screen itself was pressed.
+    /// True if something on the screen itself was pressed.
     pub touched: AtomicBool,
     /// The visitor pressed "finished".
     pub finished: AtomicBool,
-    /// What staff typed.
+    /// Input typed by staff.
     pub typed: Mutex<Option<String>>,
-    /// What the fleet's staff tell those on the spot; until it is pressed away.
+    /// Message from the fleet's staff to those on site, until dismissed.
     pub message: Mutex<Option<String>>,
-    /// Where the last visitor's work can be fetched, until somebody else comes.
+    /// Link to the last visitor's sculpture, until another visitor comes.
     #[cfg(unix)]
     pub link: Mutex<Option<share::Link>>,
 }
 
-/// What the window of an installation shows.
+/// Content of an installation's window.
 #[derive(Debug, Clone)]
 pub struct Screen {
     pub desk: Arc<KioskDesk>,
     /// Never empty; the first is shown to each new visitor.
     pub words: Vec<Language>,
-    /// Staff can leave by a number.
+    /// True if staff can exit with a PIN.
     pub staff: bool,
-    /// How all of it is shown.
+    /// Display settings of the screen.
     pub show: ScreenSettings,
 }
 
-/// A running keeper; it ends when `stop` is raised.
+/// A running keeper; it ends once `stop` is set.
 #[derive(Debug)]
 pub struct KioskKeeper {
     pub desk: Arc<KioskDesk>,
@@ -102,7 +102,7 @@ struct KioskThread {
     clock: Clock,
     stop: Arc<AtomicBool>,
     desk: Arc<KioskDesk>,
-    /// What plays while nobody is there; never empty.
+    /// Recordings to play while no visitor is present; never empty.
     films: Vec<AttractRecording>,
     film: usize,
     playing: bool,
@@ -315,7 +315,8 @@ fn is_at_work(felt: &(u16, [f32; 3])) -> bool {
     felt.0 == HAND || felt.1[2] > 0.0
 }
 
-/// What visitors touch now: their pens and hands, the attract loop's left out. `None`: nothing.
+/// Returns what visitors touch now: their pens and hands, without those of the attract loop. `None`
+/// if they touch nothing.
 fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
     let mut felt: Vec<(u16, [f32; 3])> = Vec::new();
     for (id, pen) in state.pens.iter().flatten() {

@@ -1,12 +1,11 @@
-//! An installation that nobody looks after: visitors come, sculpt and go, and each finds the place
-//! as the first one did.
+//! An unattended installation: visitors come, sculpt and go, and each visitor starts from the same
+//! state.
 //!
 //! Laws kept here:
 //! * The cycle is a state machine driven by ticks ([`cycle`]): no clock, no IO.
-//! * A reset leaves nothing of the visitor before: the world is begun anew by
-//!   [`sculptd_engine::command::Command::Begin`].
-//! * What is written (gallery, audit) appears whole or not at all, and says nothing of who was
-//!   here.
+//! * A reset removes everything of the previous visitor:
+//!   [`sculptd_engine::command::Command::Begin`] replaces the world.
+//! * Files (gallery, audit) appear complete or not at all, and contain nothing about the visitors.
 
 #[cfg(feature = "s3")]
 pub mod bucket;

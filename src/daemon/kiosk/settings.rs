@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Texts of languages, each behind its code (`en`), in the form of `config/languages/en.toml`.
 pub type LanguageTexts<'a> = &'a [(&'a str, &'a str)];
 
-/// What an installation can be told.
+/// Settings of an installation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct KioskConfig {
@@ -28,12 +28,12 @@ pub struct KioskConfig {
     pub attract: Vec<PathBuf>,
     /// The brush that every visitor begins with; empty: that of the configuration.
     pub brush: String,
-    /// Its radius, a share of the object's bounding radius; 0: its own.
+    /// Its radius, as a share of the object's bounding radius; 0 keeps the brush's radius.
     pub radius: f32,
     pub screen: ScreenSettings,
-    /// A program and its arguments that says what the screen says, given as its last argument.
+    /// A program and its arguments that speaks the screen's text, given as its last argument.
     pub speak: Vec<String>,
-    /// Who looks after this installation from a distance.
+    /// The fleet that manages this installation remotely.
     pub fleet: FleetSettings,
 }
 
@@ -45,28 +45,28 @@ pub struct FleetSettings {
     pub name: String,
     /// The key of this installation, which says its name.
     pub key: PathBuf,
-    /// Where to listen for others, as `tcp/0.0.0.0:7447`; none: any port.
+    /// Addresses to listen on, as `tcp/0.0.0.0:7447`; empty: any port.
     pub listen: Vec<String>,
-    /// Whom to connect to, as `tcp/staff.example:7447`.
+    /// Addresses to connect to, as `tcp/staff.example:7447`.
     pub connect: Vec<String>,
-    /// Others on the local network are looked for.
+    /// True to look for other installations on the local network.
     pub multicast: bool,
 }
 
-/// How the screen is shown to those who see, reach or press otherwise than most.
+/// Display settings for visitors who see, reach or press differently from most.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScreenSettings {
-    /// Words and buttons, times their usual size.
+    /// Scale of words and buttons; 1 is the usual size.
     pub text: f32,
     /// White on black, with strong outlines.
     pub contrast: bool,
-    /// Everything to be pressed lies in the lower half of the screen.
+    /// True to place all controls in the lower half of the screen.
     pub seated: bool,
-    /// For one switch, which is any key: each button is lit for so many seconds, and the switch
-    /// presses the one that is. 0: none is.
+    /// Scanning for one switch, which is any key: each button lights for this many seconds, and the
+    /// switch presses the lit one. 0: off.
     pub scan_s: f64,
-    /// The clay's material by its name; empty: clay.
+    /// Name of the clay's material; empty: clay.
     pub material: String,
 }
 
@@ -177,19 +177,19 @@ impl KioskConfig {
         Ok(())
     }
 
-    /// The brush that every visitor begins with; `None`: that of the configuration.
+    /// Returns the brush that every visitor starts with; `None`: that of the configuration.
     ///
     /// # Errors
-    /// Names the brush that there is none of, and those that there are.
+    /// Returns an error that names the unknown brush and the known ones.
     pub fn brush_kind(&self) -> Result<Option<BrushKind>, String> {
         let name = Some(&self.brush).filter(|name| !name.is_empty());
         name.map(|name| name.parse().map_err(|e| format!("brush: {e}"))).transpose()
     }
 
-    /// The words to show: of `languages`, or of those that the program brings along.
+    /// Returns the texts to show: from the files in `languages`, or from the built-in ones.
     ///
     /// # Errors
-    /// In words, where the language is unknown or its file is not whole.
+    /// Returns a message if the language is unknown or its file is incomplete.
     pub fn words(&self, built_in: LanguageTexts<'_>) -> Result<Language, String> {
         for path in &self.languages {
             let name = path.display();
@@ -234,7 +234,7 @@ impl KioskConfig {
     }
 }
 
-/// What a screen says; `{seconds}` stands for a number.
+/// Texts of a screen; `{seconds}` is replaced by a number.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Language {

@@ -103,12 +103,12 @@ impl Share {
         Ok(Share { server, name, lasts, links, clock })
     }
 
-    /// Where it listens.
+    /// Returns the address of the listening socket.
     pub fn address(&self) -> SocketAddr {
         self.server.address()
     }
 
-    /// A link to a file, good from now on.
+    /// Returns a link to a file, valid from now on.
     pub fn link(&self, file: &Path) -> std::io::Result<Link> {
         let token = token()?;
         let host = match self.name.parse::<IpAddr>() {
@@ -135,7 +135,7 @@ impl Share {
     }
 }
 
-/// What a request gets: `/TOKEN` a page, `/TOKEN/work-000001.glb` the sculpture.
+/// Answers a request: `/TOKEN` returns a page, `/TOKEN/work-000001.glb` the sculpture.
 fn answer(
     request: &Request<()>,
     at: SocketAddr,

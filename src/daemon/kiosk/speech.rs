@@ -28,7 +28,7 @@ impl Speech {
         }
     }
 
-    /// What is to be said now, if it was not said yet.
+    /// Returns the sentence to speak now, unless it was spoken already.
     fn sentence(&mut self, now: &View) -> Option<String> {
         if self.said == Some(now.stage) {
             return None;

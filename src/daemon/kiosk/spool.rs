@@ -24,7 +24,7 @@ use sculptd_geometry::io::write_beside;
 const WAIT: Duration = Duration::from_millis(500);
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// How the works that wait stand.
+/// Counts of the queued sculptures.
 #[derive(Debug, Default)]
 pub struct Stand {
     pub sent: AtomicU64,
@@ -65,7 +65,7 @@ fn catch_up(folder: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Where works go to.
+/// Destination of the sculptures.
 #[derive(Debug)]
 enum SpoolTarget {
     Folder(PathBuf),
@@ -151,11 +151,11 @@ impl Spool {
         Ok(Spool { folder: folder.to_path_buf(), wake, stand, thread: Some(thread) })
     }
 
-    /// Offers a sculpture that lies in the folder. Where it cannot be marked it is found by the
-    /// sending thread all the same, as long as the disk lists it.
+    /// Offers a sculpture in the folder. If it cannot be marked, the sending thread still finds it
+    /// as long as the folder lists it.
     ///
     /// # Errors
-    /// What the system says of the mark.
+    /// Returns the system's error for the mark.
     pub fn offer(&self, name: &str) -> std::io::Result<()> {
         let marked = offer(&self.folder, name);
         let _ = self.wake.try_send(());
@@ -164,7 +164,7 @@ impl Spool {
 }
 
 impl Drop for Spool {
-    /// What waits goes on waiting on the disk.
+    /// Waiting sculptures remain on the disk.
     fn drop(&mut self) {
         self.stand.stop.store(true, Relaxed);
         let (closed, _) = cc::bounded(1);

@@ -30,7 +30,7 @@ pub const ENDED: [u32; 2] = [u32::MAX; 2];
 /// Bytes that are read at once while the blob is looked for.
 const WINDOW: usize = 256 << 10;
 
-/// What is known to be on the disk.
+/// State known to be on the disk.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Acknowledgement {
     /// The session's creation number.
@@ -38,26 +38,26 @@ pub struct Acknowledgement {
     pub tick: u64,
     /// The chain of the row that ends with this tick, see [`super::format`].
     pub chain: u32,
-    /// The salts of the write-ahead log that the input lies in; zeros: not known. [`ENDED`]: all of
-    /// the input is in the file itself.
+    /// Salts of the write-ahead log that contains the input; zeros: unknown. [`ENDED`]: the file
+    /// itself contains all of the input.
     pub salts: [u32; 2],
 }
 
-/// The places of the acknowledgement in an open file.
+/// The acknowledgement's positions in an open file.
 #[derive(Debug)]
 pub struct AcknowledgementPage {
     file: Arc<File>,
-    /// Where the blobs begin: one, or two.
+    /// Offsets of the blobs: one or two.
     at: Vec<u64>,
     sequence: u64,
 }
 
-/// What a file says.
+/// Result of reading a file's acknowledgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Acknowledged {
-    /// No acknowledgement is there: an older layout, or its page is lost.
+    /// No acknowledgement: an older layout, or its page is lost.
     Missing,
-    /// It is there and cannot be read.
+    /// An acknowledgement exists but cannot be read.
     Damaged,
     Known(Acknowledgement),
 }
@@ -106,11 +106,11 @@ type Slot = (u64, Acknowledgement);
 /// The blobs of one file.
 #[derive(Debug, Default)]
 struct Blobs {
-    /// Where those lie that have a readable slot.
+    /// Offsets of the blobs with a readable slot.
     at: Vec<u64>,
     /// The newest of their slots.
     newest: Option<Slot>,
-    /// One was found, readable or not.
+    /// True if any blob was found, readable or not.
     any: bool,
 }
 
@@ -150,7 +150,7 @@ fn find(file: &File) -> Result<Blobs> {
 /// Reads the acknowledgement of a file.
 ///
 /// # Errors
-/// Where the file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn read(path: &Path) -> Result<Acknowledged> {
     let found = find(&File::open(path)?)?;
     Ok(match found.newest {
@@ -161,10 +161,10 @@ pub fn read(path: &Path) -> Result<Acknowledged> {
 }
 
 impl AcknowledgementPage {
-    /// Finds the pages in a file that is open for reading and writing, with what they say.
+    /// Finds the pages in a file open for reading and writing, and their newest acknowledgement.
     ///
     /// # Errors
-    /// Where the file cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn find(file: Arc<File>) -> Result<Option<(AcknowledgementPage, Acknowledgement)>> {
         let found = find(&file)?;
         Ok(found
@@ -172,10 +172,10 @@ impl AcknowledgementPage {
             .map(|(sequence, a)| (AcknowledgementPage { file, at: found.at, sequence }, a)))
     }
 
-    /// Writes what is on the disk now. It is not synced: an older acknowledgement is true too.
+    /// Writes the state now on the disk, without a sync: an older acknowledgement is true too.
     ///
     /// # Errors
-    /// Where the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write(&mut self, a: &Acknowledgement) -> Result<()> {
         self.sequence += 1;
         let slot = u64::from(self.sequence % 2 == 0) * SLOT as u64;
@@ -187,16 +187,16 @@ impl AcknowledgementPage {
         Ok(())
     }
 
-    /// Brings it to the disk.
+    /// Syncs it to the disk.
     ///
     /// # Errors
-    /// Where the disk does not take it.
+    /// Returns an error if the sync fails.
     pub fn sync(&self) -> Result<()> {
         self.file.sync_data()
     }
 }
 
-/// Puts the rows that acknowledgements are written into, each in a page of its own.
+/// Inserts the rows that acknowledgements are written into, each in a separate page.
 pub(super) fn acknowledge_first(
     db: &Connection,
     identity: u64,

@@ -1,9 +1,9 @@
 //! Reading the rows of a damaged session page by page, without SQLite.
 //!
-//! Every page of the main file and every frame of the write-ahead log is looked at by itself: where
-//! it is a leaf of a b-tree, its cells are records, and a record is told by its columns' types
-//! which table it belongs to. Every row that matters carries a checksum, so what is taken is right
-//! wherever it was found, whatever became of the tree above it. Nothing is written.
+//! Every page of the main file and every frame of the write-ahead log is examined separately. If it
+//! is a leaf of a b-tree, its cells are records. The column types of a record identify its table.
+//! Every relevant row carries a checksum, so a recovered row is correct even if the tree above it
+//! is damaged. Nothing is written.
 //!
 //! The format is that of SQLite's "Database File Format" (sqlite.org/fileformat.html), sections
 //! 1.6 (b-tree pages), 1.7 (overflow), 2.1 (records) and 4.1 (the log's frames); the way of looking
@@ -105,8 +105,8 @@ pub fn log_salts(path: &Path) -> Option<[u32; 2]> {
         .then(|| Some([u32_at(&head, 16)?, u32_at(&head, 20)?]))?
 }
 
-/// Whether the checksum of a log's head holds (SQLite, "The WAL File Format", sections 2 and 4.3:
-/// the magic number says in which order of bytes the words are summed).
+/// Returns true if the checksum of a log's header is correct (SQLite, "The WAL File Format",
+/// sections 2 and 4.3: the magic number gives the byte order of the summed words).
 fn head_holds(head: &[u8; LOG_HEAD]) -> bool {
     let word: fn([u8; 4]) -> u32 = match u32_at(head, 0) {
         Some(0x377f_0682) => u32::from_le_bytes,
@@ -124,10 +124,10 @@ fn head_holds(head: &[u8; LOG_HEAD]) -> bool {
 }
 
 impl PageImage {
-    /// Opens a session's file, and its log unless it is to be left out.
+    /// Opens a session's file, and its log if `with_log` is true.
     ///
     /// # Errors
-    /// Where the main file cannot be read.
+    /// Returns an error if the main file cannot be read.
     pub fn open(path: &Path, with_log: bool) -> std::io::Result<PageImage> {
         let mut main = File::open(path)?;
         let length = main.metadata()?.len();
@@ -309,8 +309,8 @@ fn record(bytes: &[u8]) -> Option<Vec<Column>> {
     Some(all)
 }
 
-/// Which table a record belongs to, by the types of its columns; its checksum, where it has one and
-/// that stands alone, holds.
+/// Identifies the table of a record by the types of its columns. A checksum that covers one row
+/// alone must be correct.
 fn row(id: i64, mut all: Vec<Column>) -> Option<CarvedRow> {
     use Column::{Blob, Int, Null, Text};
     let whole = |crc: i64, data: &[u8]| i64::from(crc32fast::hash(data)) == crc;
@@ -364,7 +364,7 @@ fn row(id: i64, mut all: Vec<Column>) -> Option<CarvedRow> {
     Some(found)
 }
 
-/// Whether nothing of a session can be made out in a file and its log.
+/// Returns true if a file and its log contain no readable part of a session.
 pub(super) fn is_without_content(path: &Path) -> bool {
     let Ok(mut image) = PageImage::open(path, true) else { return false };
     let mut any = false;

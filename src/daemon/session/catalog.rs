@@ -14,21 +14,21 @@ use crate::session::history::retention::{Freed, bound};
 /// The ending of a session file's name.
 pub const ENDING: &str = "sculpt";
 
-/// One session, as `sculptd session` tells of it.
+/// One session, as `sculptd session` lists it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SessionEntry {
     pub path: PathBuf,
-    /// With its write-ahead log.
+    /// Size, including the write-ahead log.
     pub bytes: u64,
     /// Seconds since 1970 of the last write.
     pub written_s: u64,
-    /// Absent where the file cannot be read at all.
+    /// Absent if the file cannot be read at all.
     pub facts: Option<SessionFacts>,
-    /// What could not be read, or why nothing could.
+    /// Description of the unreadable parts, or the reason that nothing can be read.
     pub damage: Option<String>,
-    /// What may be missing of a session that was not ended in order.
+    /// Description of possibly missing input, if the session did not end cleanly.
     pub not_ended: Option<String>,
-    /// Places of the history, branches among them, and the bytes of their pages.
+    /// Number of places in the history, including branches, and the bytes of their pages.
     pub history: Option<HistoryFigures>,
 }
 
@@ -129,15 +129,15 @@ pub fn spare(mut all: Vec<SessionEntry>, keep: usize) -> Vec<SessionEntry> {
     old.into_iter().filter(|e| e.damage.is_none() && !in_use(&e.path)).collect()
 }
 
-/// Lets a session's oldest places go until its history takes `most` bytes, and gives the file's
-/// room back. What opening needs stays. `None`: a daemon writes it, or it is within the bound
-/// already.
+/// Removes the oldest places of a session until its history is at most `most` bytes, and shrinks
+/// the file. Everything needed to open the session stays. Returns `None` if a daemon writes the
+/// session or if it is already within the bound.
 ///
 /// # Errors
-/// Where the file cannot be read or written.
+/// Returns an error if the file cannot be read or written.
 pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     let damaged = |e: std::io::Error| StoreError::Damaged(e.to_string());
-    // Held until all is done: no daemon opens it meanwhile.
+    // Held until the end, so that no daemon opens it meanwhile.
     let lock = std::fs::File::open(path).map_err(damaged)?;
     if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock))
         || !Store::read(path)?.has_tables()?
@@ -161,7 +161,7 @@ pub fn shorten(path: &Path, most: u64) -> Result<Option<Freed>, StoreError> {
     Ok(Some(freed))
 }
 
-/// What this very file's processes left in shared memory.
+/// Returns the logs in shared memory left by the processes that wrote this file.
 pub fn logs_of(path: &Path) -> Vec<LogName> {
     match acknowledgement::read(path) {
         Ok(Acknowledged::Known(a)) => FileIdentity::of(path, a.identity)

@@ -1,4 +1,4 @@
-//! Opening a session's database to read it, and what lies beside it.
+//! Opens a session's database for reading, and finds the files beside it.
 
 use std::path::{Path, PathBuf};
 
@@ -47,11 +47,11 @@ pub(super) fn connect(path: &Path, alone: bool) -> rusqlite::Result<Connection> 
     Connection::open_with_flags(uri, plain | OpenFlags::SQLITE_OPEN_URI)
 }
 
-/// The start alone, for one who holds the session open for writing: no other handle of the
-/// file is opened, for closing it would give back SQLite's own locks.
+/// Reads the start alone, for a caller that holds the session open for writing. No other handle of
+/// the file is opened, because closing it would release SQLite's locks.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// Returns an error if the session cannot be read.
 pub(super) fn read_start(path: &Path) -> rusqlite::Result<SessionStart> {
     let db = connect(path, false)?;
     let sql = "SELECT value FROM meta WHERE key = ?1";
@@ -60,7 +60,7 @@ pub(super) fn read_start(path: &Path) -> rusqlite::Result<SessionStart> {
         .map_err(|e| rusqlite::Error::FromSqlConversionFailure(0, Type::Blob, Box::new(e)))
 }
 
-/// Whether a daemon writes it: the writer holds a lock as long as it runs.
+/// Returns true if a daemon writes the session: the writer holds a lock while it runs.
 pub fn in_use(path: &Path) -> bool {
     std::fs::File::open(path)
         .is_ok_and(|f| matches!(f.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock)))

@@ -39,11 +39,11 @@ pub enum CreateError {
     Io { path: String, source: std::io::Error },
 }
 
-/// A session under a name of its own, which is removed unless it is published.
+/// A session under a temporary name, removed unless it is published.
 #[derive(Debug)]
 pub(super) struct SessionDraft {
     db: Option<Connection>,
-    /// Under which it is made.
+    /// The temporary path.
     temporary: PathBuf,
     pub identity: u64,
     published: bool,
@@ -91,8 +91,8 @@ fn refuse_others_folder(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Whether a file of that name is empty, or what was left of a session that was killed while it
-/// was made: nothing of a session can be read in it. It may be taken over.
+/// Returns true if a file of that name is empty, or left over from a session killed during its
+/// creation. Such a file contains no readable part of a session and may be replaced.
 pub fn is_half_made(path: &Path) -> bool {
     let Ok(about) = std::fs::metadata(path) else { return false };
     if !about.is_file() || about.len() > HALF_MADE_BYTES {
@@ -111,10 +111,10 @@ pub fn is_half_made(path: &Path) -> bool {
 }
 
 impl SessionDraft {
-    /// Makes the tables with the start mesh and the settings in them.
+    /// Creates the tables with the start mesh and the settings.
     ///
     /// # Errors
-    /// Where the folder or the disk does not take it.
+    /// Returns an error if the folder or the disk cannot be written.
     pub fn begin(
         path: &Path,
         start: &SessionStart,
@@ -177,16 +177,16 @@ impl SessionDraft {
         self.db.as_ref()
     }
 
-    /// Where it lies for the time being.
+    /// Returns the temporary path.
     pub fn temporary(&self) -> &Path {
         &self.temporary
     }
 
-    /// Brings it to the disk and gives it its name. `over`: a half-made file of that name goes;
-    /// otherwise a file that is there stays, and there is an error.
+    /// Syncs the session to the disk and renames it to `path`. `over`: replaces a half-made file of
+    /// that name; otherwise an existing file stays and an error is returned.
     ///
     /// # Errors
-    /// [`CreateError::Exists`], or where the disk does not take it.
+    /// Returns [`CreateError::Exists`], or an error if the disk cannot be written.
     pub fn publish(mut self, path: &Path, over: bool) -> Result<(), CreateError> {
         let name = || path.display().to_string();
         let store = |source| CreateError::Store { path: name(), source };
@@ -197,7 +197,7 @@ impl SessionDraft {
         }
         File::open(&self.temporary).and_then(|f| f.sync_all()).map_err(io)?;
         if over || !path.exists() {
-            // What a session of that name left behind would be taken for this one's log.
+            // Files left by an earlier session of that name would be taken for this one's log.
             for ending in ["-wal", "-shm"] {
                 let _ = std::fs::remove_file(companion(path, ending));
             }
@@ -223,7 +223,7 @@ impl Drop for SessionDraft {
     }
 }
 
-/// Exclusive unless `over`: of two daemons that make a session of one name at once, one is told.
+/// Exclusive unless `over`: if two daemons create a session of one name at once, one gets an error.
 fn rename(from: &Path, to: &Path, over: bool) -> std::io::Result<()> {
     #[cfg(target_os = "linux")]
     if !over {

@@ -43,7 +43,7 @@ impl ReplayFrames {
             target: now.target,
             towards_eye: now.backward(),
             up: glam::Vec3::Y,
-            // What the view shows at the distance of what it turns about.
+            // Half the height of the view, at the distance of its pivot.
             half_height: now.world_per_view(now.distance) * 0.5,
         };
         let plain = world.mesh().to_tri();

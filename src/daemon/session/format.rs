@@ -1,13 +1,13 @@
-//! What stands in the file: the tables, the bytes of a tick, the start mesh.
+//! The contents of the file: the tables, the bytes of a tick, the start mesh.
 //!
 //! **Layout 4.** An SQLite database in WAL mode, page size 4096, with
 //! * `meta`: the start mesh and the settings (postcard), their checksums, the session's creation
 //!   number ([`META_IDENTITY`]), and [`META_REPLAY_FROM`] where a replay from the start is
 //!   impossible;
-//! * `acknowledged`: one row in a page of its own. The last tick that reached the disk is written
-//!   into it beside SQLite, see [`super::acknowledgement`]. `acknowledged_again` is the same once
-//!   more, pages further on, so that one damaged place does not cost both; files from before it was
-//!   written have the first alone;
+//! * `acknowledged`: one row in a separate page. The last tick that reached the disk is written
+//!   into it without SQLite, see [`super::acknowledgement`]. `acknowledged_again` is a second copy
+//!   some pages further on, so that damage in one place does not cost both. Older files have only
+//!   the first;
 //! * `input`: the samples and commands of a group of ticks a row. `number` counts from 1 without a
 //!   gap. `crc` is the CRC-32 of the creation number, `number`, `first_tick`, `last_tick` and
 //!   `data`, so that a row can be trusted alone. `chain` is the CRC-32 of the creation number and
@@ -68,19 +68,19 @@ pub const META_REPLAY_FROM: &str = "replay_from";
 /// The CRC-32 of both, in that order. Files from before it was written go unchecked.
 pub const META_SUMS: &str = "sums";
 
-/// What a blob of the table `spare` begins with: a second copy of an entry of `meta`, in pages of
-/// its own, for salvage. Nothing can be replayed without the start and the settings, so damage to
-/// one place must not cost them.
+/// Magic of a blob in the table `spare`: a second copy of an entry of `meta`, in separate pages,
+/// for salvage. A replay needs the start and the settings, so damage in one place must not cost
+/// them.
 const SPARE_MAGIC: [u8; 16] = *b"sculptd:spare...";
 
-/// The blob of a spare copy: the magic, the CRC-32 of the rest, the key's length and the key, the
-/// value.
+/// Returns the blob of a spare copy: the magic, the CRC-32 of the rest, the key's length and the
+/// key, the value.
 pub fn spare_blob(key: &str, value: &[u8]) -> Vec<u8> {
     let rest = [&[key.len() as u8], key.as_bytes(), value].concat();
     [&SPARE_MAGIC[..], &crc32fast::hash(&rest).to_le_bytes(), &rest].concat()
 }
 
-/// The key and the value of a spare copy; `None` where the bytes are not those that were written.
+/// Returns the key and the value of a spare copy; `None` if the bytes have changed.
 pub fn from_spare_blob(blob: &[u8]) -> Option<(String, Vec<u8>)> {
     let (crc, rest) = blob.strip_prefix(&SPARE_MAGIC)?.split_first_chunk::<4>()?;
     let (length, text) = rest.split_first()?;
@@ -101,7 +101,7 @@ pub struct Settings {
     pub hands: HandSettings,
 }
 
-/// What changed the world in one tick.
+/// Input that changed the world in one tick.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct TickInput {
     pub tick: u64,
@@ -109,19 +109,19 @@ pub struct TickInput {
     pub commands: Vec<Command>,
 }
 
-/// Why a session can be opened at a checkpoint but not be replayed from its start.
+/// Reason that a session can be opened at a checkpoint but cannot be replayed from its start.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReplayFrom {
     /// A replay can begin at checkpoints of this tick and later ones.
     pub tick: u64,
-    /// For a person.
+    /// Explanation for people.
     pub why: String,
 }
 
 /// One row of `input`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputRow {
-    /// From 1, without a gap.
+    /// Counts from 1, without gaps.
     pub number: u64,
     pub first: u64,
     pub last: u64,
@@ -165,12 +165,12 @@ impl InputRow {
         hasher.finalize()
     }
 
-    /// Whether the row is, to the bit, one of this session.
+    /// Returns true if the row's checksum matches this session.
     pub fn is_whole(&self, identity: u64) -> bool {
         self.sum(identity) == self.crc
     }
 
-    /// Whether the row comes right after one with this number and chain.
+    /// Returns true if the row directly follows one with this number and chain.
     pub fn follows(&self, before: (u64, u32)) -> bool {
         self.number == before.0 + 1 && chain(before.1, &self.data) == self.chain
     }

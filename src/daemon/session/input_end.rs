@@ -18,7 +18,7 @@ use sculptd_geometry::TriMesh;
 /// Ticks in one row of a session that came from an older layout.
 const UPGRADED_GROUP: usize = 64;
 
-/// Where a session's input ends.
+/// End of a session's input.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InputEnd {
     pub identity: u64,
@@ -85,8 +85,8 @@ pub(super) fn begin_log(
     Ok((end, SharedMemoryLog::create(file, path, (end.tick, end.chain))))
 }
 
-/// Brings a file of an older layout to this one, in one transaction: the input after its oldest
-/// checkpoint is written anew, what came before stays for the older program's tables.
+/// Upgrades a file of an older layout to this one in one transaction. The input after its oldest
+/// checkpoint is rewritten; the earlier input stays in the older program's tables.
 pub(super) fn upgrade(db: &mut Connection) -> rusqlite::Result<()> {
     let found: u32 = db.query_row("PRAGMA user_version", [], |r| r.get(0))?;
     if found != v3::LAYOUT {

@@ -6,8 +6,8 @@
 //! * The tick thread only hands over data and never waits ([`writer`]).
 //! * Input is safe from a kill as soon as the journal has it ([`shared_memory_log`]), is committed
 //!   at most [`GROUP_MS`] after its tick, and then synced, safe from a power cut.
-//! * What was written is never rewritten: a group is a row, a row carries its number, its checksum
-//!   and the chain of all before it; what is missing or torn is told in ticks ([`reader`]).
+//! * Written input is never rewritten: a group is a row, and a row carries its number, its checksum
+//!   and the chain of all rows before it. Missing or torn input is reported in ticks ([`reader`]).
 //! * A file of a session's name is a whole session or none ([`create`]).
 //! * A damaged file is never written to: what can be read goes into a new one ([`salvage()`]).
 

@@ -37,14 +37,14 @@ impl SessionPath {
     }
 }
 
-/// What became of the file since it was opened.
+/// State of the file since it was opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Standing {
-    /// It is where it was.
+    /// It has not moved.
     Here,
-    /// It has this name now.
+    /// It was renamed to this path.
     Moved(PathBuf),
-    /// No name leads to it.
+    /// It was deleted.
     Gone,
 }
 
@@ -53,9 +53,9 @@ pub(super) enum Standing {
 pub(super) struct SessionPlace {
     pub path: SessionPath,
     file: Arc<File>,
-    /// The session was written to this name because its own was gone.
+    /// The path to which the session was rescued because its file was gone.
     rescued: Option<PathBuf>,
-    /// The file was moved, so that its log does not have the name that SQLite removes.
+    /// True if the file was moved, so that SQLite does not remove the log, which has another name.
     moved: bool,
 }
 
@@ -93,7 +93,7 @@ impl SessionPlace {
     /// Follows the file to its new name, with its log.
     ///
     /// # Errors
-    /// Where the log cannot be renamed: it is needed beside the file until the end.
+    /// Returns an error if the log cannot be renamed: it is needed beside the file until the end.
     pub fn follow(&mut self, now: PathBuf) -> std::io::Result<()> {
         let before = self.path.get();
         for ending in ["-wal", "-shm"] {
@@ -107,11 +107,11 @@ impl SessionPlace {
         Ok(())
     }
 
-    /// Writes all of the session to a free name, and returns that. `known`: the input that it
-    /// holds.
+    /// Writes the whole session to a free name and returns the path. `known`: the input that it
+    /// contains.
     ///
     /// # Errors
-    /// Where neither its folder nor the state folder can be written.
+    /// Returns an error if neither its folder nor the state folder can be written.
     pub fn rescue(
         &mut self,
         db: &Connection,
@@ -124,7 +124,8 @@ impl SessionPlace {
             let target = self.rescued.clone().unwrap_or_else(|| free_name(&folder, &path));
             let begun = companion(&target, "-begun");
             let _ = std::fs::remove_file(&begun);
-            // Written to a name of its own first: what was rescued before stays until it is whole.
+            // Written to a temporary name first: an earlier rescue stays until this one is
+            // complete.
             result = db
                 .execute("VACUUM INTO ?1", [begun.to_string_lossy()])
                 .and_then(|_| {
@@ -176,8 +177,8 @@ fn acknowledge(path: &Path, known: Acknowledgement) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns a name like that of the session that nothing has yet. Not its own: the log of the file
-/// that is gone may still lie beside that.
+/// Returns an unused name similar to the session's. The session's name is not reused: the log of
+/// the deleted file may still exist beside it.
 fn free_name(folder: &Path, path: &Path) -> PathBuf {
     let stem = path.file_stem().map_or("session".into(), |s| s.to_string_lossy().into_owned());
     let mut numbered = (1..).map(|n| folder.join(format!("{stem}-kept-{n}.sculpt")));

@@ -22,8 +22,7 @@ use sculptd_geometry::TriMesh;
 /// Largest start mesh that is read back, bytes; more than the 24 GiB machine's working set makes no
 /// session.
 const MAX_START_BYTES: i64 = 8 << 30;
-/// How often a session that is being written is read again, until its file and its log in memory
-/// agree.
+/// Number of times that a session in use is read again until its file and its log in memory agree.
 const TRIES: u32 = 5;
 /// A log that SQLite began again after an acknowledgement has a first salt that is larger by one.
 const RESTARTS: u32 = 16;
@@ -67,19 +66,19 @@ pub struct Opened {
     pub input: Vec<TickInput>,
     /// Present where a replay from the start is refused.
     pub replay_from: Option<ReplayFrom>,
-    /// What could not be read.
+    /// The input that could not be read.
     pub loss: Option<Loss>,
-    /// What may be missing, and why that cannot be told: the session was not ended in order, and
-    /// this is not the file that its daemon wrote, or the machine was started since.
+    /// Description of input that may be missing. It is unknown if the session did not end cleanly
+    /// and this is not its daemon's file, or the machine was restarted since.
     pub not_ended: Option<String>,
 }
 
-/// What of a session could not be read.
+/// Input of a session that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Loss {
     /// The last tick that was read.
     pub kept: u64,
-    /// The last tick that the session had, where it could be made out.
+    /// The last tick of the session, if it can be determined.
     pub last: Option<u64>,
     pub cause: String,
 }
@@ -103,15 +102,15 @@ impl std::fmt::Display for Loss {
     }
 }
 
-/// Reads a session and changes nothing in it, also while a daemon writes it. What is missing or
-/// damaged after a readable start is said in [`Opened::loss`]; a damaged start is an error.
+/// Reads a session without changing it, also while a daemon writes it. [`Opened::loss`] reports
+/// missing or damaged input after a readable start; a damaged start is an error.
 ///
 /// # Errors
 /// [`OpenError`]
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
     let mut opened = read(path)?;
     for _ in 1..TRIES {
-        // Somebody writes: what was read of the file may be older than what was read of the log.
+        // A daemon is writing: the data read from the file may be older than that from the log.
         if opened.loss.is_none() || !in_use(path) {
             break;
         }
@@ -126,7 +125,7 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     Ok(opened)
 }
 
-/// What is damaged in a session's history, if anything.
+/// Returns a description of the damage in a session's history, if any.
 pub fn history_damage(path: &Path) -> Option<String> {
     let damage = Store::read(path).and_then(|s| s.check());
     match damage {
@@ -136,12 +135,13 @@ pub fn history_damage(path: &Path) -> Option<String> {
     }
 }
 
-/// Whether the log beside a session is of another session, or of another time of this one.
+/// Returns true if the log beside a session belongs to another session, or to another time of this
+/// one.
 pub(super) fn log_is_foreign(path: &Path, known: &Acknowledgement) -> bool {
     log_salts(path).is_some_and(|now| salts_are_foreign(known, now))
 }
 
-/// Whether no log of this session has these salts since the acknowledgement.
+/// Returns true if no log of this session since the acknowledgement has these salts.
 pub(super) fn salts_are_foreign(known: &Acknowledgement, now: [u32; 2]) -> bool {
     let had = known.salts;
     had != [0, 0]
@@ -267,20 +267,20 @@ pub(super) fn read(path: &Path) -> Result<Opened, OpenError> {
     Ok(Opened { path, layout, start, settings, input, replay_from, loss, not_ended })
 }
 
-/// Returns whether the file was written by a program that marks the end of a session: those that
-/// did not have no proofs of checkpoints either.
+/// Returns true if the program that wrote the file marks the end of a session. Programs that do not
+/// also write no proofs of checkpoints.
 fn marks_its_end(db: &Connection) -> bool {
     let sql = "SELECT count(*) FROM sqlite_schema WHERE name = 'proof'";
     db.query_row(sql, [], |r| r.get::<_, i64>(0)).is_ok_and(|n| n > 0)
 }
 
-/// Whether every triangle is of vertices that are there.
+/// Returns true if every triangle has valid vertex indices.
 pub(super) fn indices_hold(mesh: &TriMesh) -> bool {
     let count = mesh.positions.len();
     !mesh.triangles.iter().flatten().any(|&v| v as usize >= count)
 }
 
-/// The last tick that must be there, and what is wrong where the input does not reach it.
+/// Returns the last tick that must exist, and the fault if the input does not reach it.
 fn expected(
     known: &Acknowledged,
     identity: u64,
@@ -368,7 +368,7 @@ struct FoundInput {
     input: Vec<TickInput>,
     /// The last tick, and the chain there.
     end: (u64, u32),
-    /// What is wrong with the row after it.
+    /// The fault of the next row.
     cause: Option<String>,
 }
 

@@ -39,13 +39,13 @@ pub fn reopen(
 ) -> Option<Reopened> {
     let store = Store::read(path).ok().filter(|s| s.has_tables().unwrap_or(false))?;
     let earliest = opened.replay_from.as_ref().map(|r| r.tick);
-    // A checkpoint of ticks that the input does not hold is no part of what is there; where the
-    // input begins at a checkpoint, it may hold none yet.
+    // A checkpoint after the last recorded tick does not belong to the readable input. If the input
+    // begins at a checkpoint, it may contain no tick yet.
     let last = opened.input.last().map_or(0, |t| t.tick).max(earliest.unwrap_or(0));
     let last = last.min(until.unwrap_or(u64::MAX));
     let tree = store.tree().ok()?;
     let base = opened.start.clay(job).ok()?;
-    // Where nothing else serves, every checkpoint is tried.
+    // If a replay from the start is impossible, every checkpoint is tried.
     let tried = if earliest.is_some() { usize::MAX } else { TRIED };
     for id in store.checkpoints(last).ok()?.into_iter().take(tried) {
         match from_checkpoint((&store, &tree, &base), opened, id, until, workers, job) {
@@ -122,7 +122,7 @@ pub(super) fn from_checkpoint(
     };
     let run = Run { opened, base, store: Some(store), until };
     let replayed = run.from(world, job, &mut see);
-    // Where there is no replay from the start, what the checkpoint gives is what there is.
+    // Without a replay from the start, the checkpoint's result is the only one.
     let sound = earliest.is_some() || !odd && replayed.jumps_missed == 0;
     Ok((sound && !job.cancelled()).then_some(Reopened { replayed, checkpoint, node: at }))
 }

@@ -49,13 +49,13 @@ pub fn replay_seen(
     Ok(Run { opened, base: &base, store: store.as_ref(), until }.from(world, job, see))
 }
 
-/// What a replay reads.
+/// Sources of a replay.
 #[derive(Debug)]
 pub struct Run<'a> {
     pub opened: &'a Opened,
-    /// The work that the session began with.
+    /// The sculpture at the start of the session.
     pub base: &'a Snapshot,
-    /// Where jumps find their pages.
+    /// Store in which jumps find their pages.
     pub store: Option<&'a Store>,
     pub until: Option<u64>,
 }

@@ -1,11 +1,11 @@
-//! What can be read of a damaged session, saved into a new file beside it. The damaged one is not
-//! touched.
+//! Saves the readable part of a damaged session into a new file beside it. The damaged file is not
+//! changed.
 //!
 //! Every source is read: the main file page by page, its write-ahead log frame by frame
-//! ([`super::carve`]), and the logs in shared memory, of this file and of the session that it is a
-//! copy of. Rows count where their checksums hold. Of what they give, that is taken which reaches
-//! furthest: the input from the start on up to the first gap, or a checkpoint after it with the
-//! input that follows.
+//! ([`super::carve`]), and the logs in shared memory. These include the logs of the session that
+//! the file is a copy of. Only rows with a correct checksum count. The result is the part that
+//! reaches furthest: the input from the start to the first gap, or a checkpoint after it and its
+//! later input.
 
 use std::path::{Path, PathBuf};
 
@@ -54,9 +54,9 @@ pub enum SalvageError {
 pub struct Saved {
     pub old: PathBuf,
     pub path: PathBuf,
-    /// What was lost, in ticks.
+    /// The lost input, in ticks.
     pub loss: Option<Loss>,
-    /// The start mesh or the settings are not, to the bit, what they were.
+    /// True if the start mesh or the settings differ from the original.
     pub start_changed: bool,
 }
 
@@ -81,7 +81,7 @@ impl std::fmt::Display for Saved {
 /// Input without a gap: rows of ticks, from the first to the last.
 #[derive(Debug, Default)]
 struct InputRun {
-    /// Whether it begins with the session.
+    /// True if it begins with the session.
     from_start: bool,
     first: u64,
     last: u64,
@@ -89,13 +89,13 @@ struct InputRun {
     groups: Vec<(u64, u64, Vec<u8>)>,
 }
 
-/// What was read of a damaged file.
+/// The readable parts of a damaged file.
 struct Readable {
     start: SessionStart,
     settings: Settings,
     start_changed: bool,
     runs: Vec<InputRun>,
-    /// The last tick that anything names.
+    /// The last tick that any source names.
     last: Option<u64>,
     /// A session that was no longer replayed from its start.
     replay_from: Option<ReplayFrom>,
@@ -276,7 +276,7 @@ fn runs(rows: &[InputRow], identity: u64, logs: &[Vec<LogEntry>]) -> Vec<InputRu
             }
         }
     }
-    // What only memory holds, after a gap.
+    // Input that exists only in memory, after a gap.
     for log in logs {
         let mut run: Option<(InputRun, u32)> = None;
         for e in log {
@@ -401,10 +401,10 @@ fn put_row(db: &Connection, row: &CarvedRow) -> rusqlite::Result<bool> {
     Ok(true)
 }
 
-/// What was taken.
+/// Result of the salvage.
 struct Salvaged {
     tick: u64,
-    /// Input before a checkpoint is missing.
+    /// True if input before a checkpoint is missing.
     after_gap: bool,
 }
 
@@ -472,7 +472,7 @@ fn choose(
     Ok(Some(Salvaged { tick: kept, after_gap: from.is_some() && !refused }))
 }
 
-/// Whether a checkpoint's sculpture can be put together.
+/// Returns true if a checkpoint's sculpture can be restored.
 fn serves(store: &Store, readable: &Readable, id: u64) -> Result<bool, StoreError> {
     let damaged = |_| StoreError::Damaged("the start".into());
     let base = readable.start.clay(&Job::default()).map_err(damaged)?;

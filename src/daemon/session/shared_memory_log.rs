@@ -1,11 +1,12 @@
-//! The newest input in memory that outlives the process: what a kill finds on its way to the disk.
+//! The newest input in memory that outlives the process: input not yet on the disk when it is
+//! killed.
 //!
-//! A write to a file may wait for the disk, however little it waits for: a file system that brings
-//! its own journal to the disk holds up everybody for tenths of a second on a loaded machine. So
-//! every tick's input is first put into a file that lies in memory (`/dev/shm`), which is a copy
-//! and never a wait. It is let go once the session's main file has it, so that a damaged
-//! write-ahead log costs nothing after a kill. Whoever opens the session reads both. A power cut
-//! loses the memory; the session file alone is then what there is.
+//! A write to a file may wait for the disk: a file system that syncs its journal delays every
+//! process for tenths of a second on a loaded machine. So every tick's input is first written to a
+//! file in memory (`/dev/shm`), which copies it and never waits. That input is discarded once the
+//! session's main file contains it, so that a damaged write-ahead log costs nothing after a kill.
+//! Opening the session reads both. A power cut loses the memory; then only the session file
+//! remains.
 //!
 //! **Name**: `sculptd-CREATION-DEVICE-INODE-PID.START.SERIAL-PART`, in hexadecimal: the session's
 //! creation number, the identity of its file, and the life of the process that writes it. A copy
@@ -14,9 +15,9 @@
 //! **Bytes**, little-endian: `MAGIC`, the length of the session's path (4) and the path; then
 //! entries: first tick, last tick, the last tick before (8 each), the chain before (4, see
 //! [`super::format`]), bytes (4), CRC-32 of the creation number, all these and the bytes (4), the
-//! bytes. An entry follows on the file's input exactly where the chain says so.
+//! bytes. The chain decides whether an entry continues the file's input.
 //!
-//! Where there is no such place, input waits for the session file alone.
+//! Without such a folder, input waits for the session file alone.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -27,13 +28,13 @@ use std::time::Duration;
 
 use super::format::chain;
 
-/// Where files lie in memory.
+/// Folder of files in memory.
 const PLACE: &str = "/dev/shm";
 const MAGIC: [u8; 8] = *b"sculptd4";
-/// A part of this size is left for the other one, once that is let go.
+/// A full part of this size is kept while the other one is written, once that is free.
 const PART_BYTES: u64 = 256 << 10;
-/// Beyond so many bytes a part is let go when the write-ahead log has it, whether or not the main
-/// file does.
+/// Above this size a part is discarded once the write-ahead log contains it, even if the main file
+/// does not.
 const PLENTY: u64 = 8 << 20;
 /// The disk takes nothing: so much is kept at most.
 const MOST: u64 = 64 << 20;
@@ -41,7 +42,7 @@ const HEAD: usize = 3 * 8 + 3 * 4;
 /// A log whose session is not where it was is kept this long.
 const KEPT: Duration = Duration::from_secs(24 * 3600);
 
-/// What a session file is, whatever it is called.
+/// Identity of a session file, independent of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FileIdentity {
     /// Given once, when the session is created; copies share it.
@@ -51,10 +52,10 @@ pub struct FileIdentity {
 }
 
 impl FileIdentity {
-    /// Of a session with this creation number.
+    /// Returns the identity of the file of a session with this creation number.
     ///
     /// # Errors
-    /// Where the file cannot be looked at.
+    /// Returns an error if the file's metadata cannot be read.
     pub fn of(path: &Path, creation: u64) -> std::io::Result<FileIdentity> {
         let about = std::fs::metadata(path)?;
         #[cfg(unix)]
@@ -84,15 +85,15 @@ pub fn new_creation_number() -> u64 {
 pub struct LogName {
     pub file: FileIdentity,
     pid: u32,
-    /// When the process was started, in the system's own count; 0 where that is not known.
+    /// Start time of the process, as counted by the system; 0 if unknown.
     start: u64,
     serial: u64,
 }
 
-/// When a process was started; `None` where there is none of that number.
+/// Returns the start time of a process; `None` if no process has this number.
 fn start_of(pid: u32) -> Option<u64> {
     let text = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The name of the program stands in brackets and may hold anything.
+    // The program's name is in brackets and may contain any character.
     let rest = text.rsplit_once(')')?.1;
     rest.split_ascii_whitespace().nth(19)?.parse().ok()
 }
@@ -123,12 +124,12 @@ impl LogName {
         parts.next().map(|_| LogName { file, pid, start, serial })
     }
 
-    /// Whether the process that writes it still runs.
+    /// Returns true if the process that writes it still runs.
     pub fn owner_lives(&self) -> bool {
         start_of(self.pid).is_some_and(|start| start == self.start)
     }
 
-    /// Whether this process wrote it.
+    /// Returns true if this process wrote it.
     pub fn is_own(&self) -> bool {
         self.pid == std::process::id() && self.owner_lives()
     }
@@ -236,8 +237,8 @@ fn sum(creation: u64, head: &[u8], data: &[u8]) -> u32 {
 }
 
 impl SharedMemoryLog {
-    /// `after`: the last tick of the session so far, and the chain there. `None` where nothing can
-    /// lie in memory.
+    /// `after`: the last tick of the session so far, and the chain there. `None` if there is no
+    /// folder in memory.
     pub fn create(file: FileIdentity, session: &Path, after: (u64, u32)) -> Option<Self> {
         let name = LogName::new(file);
         let whole = std::path::absolute(session).unwrap_or_else(|_| session.into());
@@ -273,14 +274,14 @@ impl SharedMemoryLog {
         })
     }
 
-    /// Whether a part can be begun again.
+    /// Returns true if a part may be overwritten.
     fn may_go(&self, part: usize) -> bool {
         let part = &self.parts[part];
         part.last <= self.taken_over.load(Relaxed)
             || part.bytes > PLENTY && part.last <= self.committed.load(Relaxed)
     }
 
-    /// Puts the input of some ticks. What does not fit is for the session file alone.
+    /// Appends the input of some ticks. Input that does not fit goes to the session file alone.
     pub fn put(&mut self, first: u64, last: u64, data: &[u8]) {
         let other = 1 - self.now;
         if self.parts[self.now].bytes > PART_BYTES && self.may_go(other) {

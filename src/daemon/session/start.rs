@@ -1,8 +1,8 @@
-//! What a session begins with: a mesh; or, where a person joined a shared sculpture, the world as
-//! it was then.
+//! The start of a session: a mesh, or the world at the time when a person joined a shared
+//! sculpture.
 //!
-//! In the file the world's checkpoint lies behind a mesh that stands for nothing, so that all that
-//! guards a start guards it too: its sum, and its second copy.
+//! In the file, the world's checkpoint follows a placeholder mesh. So the start's checksum and
+//! second copy protect it too.
 
 use std::sync::Arc;
 
@@ -38,12 +38,12 @@ impl SessionStart {
         Some(SessionStart { mesh, world: Some((vertices, bytes.into())) })
     }
 
-    /// How many vertices the active object has.
+    /// Returns the number of vertices of the active object.
     pub fn vertices(&self) -> u64 {
         self.world.as_ref().map_or(self.mesh.positions.len() as u64, |w| w.0)
     }
 
-    /// As it stands in the file.
+    /// Encodes the start for the file.
     ///
     /// # Errors
     /// None that plain data can have.
@@ -56,10 +56,10 @@ impl SessionStart {
         Ok(out)
     }
 
-    /// What stands in a file of a layout with these numbers of fields.
+    /// Decodes a start from a file of a layout with these numbers of fields.
     ///
     /// # Errors
-    /// Where the bytes are not those of a start.
+    /// Returns an error if the bytes are not a valid start.
     pub fn from_bytes(bytes: &[u8], counts: &FieldCounts) -> Result<SessionStart, postcard::Error> {
         let (mesh, rest) = take_from_bytes(bytes, counts)?;
         let world = match rest.split_first_chunk::<8>() {
@@ -70,10 +70,10 @@ impl SessionStart {
         Ok(SessionStart { mesh, world })
     }
 
-    /// The active object's clay before the first tick.
+    /// Returns the active object's clay before the first tick.
     ///
     /// # Errors
-    /// Where the start is none.
+    /// Returns an error if the start is invalid.
     pub fn clay(&self, job: &Job) -> Result<Snapshot, BuildError> {
         match &self.world {
             Some((_, bytes)) => {
@@ -84,10 +84,10 @@ impl SessionStart {
         }
     }
 
-    /// The world before the first tick of the session.
+    /// Returns the world before the first tick of the session.
     ///
     /// # Errors
-    /// Where the start is none.
+    /// Returns an error if the start is invalid.
     pub fn begin(&self, s: &Settings, workers: Workers, job: &Job) -> Result<World, BuildError> {
         if let Some((_, bytes)) = &self.world {
             return checkpoint::restore(bytes, workers).map_err(|_| BuildError::Stored);

@@ -12,16 +12,16 @@ use super::connection::connect;
 use crate::polygons;
 use sculptd_clay::Snapshot;
 
-/// What the keys begin with; the hash follows.
+/// Prefix of the keys; the hash follows it.
 pub(super) const PREFIX: &str = "polygons:";
 /// Largest entry that is written: SQLite holds no blob of more than 1,000,000,000 bytes.
 const MAX_BYTES: usize = 900_000_000;
 
-/// What a session has of polygons already.
+/// The polygons that a session already contains.
 #[derive(Debug, Default)]
 pub struct StoredPolygons {
     keys: BTreeSet<String>,
-    /// Clays that were looked at, by their numbers.
+    /// Numbers of the clays already examined.
     seen: BTreeSet<u32>,
 }
 
@@ -30,7 +30,7 @@ fn entry(bytes: &[u8]) -> Vec<u8> {
     [&crc32fast::hash(bytes).to_le_bytes()[..], bytes].concat()
 }
 
-/// The bytes of an entry; `None` where they are not those that were written.
+/// Returns the bytes of an entry; `None` if they have changed.
 pub(super) fn from_entry(value: &[u8]) -> Option<&[u8]> {
     let (sum, bytes) = value.split_first_chunk::<4>()?;
     (crc32fast::hash(bytes).to_le_bytes() == *sum).then_some(bytes)
@@ -48,10 +48,10 @@ fn each(db: &Connection, visit: &mut dyn FnMut(String, &[u8])) -> rusqlite::Resu
 }
 
 impl StoredPolygons {
-    /// What the file has.
+    /// Reads the keys in the file.
     ///
     /// # Errors
-    /// Where it cannot be read.
+    /// Returns an error if the file cannot be read.
     pub fn read(db: &Connection) -> rusqlite::Result<StoredPolygons> {
         let mut all = StoredPolygons::default();
         each(db, &mut |key, _| {
@@ -60,11 +60,11 @@ impl StoredPolygons {
         Ok(all)
     }
 
-    /// Writes the polygons of the file that this clay was loaded from, where the session does not
-    /// have them yet.
+    /// Writes the polygons of the file that this clay was loaded from, unless the session contains
+    /// them.
     ///
     /// # Errors
-    /// Where the file takes nothing.
+    /// Returns an error if the file cannot be written.
     pub fn keep(&mut self, db: &Connection, clay: &Snapshot) -> rusqlite::Result<()> {
         if self.seen.contains(&clay.object_id()) {
             return Ok(());
@@ -87,10 +87,10 @@ impl StoredPolygons {
     }
 }
 
-/// Takes the polygons of a session into this process; how many entries are damaged.
+/// Loads the polygons of a session into this process. Returns the number of damaged entries.
 ///
 /// # Errors
-/// Where the file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn restore(path: &Path) -> rusqlite::Result<usize> {
     let mut damaged = 0;
     each(&connect(path, false)?, &mut |_, value| {

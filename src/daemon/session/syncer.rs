@@ -1,10 +1,10 @@
-//! Bringing the log to the disk itself, on a thread of its own.
+//! Syncs the log to the disk, on a separate thread.
 //!
-//! A group that was committed is in the system's hands: a killed process loses nothing of it. That
-//! the disk has it too takes as long as the disk likes, which on a loaded machine is longer than a
-//! group; so nobody waits for it but this thread. It also takes the log over into the database,
-//! with SQLite's own syncs before and after, so a power cut never leaves an unreadable file. What
-//! the disk has is acknowledged in the file, see [`super::acknowledgement`].
+//! The operating system holds every committed group, so a killed process loses none of it. Syncing
+//! it to the disk may take longer than a group on a loaded machine, so only this thread waits for
+//! it. The thread also checkpoints the log into the database. SQLite syncs before and after, so a
+//! power cut never leaves an unreadable file. The synced state is acknowledged in the file, see
+//! [`super::acknowledgement`].
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom};
@@ -56,7 +56,8 @@ impl Syncer {
         let _ = take_over(&mut own, &database.get());
         let thread = std::thread::Builder::new().name("sculptd-sync".into()).spawn(move || {
             let mut log: Option<File> = None;
-            // When the database is to take over the log next; none: it has all of it.
+            // Time of the next checkpoint of the log into the database; `None`: it contains all of
+            // it.
             let mut due_us: Option<u64> = None;
             loop {
                 let now = clock.now_us();
@@ -162,7 +163,7 @@ fn sync(log: &mut Option<File>, path: &Path) -> std::io::Result<[u32; 2]> {
 /// all of it.
 fn take_over(own: &mut Option<Connection>, database: &Path) -> rusqlite::Result<bool> {
     if own.is_none() {
-        // Where the file is gone, none is made.
+        // A missing file is not created.
         let db = Connection::open_with_flags(database, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         db.pragma_update(None, "synchronous", "full")?;
         *own = Some(db);

@@ -1,8 +1,8 @@
-//! Writing a session: the tick thread fills recycled buffers, a thread of its own turns them into
+//! Writes a session: the tick thread fills recycled buffers, and a separate thread turns them into
 //! rows.
 //!
-//! A full disk does not stop the sculpting: groups are kept in memory up to `KEPT_BYTES`, the
-//! fault is shown, and they are written as soon as there is room.
+//! A full disk does not stop the sculpting. Groups are kept in memory up to `KEPT_BYTES`, the fault
+//! is shown, and the groups are written once there is room.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
@@ -41,12 +41,12 @@ const BUFFER_BYTES: usize = 4096;
 const KEPT_BYTES: usize = 64 << 20;
 /// Longest time between two signs of life of the writing thread.
 const IDLE: Duration = Duration::from_millis(1000);
-/// How often it is looked where the file is.
+/// Interval at which the file's location is checked.
 const LOOK: Duration = Duration::from_millis(1000);
-/// How often a disk that was full is tried again.
+/// Interval between retries after the disk was full.
 const RETRY: Duration = Duration::from_millis(1000);
 
-/// What stands in the way of the journal, for a person; `None` while it is well.
+/// The journal's current fault, for people; `None` if there is none.
 pub type Fault = Arc<Mutex<Option<String>>>;
 
 /// The tick thread's end.
@@ -81,15 +81,15 @@ pub struct WriterThread {
     pub health: Health,
     /// The history, if it is kept.
     pub history: Option<Keeper>,
-    /// Where the file is.
+    /// Path of the file.
     pub path: SessionPath,
-    /// For what is left once all handles are closed.
+    /// For the work that remains after all handles are closed.
     place: Arc<Mutex<SessionPlace>>,
 }
 
 impl WriterThread {
-    /// Waits until all that was handed over is written. Call it after the loop, and with it the
-    /// [`SessionWriter`], has ended.
+    /// Waits until all input is written. Call it after the loop, and with it the [`SessionWriter`],
+    /// has ended.
     pub fn finish(self) -> Option<String> {
         let history = self.history.and_then(Keeper::finish);
         let _ = self.thread.join();
@@ -102,20 +102,20 @@ impl WriterThread {
     }
 }
 
-/// How the journal stands, for `status`, the log and the watchdog.
+/// State of the journal, for `status`, the log and the watchdog.
 #[derive(Debug, Clone, Default)]
 pub struct Health {
     pub fault: Fault,
-    /// Ticks whose input is lost for the file.
+    /// Number of ticks whose input the file has lost.
     pub lost: Arc<AtomicU64>,
-    /// The last tick that is on the disk.
+    /// The last tick on the disk.
     pub written: Arc<AtomicU64>,
     /// Grows with every turn of the writing thread: it is alive, whatever the disk does.
     pub turns: Arc<AtomicU64>,
 }
 
 impl Health {
-    /// What stands in the way, if anything.
+    /// Returns the current fault, if any.
     pub fn trouble(&self) -> Option<String> {
         self.fault.lock().ok().and_then(|f| f.clone())
     }
@@ -185,7 +185,7 @@ fn tune(db: &Connection) -> rusqlite::Result<()> {
     db.busy_timeout(Duration::from_secs(2))?;
     db.pragma_update(None, "journal_mode", "wal")?;
     db.pragma_update(None, "wal_autocheckpoint", 0)?;
-    // Until the thread of its own syncs: see `start_thread`.
+    // Until the syncer thread takes over the syncs: see `start_thread`.
     db.pragma_update(None, "synchronous", "full")
 }
 
@@ -354,18 +354,18 @@ fn copy_on(
 struct JournalThread {
     db: Connection,
     place: Arc<Mutex<SessionPlace>>,
-    /// What is said of a file that no name leads to any more.
+    /// Message about a file that no name leads to any more.
     misplaced: Option<String>,
     looked_us: u64,
     /// The shared-memory log's name, to remove it once the file has everything.
     tail: Option<LogName>,
-    /// The last tick in the file: the tail may let go of what came before.
+    /// The last tick in the file: the tail may discard earlier input.
     committed: Arc<AtomicU64>,
-    /// Where the file's input ends.
+    /// End of the file's input.
     end: InputEnd,
     /// Taken at the end.
     syncer: Option<Syncer>,
-    /// After `db`: closing another handle of the file first would give back SQLite's own locks.
+    /// Dropped after `db`: closing another handle of the file first would release SQLite's locks.
     _lock: Arc<File>,
     recycle: cc::Sender<Vec<u8>>,
     health: Health,
@@ -420,8 +420,8 @@ impl JournalThread {
         }
     }
 
-    /// Looks once a second whether the file is where it was, follows it where it was moved, and
-    /// writes the session anew where it is gone.
+    /// Checks once a second whether the file has moved, follows it if so, and writes the session to
+    /// another file if it is gone.
     fn watch_place(&mut self) {
         let now = self.clock.now_us();
         if now < self.looked_us + LOOK.as_micros() as u64 || self.misplaced.is_some() {
@@ -503,7 +503,7 @@ impl JournalThread {
                 Some(why) => {
                     fault.get_or_insert(format!("the session file was not synced: {why}"));
                 }
-                // What stood in the way of a sync is over: the last one held.
+                // The cause of the failed sync is over: the last sync succeeded.
                 None if all_written => *fault = None,
                 None => {}
             }
@@ -527,8 +527,8 @@ impl JournalThread {
                 unsynced.map(|e| format!("the session file cannot be synced: {e}"))
             }
             Err(e) if kept > KEPT_BYTES => {
-                // What waits is written when there is room; nothing after it is, for a log with a
-                // hole cannot be replayed.
+                // Waiting input is written once there is room. Later input is discarded, because a
+                // log with a gap cannot be replayed.
                 self.closed = true;
                 Some(format!(
                     "the session file takes nothing and {kept} bytes wait: input is being lost \

@@ -8,19 +8,19 @@ use hyper::header::{HeaderName, HeaderValue};
 pub struct Endpoint {
     /// `HOST:PORT`.
     pub authority: String,
-    /// What stands before `/v1/metrics`; empty or `/PATH`.
+    /// The path before `/v1/metrics`; empty or `/PATH`.
     pub path: String,
     /// Headers of each request; they may hold a secret.
     pub headers: Vec<(HeaderName, HeaderValue)>,
 }
 
 impl Endpoint {
-    /// `http://HOST[:PORT][/PATH]`; the usual port is 4318 (OTLP over HTTP). `headers` as the
-    /// variable `OTEL_EXPORTER_OTLP_HEADERS` has them: `NAME=VALUE`, with commas between, values
-    /// percent-encoded.
+    /// Parses `http://HOST[:PORT][/PATH]`; the default port is 4318 (OTLP over HTTP). `headers` has
+    /// the format of `OTEL_EXPORTER_OTLP_HEADERS`: `NAME=VALUE` separated by commas, with
+    /// percent-encoded values.
     ///
     /// # Errors
-    /// What was expected, without anything of a header's value.
+    /// Returns a message with the expected format, without any part of a header's value.
     pub fn read(text: &str, headers: &str) -> Result<Endpoint, String> {
         let expected = "expected http://HOST:PORT; for TLS let a collector near by send it on";
         let uri: Uri = text.trim().parse().map_err(|_| expected.to_owned())?;

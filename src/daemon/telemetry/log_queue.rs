@@ -55,17 +55,17 @@ impl LogQueue {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// From now on records are kept.
+    /// Starts keeping records.
     pub fn open(&self) {
         self.waiting().open = true;
     }
 
-    /// Whether records are kept.
+    /// Returns true if records are kept.
     pub fn is_open(&self) -> bool {
         self.waiting().open
     }
 
-    /// Nothing is kept any more.
+    /// Stops keeping records.
     pub fn close(&self) {
         let last = self.waiting().last;
         *self.waiting() = QueuedLog { last, ..QueuedLog::default() };

@@ -1,12 +1,12 @@
-//! The daemon's figures and its warnings for a collector of OpenTelemetry: OTLP over HTTP, as JSON
-//! (OpenTelemetry protocol 1.x, `/v1/metrics` and `/v1/logs`). Off unless asked for.
+//! Exports the daemon's metrics and warnings to an OpenTelemetry collector: OTLP over HTTP, as JSON
+//! (OpenTelemetry protocol 1.x, `/v1/metrics` and `/v1/logs`). Off by default.
 //!
 //! Laws kept here:
-//! * The thread that sends (`sculptd-telemetry`) is the only one that waits for a collector; the
-//!   tick thread knows nothing of it.
-//! * A collector that is gone costs no memory: counters are sums, and go on where they were when it
-//!   is back; of the log as much is kept as [`log_queue`] holds, and sent then.
-//! * What fails is told once, and once when it is well again.
+//! * Only the sending thread (`sculptd-telemetry`) waits for a collector; the tick thread does not
+//!   know of it.
+//! * An unreachable collector costs no memory: counters are sums, and continue when it returns.
+//!   [`log_queue`] keeps a limited number of log records, which are sent then.
+//! * A failure is logged once, and so is the recovery.
 
 pub mod endpoint;
 pub mod log_queue;
@@ -31,29 +31,29 @@ use crate::systemd::Watched;
 const PATIENCE: Duration = Duration::from_secs(3);
 /// See [`PATIENCE`].
 const LAST_PATIENCE: Duration = Duration::from_millis(900);
-/// Where figures go, and lines of the log.
+/// Path for metrics.
 const METRICS: &str = "/v1/metrics";
 /// See [`METRICS`].
 const LOGS: &str = "/v1/logs";
 /// Records of one request.
 const BATCH: usize = 512;
 
-/// Where to, how often, and as whom.
+/// Destination, interval and identity of the export.
 #[derive(Debug, Clone)]
 pub struct TelemetryOptions {
     /// The collector.
     pub endpoint: Endpoint,
-    /// Between two exports.
+    /// Interval between two exports.
     pub every: Duration,
-    /// Who sends.
+    /// Identity of the sender.
     pub resource: Resource,
     /// Nanoseconds since 1970, from outside.
     pub now_ns: fn() -> u64,
-    /// What the log's layer has put aside.
+    /// Queue that the logging layer fills.
     pub logs: Arc<LogQueue>,
 }
 
-/// What this computer is called.
+/// Returns the name of this computer.
 pub fn host_name() -> String {
     rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
@@ -61,7 +61,7 @@ pub fn host_name() -> String {
 /// The export; it ends, with a last one, when this is dropped.
 #[derive(Debug)]
 pub struct Telemetry {
-    /// What is under way is given up.
+    /// Set to abandon the request in progress.
     ending: Arc<AtomicBool>,
     stop: Option<cc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -71,7 +71,7 @@ impl Telemetry {
     /// Begins to export.
     ///
     /// # Errors
-    /// Where there is no thread, or no runtime for it.
+    /// Returns an error if the thread or its runtime cannot start.
     pub fn start(options: TelemetryOptions, watched: Watched) -> std::io::Result<Telemetry> {
         let poster = Poster::new(options.endpoint.clone())?;
         let (stop, stopped) = cc::bounded(0);
@@ -109,8 +109,8 @@ struct Exporter {
     watched: Watched,
     poster: Poster,
     begun_ns: u64,
-    /// The last request with figures failed, and the last with lines of the log, and that was told:
-    /// a collector may take the ones and not the others.
+    /// True if the last request failed and that was reported, for metrics and for logs: a collector
+    /// may accept one and not the other.
     failing: [bool; 2],
 }
 
@@ -135,7 +135,7 @@ impl Exporter {
             let body = otlp::logs(&self.options.resource, &records);
             let mut each = patience;
             let sent = self.poster.post(LOGS, body, last.as_mut().unwrap_or(&mut each));
-            // What the collector will never take stands in nobody's way.
+            // Records that the collector will never accept must not block the others.
             let done = !matches!(&sent, Err(e) if e.may_pass());
             if done {
                 self.options.logs.remove(&records);

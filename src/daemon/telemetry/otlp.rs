@@ -21,8 +21,8 @@ impl Resource {
         self.0.push((key.into(), value.into()));
     }
 
-    /// Takes attributes as the variable `OTEL_RESOURCE_ATTRIBUTES` has them: `KEY=VALUE`, with
-    /// commas between, values percent-encoded. What is none is left out.
+    /// Takes attributes in the format of `OTEL_RESOURCE_ATTRIBUTES`: `KEY=VALUE` separated by
+    /// commas, with percent-encoded values. Invalid parts are ignored.
     pub fn set_all(&mut self, text: &str) {
         for (key, value) in text.split(',').filter_map(|pair| pair.split_once('=')) {
             let value = super::endpoint::unescaped(value.trim());

@@ -16,24 +16,24 @@ use super::endpoint::Endpoint;
 
 /// Bytes of an answer that are read; more is cut off.
 const MAX_ANSWER: usize = 64 << 10;
-/// How often it is asked whether a request is to be given up.
+/// Interval at which a request checks whether to abort.
 const STEP: Duration = Duration::from_millis(50);
-/// Characters of an answer that are told.
+/// Reported characters of an answer.
 const TOLD: usize = 200;
 
-/// Why a request came to nothing.
+/// Reason that a request failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PostError {
-    /// Nobody is there, or nobody answers in time.
+    /// The collector cannot be reached, or does not answer in time.
     #[error("{0}")]
     Unreachable(String),
-    /// It was refused.
+    /// The collector refused the request.
     #[error("it answers {0} {1}")]
     Refused(StatusCode, String),
 }
 
 impl PostError {
-    /// Whether the same request may be taken later (OTLP/HTTP, "Retryable Response Codes").
+    /// Returns true if the same request may succeed later (OTLP/HTTP, "Retryable Response Codes").
     pub fn may_pass(&self) -> bool {
         match self {
             PostError::Unreachable(_) => true,
@@ -42,18 +42,18 @@ impl PostError {
     }
 }
 
-/// Sends requests, one after the other, each over a connection of its own.
+/// Sends requests one after the other, each over a separate connection.
 #[derive(Debug)]
 pub struct Poster {
     endpoint: Endpoint,
     runtime: Option<tokio::runtime::Runtime>,
-    /// What is under way is given up once this is true.
+    /// Set to abandon the request in progress.
     ending: Arc<AtomicBool>,
 }
 
 impl Drop for Poster {
     fn drop(&mut self) {
-        // The look-up of a name cannot be given up, and is not waited for.
+        // The look-up of a name cannot be aborted, so it is not waited for.
         if let Some(runtime) = self.runtime.take() {
             runtime.shutdown_background();
         }
@@ -64,14 +64,14 @@ impl Poster {
     /// A sender.
     ///
     /// # Errors
-    /// What the system says of the runtime.
+    /// Returns the system's error for the runtime.
     pub fn new(endpoint: Endpoint) -> std::io::Result<Poster> {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_io().enable_time().build()?;
         Ok(Poster { endpoint, runtime: Some(runtime), ending: Arc::default() })
     }
 
-    /// Gives up what is under way once this is true.
+    /// Abandons the request in progress once `ending` is set.
     pub fn until(mut self, ending: Arc<AtomicBool>) -> Poster {
         self.ending = ending;
         self

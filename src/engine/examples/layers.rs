@@ -19,7 +19,7 @@ use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::{job::Job, shapes};
 
-/// Frees what the tick no longer needs, on a thread of its own as the daemon does.
+/// Frees what the tick no longer needs on a separate thread, as the daemon does.
 #[derive(Debug)]
 struct Freed(mpsc::Sender<Garbage>);
 
@@ -45,7 +45,7 @@ fn ticks(world: &mut World, old: &mpsc::Sender<Snapshot>, edit: LayerEdit) -> Ve
         let tick = world.tick() + 1;
         let begun = Instant::now();
         let paused = world.step(tick, &[], &commands).paused;
-        // What others are shown is published after each tick, and held until the next.
+        // The snapshot for readers is published after each tick and held until the next.
         show(&mut shown, old, world.snapshot());
         all.push(begun.elapsed().as_secs_f64() * 1e3);
         commands.clear();

@@ -33,7 +33,7 @@ fn world(objects: usize, plain: &Arc<TriMesh>) -> Result<World, Box<dyn Error>> 
     let brush = BrushSettings { radius: 0.1, ..BrushSettings::default() };
     let mut world = World::new(first, Camera::default(), brush, Workers::new(1), options);
     for k in 1..objects {
-        // Clay of its own, so that memory is what it is for different objects.
+        // Each object gets separate clay, so that memory use matches that of different objects.
         let clay = Clay::build(plain, &Job::default())?;
         let place = DVec3::new((k % 10) as f64 * 3.0, 0.0, (k / 10) as f64 * -3.0);
         let transform = ObjectTransform { shift: place, ..ObjectTransform::NONE };

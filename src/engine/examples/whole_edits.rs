@@ -21,7 +21,7 @@ use sculptd_engine::view_region::{SetsRegion, ViewRegion};
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::{job::Job, shapes};
 
-/// Frees what the tick no longer needs, on a thread of its own as the daemon does.
+/// Frees what the tick no longer needs on a separate thread, as the daemon does.
 #[derive(Debug)]
 struct Freed(mpsc::Sender<Garbage>);
 
@@ -31,7 +31,7 @@ impl CollectGarbage for Freed {
     }
 }
 
-/// Times that each edit is done and taken back.
+/// Number of times that each edit is done and undone.
 const TIMES: usize = 5;
 
 /// Milliseconds of each tick from a command on until nothing is left to be done, each with what

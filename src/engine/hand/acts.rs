@@ -55,9 +55,9 @@ impl Act {
 /// A ball swept from one place to another, world units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Push {
-    /// Where the centre of the ball begins.
+    /// Centre of the ball at the start.
     pub from: Vec3,
-    /// Where it ends.
+    /// Centre of the ball at the end.
     pub to: Vec3,
     /// The radius of the ball, > 0.
     pub radius: f32,
@@ -97,7 +97,7 @@ pub struct Drag {
     pub from: Vec3,
     /// Between the fingertips now.
     pub to: Vec3,
-    /// How far clay goes along, world units, > 0.
+    /// Radius of clay that moves along, in world units, > 0.
     pub radius: f32,
     /// Share of the way that clay goes along, 0 to 1.
     pub strength: f32,

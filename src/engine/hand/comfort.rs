@@ -14,7 +14,7 @@ use super::reach_box::ReachBox;
 use sculptd_devices::Hand;
 use sculptd_geometry::portable::PortableMath;
 
-/// How long a calibration listens.
+/// Duration of a calibration, in microseconds.
 pub const CALIBRATION_US: u64 = 5_000_000;
 /// Fewer places than a second of a slow tracker gives say nothing.
 const ENOUGH: usize = 30;
@@ -28,14 +28,14 @@ pub struct ReachCalibration {
     palms: Vec<Vec3>,
 }
 
-/// What a calibration says after a frame.
+/// State of a calibration after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Calibrated {
-    /// 0 to 1.
+    /// Share of the calibration that is done, 0 to 1.
     Listening(f32),
-    /// What the person can reach.
+    /// Box that the person can reach.
     Done(ReachBox),
-    /// Hardly a hand was seen.
+    /// Too few palms were seen.
     TooLittle,
 }
 

@@ -15,9 +15,9 @@ use sculptd_geometry::TriMesh;
 /// `world = shift + turn * (own * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Similarity {
-    /// Where the origin of the object goes, world units.
+    /// Position of the object's origin, in world units.
     pub shift: Vec3,
-    /// How the object is turned; unit length.
+    /// Rotation of the object, a unit quaternion.
     pub turn: Quat,
     /// > 0.
     pub scale: f32,
@@ -30,12 +30,12 @@ impl Similarity {
     /// Leaves everything where it is.
     pub const NONE: Similarity = Similarity { shift: Vec3::ZERO, turn: Quat::IDENTITY, scale: 1.0 };
 
-    /// Where a point of the object is in the world.
+    /// Maps a point of the object to the world.
     pub fn apply(&self, p: Vec3) -> Vec3 {
         self.shift + self.turn * (p * self.scale)
     }
 
-    /// The same in double precision: an object of the scene that stands there.
+    /// Returns the same transform in double precision, for an object of the scene.
     pub fn to_object(&self) -> ObjectTransform {
         ObjectTransform {
             shift: self.shift.as_dvec3(),
@@ -58,8 +58,8 @@ impl Similarity {
         Similarity { shift: to - turn * from, turn, scale: 1.0 }
     }
 
-    /// Two points that were at `from` and are at `to`: moved, scaled, turned by the smallest
-    /// rotation. `None` where they lie on each other.
+    /// Computes the similarity that moves the two points `from` to `to` with the smallest rotation.
+    /// Returns `None` if the points coincide.
     pub fn between(from: [Vec3; 2], to: [Vec3; 2]) -> Option<Similarity> {
         let (a, b) = (from[1] - from[0], to[1] - to[0]);
         let scale = b.length() / a.length();
@@ -71,7 +71,8 @@ impl Similarity {
         (shift.is_finite() && turn.is_finite()).then_some(Similarity { shift, turn, scale })
     }
 
-    /// Whether all values are finite, the rotation is one, and the scale is 0.001 to 1000.
+    /// Returns true if all values are finite, the rotation has unit length, and the scale is 0.001
+    /// to 1000.
     pub fn is_sane(&self) -> bool {
         self.shift.is_finite()
             && self.turn.is_finite()
@@ -80,7 +81,7 @@ impl Similarity {
     }
 }
 
-/// What is held, and where.
+/// Object held by the hands, and its place.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct HeldObject {
     /// The triangles, in the coordinates of the object.
@@ -90,7 +91,7 @@ pub struct HeldObject {
 }
 
 impl HeldObject {
-    /// Where it stands now, as a mesh of its own.
+    /// Returns the object at its current place, as a separate mesh.
     pub fn placed(&self) -> TriMesh {
         let positions = self.plain.positions.iter().map(|p| self.place.apply(*p)).collect();
         TriMesh { positions, ..(*self.plain).clone() }

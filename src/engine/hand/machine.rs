@@ -23,15 +23,15 @@ pub struct Track {
     candidate_us: u64,
     /// Since when the pose in force is in force.
     pub pose_us: u64,
-    /// When the hand came into view, microseconds.
+    /// Time at which the hand came into view, in microseconds.
     pub appeared_us: u64,
-    /// When the hand was seen last, microseconds.
+    /// Time at which the hand was last seen, in microseconds.
     pub seen_us: u64,
     /// The middle of the palm, mm over the tracker.
     pub palm: Vec3,
     /// Out of the palm, unit length.
     pub palm_normal: Option<Vec3>,
-    /// How the hand is turned.
+    /// Orientation of the hand.
     pub orientation: Option<Quat>,
     /// The tip of the index finger, mm.
     pub index_tip: Option<Vec3>,
@@ -39,7 +39,7 @@ pub struct Track {
     pub pinch_point: Option<Vec3>,
     /// Thumb tip to index tip, mm.
     pub pinch_mm: Option<f32>,
-    /// How well the hand is seen, 0 to 1.
+    /// The tracker's confidence in the hand, 0 to 1.
     pub confidence: f32,
 }
 
@@ -101,8 +101,8 @@ impl Track {
         false
     }
 
-    /// Whether this may be the same hand that another track lost: near enough for the time gone by,
-    /// same side.
+    /// Returns true if this may be the same hand that another track lost: the same side, and near
+    /// enough for the time elapsed.
     pub fn may_continue(&self, t_us: u64, hand: &Hand, s: &HandSettings) -> bool {
         let gap = ms(self.seen_us, t_us);
         // The fastest palms on record move at 1.3 m/s; 60 mm more for the tracker's own jump.

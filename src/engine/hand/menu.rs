@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::settings::HandSettings;
 
-/// What may be chosen.
+/// Choices in the menu.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MenuItem {
@@ -27,7 +27,7 @@ pub enum MenuItem {
     Cylinder,
     /// Takes back the last step.
     Undo,
-    /// Does the step again that was taken back last.
+    /// Redoes the step that was undone last.
     Redo,
     /// From now on pinches pick up objects of the scene.
     PickUp,
@@ -47,7 +47,7 @@ impl MenuItem {
     pub const HOLDING: [MenuItem; 4] =
         [MenuItem::Add, MenuItem::Carve, MenuItem::Keep, MenuItem::PutAway];
 
-    /// What a person reads.
+    /// Returns its English name, for logs and widget ids.
     pub fn label(self) -> &'static str {
         match self {
             MenuItem::Add => "add",
@@ -64,19 +64,19 @@ impl MenuItem {
     }
 }
 
-/// Where the lowest ball is, mm over the tracker: left of the work, within what a Leap tracks well.
+/// Position of the lowest ball, in mm from the tracker: left of the work, within good Leap range.
 const FIRST_MM: Vec3 = Vec3::new(-165.0, 110.0, 0.0);
 /// From ball to ball, and a ball's radius, mm: a fingertip drifts by up to 15 mm while it dwells.
 const STEP_MM: f32 = 48.0;
 /// The radius of a ball, mm.
 pub const RADIUS_MM: f32 = 20.0;
 
-/// Where the ball of the `i`th choice is, in the tracker's mm.
+/// Returns the centre of the `i`th ball, in the tracker's mm.
 pub fn ball_mm(i: usize) -> Vec3 {
     FIRST_MM + Vec3::Y * (STEP_MM * i as f32)
 }
 
-/// Which ball a fingertip is in, and how far its ring has closed.
+/// Ball that a fingertip is in, and how far its ring has closed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Menu {
     over: Option<(usize, u64)>,
@@ -86,7 +86,7 @@ pub struct Menu {
 }
 
 impl Menu {
-    /// What can be chosen: by a hand that holds an object, or by an empty one.
+    /// Returns the choices for a hand that holds an object, or for an empty one.
     pub fn choices(holding: bool) -> &'static [MenuItem] {
         if holding { &MenuItem::HOLDING } else { &MenuItem::EMPTY }
     }

@@ -50,9 +50,9 @@ const MAX_TRACKS: usize = 16;
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct TrackedHand {
     track: Track,
-    /// Where the tool was; `None` just after the pose began.
+    /// Last position of the tool; `None` just after the pose began.
     tool: Option<Vec3>,
-    /// How the hand was turned then.
+    /// Orientation of the hand at that moment.
     turn: Option<Quat>,
     /// From the palm to the pinch when the pinch began, in the hand's own axes, mm.
     grip: Option<Vec3>,
@@ -65,7 +65,7 @@ struct TrackedHand {
 /// The state of all hands between samples.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct HandTools {
-    /// How hands are read.
+    /// Settings of the hand recognition.
     pub settings: HandSettings,
     held: Vec<TrackedHand>,
     waiting: VecDeque<Act>,
@@ -110,8 +110,8 @@ impl HandTools {
         }
     }
 
-    /// Lays the tracked volume over a work anew. What the hands touch or hold begins where they are
-    /// then: the way between the two mappings is nobody's movement.
+    /// Remaps the tracked volume onto a work. Touches and grips restart from the new positions: the
+    /// jump between the two mappings is not a movement.
     pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
         self.volume = Volume::over(middle, extent, yaw, &self.settings.reach);
         self.yaw = yaw;
@@ -212,7 +212,7 @@ impl HandTools {
         self.act(t_us);
     }
 
-    /// What was chosen from the menu since the last call.
+    /// Takes the menu choice made since the last call.
     pub fn take_choice(&mut self) -> Option<MenuItem> {
         self.chosen.take()
     }
@@ -222,7 +222,7 @@ impl HandTools {
         &self.menu
     }
 
-    /// How far the arms are spent.
+    /// Returns how tired the arms are.
     pub fn fatigue(&self) -> &Fatigue {
         &self.fatigue
     }
@@ -234,7 +234,7 @@ impl HandTools {
         self.reach = Some(ReachCalibration::default());
     }
 
-    /// Whether the hands' movement is being measured for their reach.
+    /// Returns true while the hands' movement is measured for their reach.
     pub fn is_calibrating(&self) -> bool {
         self.reach.is_some()
     }
@@ -303,8 +303,8 @@ impl HandTools {
         }
     }
 
-    /// Where the pinch would be if the fingers had kept still since it began: what is carried goes
-    /// with the palm.
+    /// Returns the pinch point as if the fingers had kept still since the pinch began: a carried
+    /// object follows the palm.
     fn grip_mm(&mut self, i: usize) -> Option<Vec3> {
         let held = &mut self.held[i];
         let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
@@ -441,7 +441,7 @@ impl HandTools {
         self.waiting.push_back(act);
     }
 
-    /// Where the hand that carries holds, in the world; of several the first.
+    /// Returns the world position where the carrying hand holds; of several hands, the first.
     pub fn grip_point(&self) -> Option<Vec3> {
         let palm = |h: &TrackedHand| {
             h.tool.or(h.grip.and(h.track.pinch_point.map(|p| self.volume.to_world(p))))
@@ -449,12 +449,12 @@ impl HandTools {
         self.held.iter().filter(|h| h.track.pose == Pose::Pinch).find_map(palm)
     }
 
-    /// Whether a hand carries something: its pinch is closed and has a grip.
+    /// Returns true if a hand carries something: its pinch is closed and has a grip.
     pub fn is_gripping(&self) -> bool {
         self.held.iter().any(|h| h.track.pose == Pose::Pinch && h.grip.is_some())
     }
 
-    /// Whether an act waits for the budget of a tick.
+    /// Returns true if an act waits for the budget of a tick.
     pub fn has_waiting(&self) -> bool {
         !self.waiting.is_empty()
     }

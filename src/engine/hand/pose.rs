@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::settings::HandSettings;
 use sculptd_devices::{Finger, Hand};
 
-/// What a hand does.
+/// Pose of a hand.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, PartialOrd, Ord,
 )]
@@ -33,7 +33,7 @@ impl Pose {
         [Pose::Neutral, Pose::Point, Pose::Pinch, Pose::Grab, Pose::Flat, Pose::Open];
 }
 
-/// What is measured on one frame. `None`: the fingers that it needs were not tracked.
+/// Measurements of one frame. `None`: the fingers that it needs were not tracked.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Features {
     /// Thumb tip to index tip, mm.
@@ -42,13 +42,13 @@ pub struct Features {
     pub grab: f32,
     /// Index, middle, ring, little finger stretched out.
     pub extended: [bool; 4],
-    /// How many of those four the tracker did not see.
+    /// Number of those four that the tracker did not see.
     pub hidden: usize,
     /// Index tip to little finger's tip over the palm's width.
     pub spread: Option<f32>,
 }
 
-/// Where the tracker states no width: an adult's palm, mm.
+/// Palm width if the tracker reports none: an adult's palm, in mm.
 const PALM_WIDTH_MM: f32 = 85.0;
 
 impl Features {

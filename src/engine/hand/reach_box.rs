@@ -27,8 +27,8 @@ impl Default for ReachBox {
 }
 
 impl ReachBox {
-    /// Whether the middle lies within 2 m of the tracker on each axis, and the half side is 30 to
-    /// 1000 mm.
+    /// Returns true if the middle lies within 2 m of the tracker on each axis, and the half side is
+    /// 30 to 1000 mm.
     pub fn is_sane(&self) -> bool {
         self.middle_mm.is_finite()
             && self.middle_mm.abs().max_element() < 2000.0

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::reach_box::ReachBox;
 use sculptd_devices::filter::OneEuro;
 
-/// How hands are read and how strongly they act.
+/// Thresholds of the hand recognition and strengths of the hand tools.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HandSettings {
@@ -42,7 +42,7 @@ pub struct HandSettings {
     /// Motion smaller than this does not turn or move the view, mm; grows by `dwell_zone_mm` while
     /// the hand rests.
     pub dead_zone_mm: f32,
-    /// How far the palm may drift and still rest, mm.
+    /// Distance that the palm may drift and still count as resting, in mm.
     pub dwell_zone_mm: f32,
     /// After sculpting the view stays still this long, ms, whatever the hand does.
     pub view_rest_ms: f32,
@@ -53,7 +53,7 @@ pub struct HandSettings {
     /// The part of the tracked space that is laid over the work; a calibration finds a person's
     /// own.
     pub reach: ReachBox,
-    /// How joints are steadied.
+    /// Filter that smooths the joints.
     pub steady: OneEuro,
 }
 

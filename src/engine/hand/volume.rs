@@ -15,7 +15,7 @@ const EDGE_MM: [f32; 2] = [220.0, 250.0];
 /// `world = origin + turn * (mm * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Volume {
-    /// Where the tracker's origin is in the world.
+    /// Position of the tracker's origin in the world.
     pub origin: Vec3,
     /// From the tracker's axes to the world's; unit length.
     pub turn: Quat,
@@ -32,7 +32,7 @@ impl Volume {
         Volume { origin: middle - turn * (reach.middle_mm * scale), turn, scale }
     }
 
-    /// Where a point of the tracker (mm) is in the world.
+    /// Maps a point of the tracker (mm) to the world.
     pub fn to_world(&self, mm: Vec3) -> Vec3 {
         self.origin + self.turn * (mm * self.scale)
     }
@@ -48,9 +48,9 @@ impl Volume {
         ((EDGE_MM[1] - off) / (EDGE_MM[1] - EDGE_MM[0])).clamp(0.0, 1.0)
     }
 
-    /// The volume in which the two world points held so far lie under two fingers at `a` and `b`
-    /// (mm): moved, scaled, and turned by the smallest rotation. `None` where the fingers are too
-    /// near each other to say.
+    /// Returns the volume that keeps the two held world points under two fingers at `a` and `b`
+    /// (mm): moved, scaled, and turned by the smallest rotation. Returns `None` if the fingers are
+    /// less than 20 mm apart.
     pub fn holding(&self, held: [Vec3; 2], fingers: [Vec3; 2]) -> Option<Volume> {
         let (mm, world) = (fingers[1] - fingers[0], held[1] - held[0]);
         // Fingers nearer than 20 mm would turn the work by their own noise.

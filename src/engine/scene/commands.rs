@@ -1,4 +1,4 @@
-//! What can be asked of the scene, as plain data.
+//! Commands to the scene, as plain data.
 
 use std::sync::Arc;
 
@@ -32,9 +32,9 @@ pub enum SceneCommand {
     Transform(ObjectId, ObjectTransform),
     /// Strokes, masks and Booleans act on this object from now on.
     Activate(ObjectId),
-    /// Whether an object is drawn, and reached by strokes.
+    /// Shows or hides an object. Strokes do not reach a hidden one.
     Show(ObjectId, bool),
-    /// Whether an object is protected from strokes, transforms and removal.
+    /// Locks or unlocks an object. A locked one is protected from strokes, transforms and removal.
     Lock(ObjectId, bool),
     /// Objects take the place of others: a Boolean, a merge, a split.
     Exchange(Exchange),
@@ -49,7 +49,7 @@ pub enum SceneCommand {
     Sets(SetsEdit),
     /// Something is done to the face sets of what is seen in a region of the view.
     SetsRegion(SetsRegion),
-    /// What was measured of the active object is masked, beside what is masked already.
+    /// Masks the measured vertices of the active object, in addition to those masked already.
     MaskMeasured(MeasuredMask),
     /// Triangles of the active object get another size: where it was stretched, or what is seen in
     /// a region of the view.
@@ -79,7 +79,7 @@ pub struct Recomputed {
     pub id: ObjectId,
     /// The Boolean, with the operands that it was computed from.
     pub live: LiveBoolean,
-    /// What it is now. Its name and its transform are not looked at.
+    /// The recomputed object. Its name and its transform are ignored.
     pub new: NewObject,
 }
 
@@ -95,7 +95,7 @@ impl SceneCommand {
         }
     }
 
-    /// Whether it owns or shares memory beyond its own size.
+    /// Returns true if the command owns or shares memory outside its struct.
     pub fn owns_memory(&self) -> bool {
         matches!(
             self,
@@ -116,7 +116,7 @@ impl SceneCommand {
     }
 }
 
-/// What a new object is made of.
+/// Source of a new object's shape.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum ObjectSource {
     /// Triangles, in the object's own frame.
@@ -131,9 +131,9 @@ pub enum ObjectSource {
 pub struct NewObject {
     /// Its name.
     pub name: String,
-    /// What it is made of.
+    /// Source of its shape.
     pub source: ObjectSource,
-    /// Where it stands.
+    /// Its place in the world.
     pub transform: ObjectTransform,
     /// The clay of its source in the world's store; not part of the bytes.
     #[serde(skip)]
@@ -150,7 +150,7 @@ impl NewObject {
 /// Objects that take the place of others, in one step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Exchange {
-    /// What it is called in the history.
+    /// Its event in the history.
     pub event: SceneEvent,
     /// The objects that the new ones were computed from: nothing is done when one has changed
     /// since.
@@ -159,7 +159,7 @@ pub struct Exchange {
     pub remove: Vec<ObjectId>,
     /// Of these, the ones that stay but are hidden.
     pub hide: Vec<ObjectId>,
-    /// What comes; the first of them is active afterwards. At least one.
+    /// Objects to add, at least one; the first of them is active afterwards.
     pub add: Vec<NewObject>,
 }
 
@@ -171,11 +171,11 @@ pub struct FlushPlacing {
     pub moved: Operand,
     /// The object that it is put on, as it was.
     pub target: Operand,
-    /// Where the moved object stands from now on.
+    /// New transform of the moved object.
     pub transform: ObjectTransform,
 }
 
-/// What was done to the scene, for the history.
+/// Kind of scene change, for the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SceneEvent {
@@ -255,16 +255,16 @@ pub enum SceneError {
     /// The clay of a primitive was changed, so its numbers mean nothing any more.
     #[error("object {0} is no primitive, or its clay was changed")]
     NotAPrimitive(ObjectId),
-    /// What was asked of the layers cannot be done.
+    /// The request for the layers is not possible.
     #[error(transparent)]
     Layers(#[from] LayerError),
-    /// What was asked of the face sets cannot be done.
+    /// The request for the face sets is not possible.
     #[error(transparent)]
     Sets(#[from] SetsError),
-    /// What was meant to be a region of the view is none.
+    /// The points do not form a region of the view.
     #[error("expected a box, a line of two places, or a polygon of 3 to 1000 corners")]
     Region,
-    /// The clay is another than the one that the mask was measured on.
+    /// The clay has changed since the mask was measured.
     #[error("the object has changed since its mask was measured")]
     MaskChanged,
     /// The object is hidden, and masks are for what is seen.

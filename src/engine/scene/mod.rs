@@ -2,14 +2,14 @@
 //!
 //! Laws kept here:
 //! * There is always an active object: the last one cannot be removed.
-//! * Nothing in a tick costs by the number of objects or by the size of those that are not touched:
-//!   strokes know the active object alone, and the list that others see ([`SceneView`]) is made
-//!   anew only when it changes.
+//! * The cost of a tick does not depend on the number of objects or the size of untouched ones.
+//!   Strokes know only the active object, and the published list ([`SceneView`]) is rebuilt only
+//!   when it changes.
 //! * An object keeps its clay in its own frame. A transform changes no vertex, and strokes are made
-//!   in the object's own frame.
-//! * Ids are never given out twice, so that a name in a journal or a history means one object.
+//!   in the object's frame.
+//! * Ids are never reused, so that a name in a journal or a history means one object.
 //!
-//! Read first: [`SceneCommand`] (what can be asked), then [`Object`].
+//! Read first: [`SceneCommand`] (the requests), then [`Object`].
 
 mod commands;
 mod object;
@@ -48,7 +48,7 @@ pub struct Scene {
     active: usize,
     /// The next object's id.
     next_id: u32,
-    /// What others see, and whether it is out of date.
+    /// The published list of objects; `stale` marks it out of date.
     view: Arc<SceneView>,
     stale: bool,
 }
@@ -168,8 +168,8 @@ impl Scene {
         self.stale = true;
     }
 
-    /// What others see. Made anew, at the cost of the number of objects, where it has changed since
-    /// the last time; else a reference to the one before.
+    /// Returns the published list of objects. Rebuilds it, at a cost proportional to the number of
+    /// objects, if it has changed since the last call; otherwise returns the same reference.
     pub fn view(&mut self, garbage: &GarbageSink) -> Arc<SceneView> {
         if self.stale {
             self.stale = false;
@@ -190,7 +190,7 @@ impl Scene {
         self.view.clone()
     }
 
-    /// Whether there is nothing but one object as a session begins with it.
+    /// Returns true if the scene is the single object that a session begins with.
     pub fn is_plain(&self) -> bool {
         matches!(&self.objects[..], [one] if one.settings == ObjectSettings::default())
             && self.next_id == 1

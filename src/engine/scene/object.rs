@@ -45,13 +45,13 @@ impl Object {
         self.extent = ((hi - lo).length() * 0.5).max(1e-12);
     }
 
-    /// Whether strokes reach it.
+    /// Returns true if strokes reach it: it is visible and not locked.
     pub fn is_editable(&self) -> bool {
         self.settings.visible && !self.settings.locked
     }
 
-    /// Whether strokes reach it and change what is active in it: the base, or a layer that is
-    /// visible and not of an intensity near 0.
+    /// Returns true if strokes reach it and change its active part: the base, or a layer that is
+    /// visible and whose intensity is not near 0.
     pub fn takes_strokes(&self) -> bool {
         self.is_editable() && self.clay.takes_strokes()
     }

@@ -1,8 +1,8 @@
-//! Everything of an object but its clay, and how that stands in a file.
+//! Everything of an object but its clay, and its encoding in a file.
 //!
-//! The bytes are the fields in order, as every struct's (postcard), with one byte for the flags in
-//! the place of `locked`: bit 0 is `locked`, and bit 1 says that [`Extras`] follow. Settings
-//! without any are the bytes that they were before there were extras, and are read as such.
+//! The bytes are the fields in order, as every struct's (postcard), except that one byte of flags
+//! replaces `locked`: bit 0 is `locked`, and bit 1 means that [`Extras`] follow. Settings without
+//! extras have the same bytes as before extras existed.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,9 +18,9 @@ use super::{LiveBoolean, ObjectTransform, Primitive};
 pub struct ObjectSettings {
     /// For people; several objects may have the same. At most [`super::MAX_NAME`] characters.
     pub name: String,
-    /// Where it stands.
+    /// Its place in the world.
     pub transform: ObjectTransform,
-    /// Whether it is drawn, and written where the visible objects are.
+    /// True if it is drawn, and included when the visible objects are written.
     pub visible: bool,
     /// Strokes, Booleans, transforms and removal are refused.
     pub locked: bool,
@@ -35,7 +35,7 @@ pub struct ObjectSettings {
     pub live: Option<Box<LiveBoolean>>,
 }
 
-/// What settings hold beyond the fields that they always had.
+/// Settings added after the original fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Extra {
     Group(String),
@@ -181,7 +181,7 @@ mod tests {
                 live: Some(Box::new(live)),
                 ..plain
             };
-            // Something lies behind it, as in a list.
+            // Another value follows it, as in a list.
             let bytes = postcard::to_stdvec(&(&rich, 77u32)).expect("plain data");
             let back: (ObjectSettings, u32) = postcard::from_bytes(&bytes).expect("read");
             assert_eq!(back, (rich, 77));

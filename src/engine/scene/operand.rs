@@ -27,7 +27,7 @@ pub struct Operand {
     pub clay: u32,
     /// The revision of its clay.
     pub revision: u64,
-    /// Where it stood.
+    /// Its transform at that time.
     pub transform: ObjectTransform,
 }
 
@@ -35,7 +35,7 @@ pub struct Operand {
 /// changed or the Boolean is applied.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LiveBoolean {
-    /// What is made of the two.
+    /// Operation that combines the two.
     pub operation: Operation,
     /// The operands as they were when the result was computed.
     pub operands: [Operand; 2],

@@ -1,19 +1,18 @@
-//! Undo of one's own steps, where several people share the timeline.
+//! Undo of a person's own steps, if several people share the timeline.
 //!
 //! Laws kept here:
-//! * A person takes back the own newest step, whatever others did since, as long as none of that
-//!   changed anything in common with it. Then the two are the same in either order: the step is put
-//!   after the others and taken back there. So every page that the step changed gets the bits that
-//!   it had before the step, and all else stays as it is, to the bit.
-//! * Where a later step of somebody else changed something in common, undo is refused, with the
-//!   owner of the newest of those: it is the first that would have to be taken back. So the newest
-//!   step of all can always be taken back by its owner.
-//! * What was taken back can be done again as long as all that it changed is as it was left. A step
-//!   of somebody else in common with it is in the way; where that one is taken back in its turn, it
-//!   is no longer. A new step of the same person lets it go, as in a world of one person.
-//! * Strokes of others that are under way go on. One that has changed something in common is in the
-//!   way like a step.
-//! * What is in common is asked of the steps alone: every replica answers alike.
+//! * A person undoes their newest step, whatever others did since, as long as no later step shares
+//!   a change with it. Then the two commute: the step is moved behind the others and undone there.
+//!   So every page that the step changed gets the bits that it had before the step, and all else
+//!   stays as it is, to the bit.
+//! * If a later step of somebody else shares a change, undo is refused, with the owner of the
+//!   newest of those: it must be undone first. So the newest step of all can always be undone by
+//!   its owner.
+//! * An undone step can be redone as long as all that it changed is as the undo left it. A step of
+//!   somebody else that shares a change blocks it until that one is undone too. A new step of the
+//!   same person discards it, as in a world of one person.
+//! * Strokes of others that are under way go on. One that shares a change blocks like a step.
+//! * Only the steps decide which changes are shared, so every replica answers alike.
 
 use super::timeline::{SceneStep, Timeline, TimelineEntry};
 use super::{ObjectId, Scene};
@@ -31,20 +30,20 @@ enum Side {
 enum Changed {
     /// Pages of the clay with this number; `None`: all of them.
     Pages(u32, Option<StepPages>),
-    /// What an object is set to.
+    /// The settings of an object.
     Settings(ObjectId),
-    /// Which clay an object has, of two.
+    /// Exchange of an object's clay between these two.
     Clay(ObjectId, [u32; 2]),
-    /// Whether an object is there, with its clay.
+    /// Presence of an object, with its clay.
     Presence(ObjectId, u32),
-    /// Which object is active.
+    /// The choice of the active object.
     Active,
     /// The order of the objects.
     Order,
 }
 
 impl Changed {
-    /// Whether two steps that changed these cannot be exchanged.
+    /// Returns true if two steps with these changes do not commute.
     fn shares(&self, other: &Changed) -> bool {
         use Changed::{Active, Clay, Order, Pages, Presence, Settings};
         match (self, other) {
@@ -90,7 +89,7 @@ impl PlaceCount {
 }
 
 impl SceneStep {
-    /// What the step changed, newest first.
+    /// Appends the changes of the step to `out`, newest first.
     fn changed(&self, scene: &Scene, side: Side, counted: &mut PlaceCount, out: &mut Vec<Changed>) {
         let in_place = |id: ObjectId| scene.object(id).map_or(u32::MAX, |o| o.clay.object_id());
         match self {
@@ -120,14 +119,14 @@ impl SceneStep {
     }
 }
 
-/// Where somebody's undo ends.
+/// Result of a person's undo or redo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum OwnStep {
-    /// It is done.
+    /// The step was undone or redone.
     Done,
-    /// The person has no step to take back or to do again.
+    /// The person has no step to undo or redo.
     Nothing,
-    /// A step of this person is in the way.
+    /// A step of this person blocks it.
     InTheWay(u8),
 }
 
@@ -137,7 +136,7 @@ impl Timeline {
         self.person = person;
     }
 
-    /// Steps that a person can take back and do again, whether or not others are in the way.
+    /// Returns the numbers of a person's steps to undo and to redo, blocked or not.
     pub(crate) fn steps_of(&self, person: u8) -> (usize, usize) {
         let own = |e: &&TimelineEntry| e.owners.contains(&person);
         (self.past.iter().filter(own).count(), self.future.iter().filter(own).count())
@@ -150,7 +149,7 @@ impl Timeline {
         }
     }
 
-    /// What each step changed from the newest back to `last`, newest first.
+    /// Returns the changes of each step from the newest back to `last`, newest first.
     fn changed_down_to(&self, scene: &Scene, side: Side, last: usize) -> Vec<Vec<Changed>> {
         let mut counted = PlaceCount::default();
         let newest_first = self.entries(side).into_iter().skip(last).rev();
@@ -197,7 +196,7 @@ impl Timeline {
         }
     }
 
-    /// Whether what a person would take back next, or do again, is a stroke, or nothing.
+    /// Returns true if a person's next step to undo, or to redo, is a stroke, or if there is none.
     pub(crate) fn next_is_stroke(&self, person: u8, redo: bool) -> bool {
         let own = |e: &&TimelineEntry| e.owners.contains(&person);
         let next = match redo {
@@ -252,8 +251,8 @@ impl Timeline {
         OwnStep::Done
     }
 
-    /// The newest step of a side was made, taken back or done again: for steps that can be done
-    /// again and share something with it that is one change more, or one that is undone.
+    /// Updates the blocks of undone steps after the newest step of a side was made, undone or
+    /// redone. Each undone step that shares a change with it gains a block or loses one.
     fn turn_blocks(&mut self, changed: &[Changed], side: Side, scene: &Scene) {
         let newest = match side {
             Side::Past => self.past.back(),
@@ -326,7 +325,7 @@ impl Timeline {
             });
             entry.step.discard(garbage);
         }
-        // What stays is blocked by the new steps on the same pages.
+        // The remaining steps are blocked by the new steps on the same pages.
         let new = self.changed_down_to(scene, Side::Past, self.past.len() - count);
         let others = self.changed_down_to(scene, Side::Future, 0);
         let made = self.past.iter().rev().map(|e| (e.id, e.owners.first().copied()));

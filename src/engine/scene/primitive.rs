@@ -17,13 +17,13 @@ use sculptd_geometry::{TriMesh, shapes};
 /// along +y.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
-    /// What it is.
+    /// Its shape.
     pub shape: PrimitiveShape,
     /// The length of an edge of its triangles, about; > 0.
     pub edge: f64,
 }
 
-/// What a primitive is. Lengths are > 0 and at most 1e6.
+/// Shape of a primitive. Lengths are > 0 and at most 1e6.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum PrimitiveShape {
     /// A box of these sides.
@@ -80,7 +80,7 @@ impl PrimitiveShape {
         (area / USUAL_VERTICES / (3f64.sqrt() * 0.5)).sqrt()
     }
 
-    /// What it is called where nobody named it.
+    /// Returns its default name.
     pub fn name(&self) -> &'static str {
         match self {
             PrimitiveShape::Box(_) => "box",
@@ -262,7 +262,7 @@ impl Ring {
 
 /// Triangles between a ring and the next one of the profile.
 fn join(low: &Ring, high: &Ring, out: &mut Vec<[u32; 3]>) {
-    // A ring of one vertex is a pole, and has no side of its own.
+    // A ring of one vertex is a pole and has no sides.
     let sides = |ring: &Ring| if ring.count == 1 { 0 } else { ring.count };
     let (a_sides, b_sides) = (sides(low), sides(high));
     let (mut a, mut b) = (0, 0);

@@ -1,10 +1,10 @@
-//! Flush placing: where an object must stand so that a flat face of it lies in the plane of a flat
-//! face of another, the two facing each other.
+//! Flush placing: computes the transform that brings a flat face of an object into the plane of a
+//! flat face of another, the two facing each other.
 //!
-//! Everything is in double precision: the transform is composed of one rotation, corrected until
-//! its own rounding is all that is left, and a shift along the normal. The vertices of both faces
-//! were rounded to single precision in their own frames, and that is what remains between the
-//! solids; a Boolean takes it as contact.
+//! Everything is in double precision. The transform is composed of one rotation, corrected until
+//! only rounding error is left, and a shift along the normal. The vertices of both faces were
+//! rounded to single precision in their frames. That error remains between the solids; a Boolean
+//! treats it as contact.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::ObjectTransform;
 use sculptd_geometry::flat_region::FlatRegion;
 
-/// A flat face in a frame of its own or in the world.
+/// A flat face, in an object's frame or in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatFace {
     /// The centre of its area.
@@ -40,16 +40,16 @@ impl FlatFace {
     }
 }
 
-/// How two faces lie on each other besides that they share a plane.
+/// Alignment of two faces within their shared plane.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceAlignment {
     /// The moved face is turned about its middle and pushed along the normal: the shortest way.
     #[default]
     Nearest,
-    /// The middles of the faces lie on each other.
+    /// The middles of the faces coincide.
     Centre,
-    /// The picked sides lie on each other, middle on middle.
+    /// The picked sides coincide, middle on middle.
     Edge,
 }
 
@@ -81,9 +81,10 @@ fn about(axis: DVec3, cosine: f64, sine: f64) -> DQuat {
     DQuat::from_xyzw(v.x, v.y, v.z, w).normalize()
 }
 
-/// Where an object must stand so that `face` (in its own frame) lies flush on `target` (in the
-/// world). `now`: where it stands. `spin`: a further turn about the target's normal, radians.
-/// `None`: an edge is asked for where a face has none, or the place is out of range.
+/// Computes the transform that places `face` (in the object's frame) flush on `target` (in the
+/// world). `now`: the current transform. `spin`: a further turn about the target's normal, in
+/// radians. Returns `None` if an edge is requested and a face has none, or if the place is out of
+/// range.
 pub fn flush(
     face: &FlatFace,
     now: &ObjectTransform,

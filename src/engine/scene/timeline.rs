@@ -1,11 +1,12 @@
-//! One undo timeline over all objects. What several people take back of it: [`super::own_steps`].
+//! One undo timeline over all objects. Undo by several people: [`super::own_steps`].
 //!
 //! Laws kept here:
-//! * A step names the objects that it changed and holds what they were. A stroke's pages lie in the
-//!   history of its object's clay; the timeline says whose turn it is.
-//! * Undo of everything gives the start's bits, whatever lay between.
-//! * The bound is one over all objects: the oldest steps go first, whichever object they are of.
-//! * What goes to the garbage sink is handed over whole; nothing large is freed here.
+//! * A step names the objects that it changed and holds their previous state. The history of an
+//!   object's clay holds the pages of a stroke; the timeline holds the order of the steps.
+//! * Undo of everything restores the initial bits.
+//! * The memory bound covers all objects: the oldest steps are dropped first, whichever object they
+//!   belong to.
+//! * Discarded data goes to the garbage sink whole; nothing large is freed here.
 
 use std::collections::VecDeque;
 
@@ -18,8 +19,8 @@ use sculptd_clay::{Clay, GarbageSink};
 /// none goes there by itself.
 const STEPS: usize = 1000;
 
-/// What a step holds. Taking it back exchanges that with what is in the scene, so that the same
-/// step can be done again.
+/// Content of a step. Undo exchanges it with the state of the scene, so that the same step can be
+/// redone.
 #[derive(Debug)]
 pub(crate) enum SceneStep {
     /// The newest step in the history of the clay with this number ([`Clay::object_id`]).
@@ -63,7 +64,7 @@ pub(crate) struct Presence {
     pub(crate) index: usize,
     /// The object while it is not in the scene.
     pub(crate) object: Option<Object>,
-    /// What is active on the other side.
+    /// Object that is active on the other side.
     pub(crate) other_active: ObjectId,
 }
 
@@ -141,7 +142,7 @@ impl SceneStep {
         }
     }
 
-    /// Hands over what it holds, each clay on its own.
+    /// Sends its content to the garbage sink, each clay separately.
     pub(super) fn discard(self, garbage: &GarbageSink) {
         match self {
             SceneStep::Replaced(_, other) => garbage.discard_owned(other.clay),
@@ -167,12 +168,12 @@ pub(super) struct TimelineEntry {
     pub(super) id: u64,
     /// Ascending; empty in a world of one person.
     pub(super) owners: Vec<u8>,
-    /// Of a step that was taken back: the steps that changed the same since, by being made, taken
-    /// back or done again, with an owner of each.
+    /// Of an undone step: the steps that have since changed the same data, by being made, undone or
+    /// redone, with an owner of each.
     pub(super) blocks: Vec<(u64, u8)>,
 }
 
-/// Steps that can be taken back and done again.
+/// Steps to undo and to redo.
 #[derive(Debug)]
 pub(crate) struct Timeline {
     pub(super) past: VecDeque<TimelineEntry>,
@@ -180,14 +181,14 @@ pub(crate) struct Timeline {
     /// Bytes that the steps of all clays but the active one hold, in the scene and in steps:
     /// strokes change those of the active one alone.
     other_bytes: u64,
-    /// How many steps were ever made.
+    /// Number of steps ever made.
     made: u64,
     /// Whose the next steps are; `None`: the world is of one person.
     pub(super) person: Option<u8>,
 }
 
 impl Timeline {
-    /// Nothing to take back; there is room for all that may be.
+    /// Returns an empty timeline with its full capacity reserved.
     pub(crate) fn new() -> Timeline {
         let past = VecDeque::with_capacity(STEPS + 1);
         Timeline { past, future: Vec::new(), other_bytes: 0, made: 0, person: None }
@@ -231,8 +232,8 @@ impl Timeline {
         true
     }
 
-    /// A step was made. What could be done again no longer can, and the oldest steps go where there
-    /// are too many or hold more than `limit` bytes.
+    /// Adds a new step. Discards the steps to redo, and drops the oldest steps if there are too
+    /// many or they hold more than `limit` bytes.
     pub(crate) fn push(
         &mut self,
         step: SceneStep,
@@ -278,8 +279,8 @@ impl Timeline {
         }
     }
 
-    /// A change that follows from the newest step: both are taken back as one. What could be done
-    /// again still can. Without any step it is one of its own.
+    /// Joins a change to the newest step: undo covers both. Keeps the steps to redo. Without any
+    /// step the change becomes a separate one.
     pub(crate) fn follow(
         &mut self,
         step: SceneStep,
@@ -374,7 +375,7 @@ impl Timeline {
         true
     }
 
-    /// Does the step again that was taken back last. False: there is none.
+    /// Redoes the step that was undone last. Returns false if there is none.
     pub(crate) fn redo(&mut self, scene: &mut Scene) -> bool {
         let Some(mut entry) = self.future.pop() else { return false };
         entry.step.travel(scene, Direction::Forth);
@@ -391,7 +392,7 @@ impl Timeline {
         }
     }
 
-    /// Nothing can be taken back or done again; the clays in the scene keep no steps either.
+    /// Discards all steps to undo and redo; the clays in the scene keep no steps either.
     pub(crate) fn forget(&mut self, scene: &mut Scene, garbage: &GarbageSink) {
         for entry in self.past.drain(..).chain(self.future.drain(..)) {
             entry.step.discard(garbage);
@@ -400,20 +401,20 @@ impl Timeline {
         self.other_bytes = 0;
     }
 
-    /// Names the newest step, as long as it is neither taken back nor followed by another, and of
-    /// whoever acts now.
+    /// Returns the id of the newest step, if it is not undone, not followed by another, and of the
+    /// person who acts now.
     pub(crate) fn newest_step(&self) -> Option<u64> {
         let own = |e: &&TimelineEntry| self.person.is_none_or(|p| e.owners.contains(&p));
         let newest = self.past.back().filter(|e| e.id == self.made);
         newest.filter(own).map(|e| e.id)
     }
 
-    /// Steps that undo can take back.
+    /// Returns the number of steps that undo can reach.
     pub(crate) fn past(&self) -> usize {
         self.past.len()
     }
 
-    /// Steps that redo can do again.
+    /// Returns the number of steps that redo can reach.
     pub(crate) fn future(&self) -> usize {
         self.future.len()
     }

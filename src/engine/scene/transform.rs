@@ -13,10 +13,10 @@ use sculptd_clay::Ray;
 /// `world = shift + turn * (own * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ObjectTransform {
-    /// Where the origin of the object is, world units; each coordinate within
+    /// Position of the object's origin, in world units; each coordinate within
     /// [`ObjectTransform::FAR`].
     pub shift: DVec3,
-    /// How the object is turned; unit length.
+    /// Rotation of the object, a unit quaternion.
     pub turn: DQuat,
     /// World units for a unit of the object, 1e-6 to 1e6.
     pub scale: f64,
@@ -35,12 +35,12 @@ impl ObjectTransform {
     /// The largest coordinate of a shift, world units.
     pub const FAR: f64 = 1e9;
 
-    /// Whether it leaves everything where it is, to the bit.
+    /// Returns true if it leaves everything in place, to the bit.
     pub fn is_none(&self) -> bool {
         *self == ObjectTransform::NONE
     }
 
-    /// Whether all values are finite and in their ranges.
+    /// Returns true if all values are finite and in their ranges.
     pub fn is_sane(&self) -> bool {
         self.shift.is_finite()
             && self.shift.abs().max_element() <= ObjectTransform::FAR
@@ -49,7 +49,7 @@ impl ObjectTransform {
             && (1e-6..=1e6).contains(&self.scale)
     }
 
-    /// Where a point of the object is in the world.
+    /// Maps a point of the object to the world.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.shift + self.turn * (p * self.scale)
     }

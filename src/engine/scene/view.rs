@@ -18,8 +18,8 @@ pub struct ObjectView {
     pub middle: Vec3,
     /// As [`super::Object::extent`].
     pub extent: f32,
-    /// Its clay; `None` of the active object, whose newest snapshot lies beside the view: a view
-    /// holds as long as no object is added, removed or set, and strokes go on meanwhile.
+    /// Its clay; `None` for the active object, whose newest snapshot is kept beside the view. The
+    /// view stays valid until an object is added, removed or set; strokes do not change it.
     pub clay: Option<Snapshot>,
 }
 
@@ -31,8 +31,8 @@ impl ObjectView {
     }
 }
 
-/// The list of objects, and which is active. Made anew only when one of them is added, removed, set
-/// or made active; strokes leave it as it is.
+/// The list of objects, and the active one. Rebuilt only when an object is added, removed, set or
+/// made active; strokes do not change it.
 #[derive(Debug, Clone, Default)]
 pub struct SceneView {
     /// In the order of the scene.
@@ -60,8 +60,8 @@ impl SceneView {
         self.objects.iter().map(move |o| (o, o.clay.as_ref().unwrap_or(active)))
     }
 
-    /// Whether there is nothing but one object that stands where it is: a world as it was before
-    /// there were scenes.
+    /// Returns true if the scene is one object with default settings, as every world was before
+    /// scenes existed.
     pub fn is_plain(&self) -> bool {
         matches!(&self.objects[..], [one] if one.settings == ObjectSettings::default())
     }

@@ -16,7 +16,7 @@ const ROUNDS: usize = 6;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Curve {
     path: Vec<PenPoint>,
-    /// Where on the curve each point lies, 0 to 1.
+    /// Position of each point on the curve, 0 to 1.
     at: Vec<f64>,
     control: [DVec2; 4],
     /// One in so many reports is kept.

@@ -24,11 +24,11 @@ const FREE: usize = 5;
 /// A pen that moved less between coming down and lifting, in heights of the view, only set a point.
 const SLIP: f32 = 0.01;
 
-/// What is done with a curve that is being laid.
+/// Actions on a curve that is being edited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CurveAction {
-    /// The brush in hand is drawn along it, as one stroke.
+    /// Draws the active brush along it, as one stroke.
     Apply,
     /// It is put away.
     Cancel,
@@ -49,12 +49,12 @@ impl CurveStroke {
         &self.points
     }
 
-    /// Whether no handle is laid.
+    /// Returns true if the curve has no handles.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// Which handle the pen holds.
+    /// Returns the index of the handle that the pen holds.
     pub fn held(&self) -> Option<usize> {
         self.held
     }

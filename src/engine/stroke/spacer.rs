@@ -2,11 +2,11 @@
 //! pen.
 //!
 //! After Cipollini 2020 ("Fast Digital Sculpting on CPU"), a stroke is sampled every 20 % of the
-//! radius, the missing points are placed along the **screen** path, and each is picked anew on the
+//! radius, the missing points are placed along the **screen** path, and each is picked again on the
 //! surface. Here the next point is the one on the screen segment whose picked position is one
-//! spacing away from the last dab *as it stands now* (the last dab's own view point is picked again
-//! after it was applied), found by a guarded bisection, so that perspective, foreshortening and the
-//! relief just raised are all accounted for.
+//! spacing away from the last dab *at its current position* (the last dab's view point is picked
+//! again after it was applied). A guarded bisection finds it, so that perspective, foreshortening
+//! and the relief just raised are all accounted for.
 //!
 //! The law: **within a run, a dab is never further than the spacing from the one before it.** A run
 //! goes on
@@ -16,11 +16,11 @@
 //!   far side: one more dab is laid on the brink, and if the far side is still too far, others on
 //!   the hidden clay between, found straight below the line of sight over it, until it is not.
 //!
-//! It ends, and the first dab beyond begins another (it says so: [`Laid::first`]), only where the
-//! path leaves the surface, where the leap is wider (another limb, what stands behind), or where no
-//! surface without a break leads across (the brink hangs over). A dab on a brink has a share of the
-//! strength for the way that led to it, so that what a stroke lays down depends on its way and not
-//! on how often the surface leapt, nor on how the path was cut into frames.
+//! A run ends, and the first dab beyond begins another (marked by [`Laid::first`]), in three cases.
+//! The path leaves the surface; the leap is wider (another limb, or clay behind); or no unbroken
+//! surface leads across (the brink overhangs). A dab on a brink has a share of the strength for the
+//! path that led to it. So the effect of a stroke depends on its path and not on how often the
+//! surface leapt, nor on how the path was cut into frames.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -32,8 +32,8 @@ use sculptd_geometry::portable::PortableMath;
 /// A dab is accepted between these shares of the spacing: never above one, so that the law holds
 /// with room for rounding.
 const ACCEPT: std::ops::RangeInclusive<f32> = 0.94..=1.0;
-/// Where in that the dabs of a path without breaks all lie: steps of one length, for what a dab
-/// lays down stands for the step before it, and steps of two lengths in turn would make waves.
+/// Range of steps for a path without breaks. The steps have one length, because the effect of a dab
+/// represents the step before it, and alternating lengths would make waves.
 const EVEN: std::ops::RangeInclusive<f32> = 0.965..=0.975;
 /// The share of the spacing that is aimed at.
 const AIM: f32 = 0.97;
@@ -50,8 +50,8 @@ const MOST_HIDDEN: usize = 10;
 const ON_END: f32 = 0.02;
 /// A stroke none of whose dabs had this share of its greatest pressure is a tap.
 const FAINT: f32 = 0.5;
-/// Beyond so many spacings the surface at a dab's own view point is another one than that which the
-/// dab was laid on.
+/// Distance in spacings from which on the surface at a dab's view point counts as another one than
+/// the dab was laid on.
 const JUMPED: f32 = 4.0;
 /// Bisection steps for one dab: 2^-20 of a spacing as it is seen, or what single precision can tell
 /// apart.
@@ -59,10 +59,10 @@ const MAX_BISECTIONS: u32 = AIMED + 20;
 /// Steps over a stretch with no surface, in heights of the view.
 const BLIND_STEP: f32 = 0.004;
 
-/// Where a stroke stands between two pen points.
+/// State of a stroke between two pen points.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Spacer {
-    /// Where the surface of the last dab stood after it.
+    /// Surface point of the last dab, after the dab.
     last: Option<Vec3>,
     /// The last dab made its surface leap away from under the pen: the next run begins a step
     /// further.
@@ -100,7 +100,7 @@ impl Segment<'_> {
     }
 }
 
-/// What a path meets at a share of its length, and how far from the last dab that is, in spacings.
+/// Surface hit at a share of the path's length, and its distance from the last dab, in spacings.
 #[derive(Clone, Copy)]
 struct Sight {
     at: f32,
@@ -108,7 +108,7 @@ struct Sight {
     off: f32,
 }
 
-/// How a path goes on.
+/// Next step along a path.
 enum Step {
     Dab(Sight),
     /// The surface leaps from the first, less than a spacing away, to the second, which is further.
@@ -230,7 +230,7 @@ impl Spacer {
         self.dabs = self.dabs.saturating_add(1);
         self.firmest = self.firmest.max(at.pressure);
         let now = again(on).map_or(hit.position, |h| h.position);
-        // The dab may have folded its own place out of sight.
+        // The dab may have folded its surface point out of sight.
         self.leapt = (now - hit.position).length() > JUMPED * on.spacing(at) + 1e-30;
         self.last = (!self.leapt).then_some(now);
         flow
@@ -260,7 +260,7 @@ impl Spacer {
                     self.lay(&way, &mut t, &brink, brink.off, on)
                 }
                 Step::Leap(_, beyond) if beyond.at <= bridged => {
-                    // What was laid to get there tore it away.
+                    // The dabs laid to get there tore the surface away.
                     (self.last, self.leapt) = (None, true);
                     Flow::Go
                 }
@@ -316,8 +316,8 @@ impl Spacer {
         })
     }
 
-    /// The last dab lies on a brink: dabs on the hidden clay from there to what is seen `beyond`,
-    /// where they can lead to it; else the run ends.
+    /// Bridges from the last dab, on a brink, to the surface seen `beyond`. Lays dabs on the hidden
+    /// clay between if they can lead there; otherwise ends the run.
     fn bridge(&mut self, at: &PenPoint, beyond: &Sight, on: &mut dyn Surface) -> Flow {
         let spacing = on.spacing(at);
         let Some(from) = self.last else { return Flow::Go };

@@ -9,7 +9,7 @@ use sculptd_clay::brush::PathSettings;
 /// Pen reports that can be averaged, at most.
 const MOST: usize = 64;
 
-/// What lies between the pen and the brush.
+/// Smoothing between the pen and the brush.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Stabilizer {
     /// The newest reports, in a ring.
@@ -17,7 +17,7 @@ pub struct Stabilizer {
     seen: [PenPoint; MOST],
     count: usize,
     next: usize,
-    /// Where the brush hangs.
+    /// Current position of the brush.
     brush: PenPoint,
     newest: PenPoint,
 }
@@ -43,9 +43,9 @@ impl Stabilizer {
         self.count = (self.count + 1).min(MOST);
     }
 
-    /// Where the brush is drawn to by a pen at `at`; where it was, with the pen's pressure, while
-    /// the rope hangs loose. `aspect`: width over height of the view; the rope is measured in
-    /// heights.
+    /// Returns the position to which a pen at `at` pulls the brush. While the rope is slack, this
+    /// is its old position with the pen's pressure. `aspect`: width over height of the view; the
+    /// rope is measured in heights.
     pub fn follow(&mut self, at: &PenPoint, path: &PathSettings, aspect: f32) -> PenPoint {
         self.newest = *at;
         self.remember(at);
@@ -70,7 +70,8 @@ impl Stabilizer {
         goal
     }
 
-    /// The pen lifts: the stroke ends where the pen did. `None`: the brush is there.
+    /// Ends the stroke at the lifted pen's last position. Returns `None` if the brush is already at
+    /// it.
     pub fn catch_up(&mut self) -> Option<PenPoint> {
         (self.newest.view != self.brush.view).then_some(self.newest)
     }

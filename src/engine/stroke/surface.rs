@@ -1,5 +1,5 @@
-//! What a stroke is drawn on and by: the pen at an instant, the surface under it, and what a dab
-//! tells of its place.
+//! Input and output of a stroke: the pen at an instant, the surface under it, and the position of a
+//! dab within its stroke.
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ impl PenPoint {
     }
 }
 
-/// Whether the budget of this tick allows another dab.
+/// Budget of the tick: whether another dab may be laid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// Lay the next dab.
@@ -43,14 +43,14 @@ pub enum Flow {
     Pause,
 }
 
-/// How a pen's path becomes dabs.
+/// Method that turns a pen's path into dabs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StrokeMethod {
     /// One a spacing.
     Spaced,
     /// One a report.
     Each,
-    /// The brush is told where the pen is, and does the rest.
+    /// The brush receives the pen's position and does the rest.
     Held,
     /// A straight line, once the pen lifts.
     Line,
@@ -58,7 +58,7 @@ pub enum StrokeMethod {
     Curve,
 }
 
-/// How a dab stands to the one before it.
+/// Relation of a dab to the previous one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Laid {
     /// The first of a run: the one before it, if there is one, may be any way off.
@@ -78,9 +78,9 @@ impl Laid {
     pub const ALONE: Laid = Laid { first: true, along: None, share: 1.0, tap: false };
 }
 
-/// What a stroke is drawn on.
+/// Surface that a stroke is drawn on.
 pub trait Surface {
-    /// Where the ray through a place of the view meets the surface first.
+    /// Returns the first hit of the ray through a point of the view.
     fn pick(&mut self, view: Vec2) -> Option<Hit>;
     /// The wanted distance between dabs here, mesh units, > 0.
     fn spacing(&self, at: &PenPoint) -> f32;
@@ -91,7 +91,7 @@ pub trait Surface {
     }
     /// World length of a step of one view height at the hit's depth.
     fn world_per_view(&self, hit: &Hit) -> f32;
-    /// How the pen's path becomes dabs.
+    /// Returns the method that turns the pen's path into dabs.
     fn way(&self) -> StrokeMethod {
         StrokeMethod::Spaced
     }

@@ -21,7 +21,7 @@ use sculptd_geometry::portable::PortableMath;
 /// points, never broken).
 const MAX_WAITING: usize = 2048;
 
-/// What a pen sample means for a stroke.
+/// Meaning of a pen sample for a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum PenEvent {
     /// The tip touches.
@@ -39,17 +39,17 @@ pub enum PenEvent {
 pub struct PenTrack {
     waiting: VecDeque<PenEvent>,
     steady: Stabilizer,
-    /// Where the pen came down: a straight line begins there.
+    /// Point at which the pen came down: start of a straight line.
     start: PenPoint,
     /// The line from there, or the curve, is being drawn; so many pieces of it are done.
     drawing: bool,
     pieces: usize,
-    /// What the pen draws freely, to be made a curve of, and the curve.
+    /// The freehand path, and the curve fitted to it.
     curve: Curve,
     draft: CurveStroke,
     laying: Laying,
     spacer: Spacer,
-    /// Where the walk stands: the point reached, and the share of the segment to the first waiting
+    /// State of the walk: the point reached, and the share of the segment to the first waiting
     /// point.
     from: PenPoint,
     share: f32,
@@ -64,16 +64,16 @@ pub struct PenTrack {
     /// Length of the string by which the brush follows the pen, in heights of the view.
     #[serde(default)]
     string: f32,
-    /// Where the pen itself is while the brush follows it by the string.
+    /// Position of the pen while the brush follows it by the string.
     #[serde(default)]
     pen: Option<PenPoint>,
-    /// Where on its own tablet the pen is while in range: shares of the tablet's area.
+    /// Position of the pen on its tablet while in range: shares of the tablet's area.
     #[serde(default)]
     pub on_tablet: Option<Vec2>,
     /// The pen came down where no stroke may begin: it does nothing until it is lifted.
     #[serde(default)]
     refused: bool,
-    /// Where the stroke was pressed hardest.
+    /// Point of the stroke with the greatest pressure.
     #[serde(default)]
     firmest: PenPoint,
 }
@@ -105,17 +105,17 @@ impl Default for PenTrack {
     }
 }
 
-/// What a pen that is down does to a curve.
+/// Effect of a pressed pen on a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Laying {
     No,
-    /// It draws freely, and handles are put on that.
+    /// It draws freely, and handles are fitted to the path.
     Free,
     /// It holds a handle.
     Handle,
 }
 
-/// What walking changed about the stroke itself.
+/// Changes to the stroke made by walking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Walked {
     /// A stroke began.
@@ -147,7 +147,7 @@ impl PenTrack {
         self.refused = touches && !self.down && (self.refused || !free);
         touches &= !self.refused;
         self.on_tablet = pen.in_range.then_some(share);
-        // Where it can do nothing, it is the desktop's pointer and has no ring.
+        // A pen that can do nothing is the desktop's pointer and has no ring.
         self.seen = (pen.in_range && (touches || free && !self.refused)).then_some(at);
         match (self.down, touches) {
             (false, true) => {
@@ -198,12 +198,12 @@ impl PenTrack {
         self.waiting.push_back(event);
     }
 
-    /// Whether a stroke is under way.
+    /// Returns true while a stroke is under way.
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// Whether the next thing to happen is that a stroke begins.
+    /// Returns true if the next waiting event begins a stroke.
     pub fn begins(&self) -> bool {
         match self.waiting.front() {
             Some(PenEvent::Down(_)) => true,
@@ -247,12 +247,12 @@ impl PenTrack {
         self.waiting.contains(&PenEvent::Draw)
     }
 
-    /// Whether nothing waits to be walked.
+    /// Returns true if no event waits to be walked.
     pub fn is_idle(&self) -> bool {
         self.waiting.is_empty()
     }
 
-    /// Walks one waiting event over the surface; `None` when nothing waits.
+    /// Walks one waiting event over the surface; returns `None` if there is none.
     pub fn walk_one(&mut self, aspect: f32, on: &mut dyn Surface) -> Option<Walked> {
         let event = *self.waiting.front()?;
         let mut walked = Walked::default();
@@ -379,7 +379,7 @@ impl PenTrack {
         Some(walked)
     }
 
-    /// Where a pen that comes to `to` pulls the brush by its string.
+    /// Returns the position to which a pen at `to` pulls the brush by its string.
     fn pull(&self, to: &PenPoint, aspect: f32) -> PenPoint {
         if self.string <= 0.0 {
             return *to;
@@ -433,11 +433,11 @@ impl PenTrack {
     }
 }
 
-/// Where a brush on a string of this length comes to while the pen goes straight from `pen` to
-/// `to`. A loose string moves nothing; one that is taut draws the brush along a tractrix, so that
-/// the number of reports that a way is told in does not matter: with the angle `a` between string
-/// and way, `tan(a / 2)` falls by `e` over the string's length. A string pulled by a trembling hand
-/// is drawn out straight.
+/// Returns the position to which a string of this length pulls the brush while the pen goes
+/// straight from `pen` to `to`. A slack string moves nothing. A taut one draws the brush along a
+/// tractrix, so that the number of reports along a path does not matter: with the angle `a` between
+/// string and path, `tan(a / 2)` falls by `e` over the string's length. The path of a trembling
+/// hand is drawn straight.
 fn towed(brush: Vec2, pen: Vec2, to: Vec2, string: f32) -> Vec2 {
     let length = pen.distance(to);
     let hangs = pen - brush;

@@ -1,4 +1,4 @@
-//! Another person begins: the world is made anew.
+//! Starts a new person with a new world.
 
 use super::{HistoryEvent, World};
 use crate::answer::{Answer, CommandResult};

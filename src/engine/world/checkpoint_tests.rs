@@ -51,7 +51,7 @@ fn broken_bytes_are_refused() {
     for cut in [0, 3, 4, bytes.len() / 2, bytes.len() - 1] {
         assert_eq!(restore(&bytes[..cut], Workers::new(1)).err(), Some(BadCheckpoint), "{cut}");
     }
-    // Pages beyond those that the head tells of.
+    // More pages than the head announces.
     let first = 4 + u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as usize;
     let more = [&bytes[..], &bytes[first..]].concat();
     assert_eq!(restore(&more, Workers::new(1)).err(), Some(BadCheckpoint));

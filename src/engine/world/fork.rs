@@ -1,16 +1,16 @@
-//! A world that runs ahead of another: it shares the pages, and what is stepped in it is a try
-//! that the other knows nothing of. So a person sees the own stroke before those who share the
-//! world have ordered it.
+//! A world that runs ahead of another: it shares the pages, and its steps are a trial that the
+//! other does not see. So a person sees their stroke before those who share the world have ordered
+//! it.
 
 use super::World;
 use crate::scene::{Object, Scene};
 use sculptd_clay::brush::Measure;
 
 impl World {
-    /// A world as this one is now, for strokes on the active object: other objects, steps that can
-    /// be taken back and hands are left out. Its clay's revisions go on after `revision`. `None`:
-    /// strokes cannot be tried now, as the object has layers, its triangles change under the brush,
-    /// or an edit of the whole surface is under way.
+    /// Copies this world for strokes on the active object, without other objects, undo steps and
+    /// hands. The revisions of its clay continue after `revision`. Returns `None` if strokes cannot
+    /// be tried now: the object has layers, its triangles change under the brush, or an edit of the
+    /// whole surface is under way.
     pub fn fork(&self, revision: u64) -> Option<World> {
         let active = self.scene.active();
         let cuts = self.brush.topology.by != Measure::Off && self.brush.kind.cuts();
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_fork_in_the_middle_of_a_stroke_goes_on_to_the_bit_and_changes_nothing_of_the_world() {
-        // One that adds to what is there, one that measures on the surface as the stroke found it,
+        // One that adds to the surface, one that measures on the surface as the stroke found it,
         // one that holds what it took.
         for kind in [BrushKind::Draw, BrushKind::Clay, BrushKind::Grab] {
             let mut world = world(kind);

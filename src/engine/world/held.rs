@@ -12,17 +12,17 @@ use super::{HistoryEvent, World};
 use crate::hand::Similarity;
 use crate::scene::{Object, ObjectId, ObjectTransform, SceneEvent};
 
-/// How far from an object a pinch may be to pick it up, mm of the hand.
+/// Greatest distance from an object at which a pinch picks it up, in mm of the hand.
 const REACH_MM: f32 = 60.0;
 
-/// How far a point is from the box of an object in the world, and the volume of that box.
+/// Returns the distance of a point from an object's world box, and the volume of that box.
 fn apart(object: &Object, p: Vec3) -> (f32, f32) {
     let (lo, hi) = object.settings.transform.bounds(object.clay.bounds());
     ((p - p.clamp(lo.min(hi), hi.max(lo))).length(), (hi - lo).element_product())
 }
 
 impl World {
-    /// Whether hands carry objects of the scene.
+    /// Returns true if hands carry objects of the scene.
     pub fn is_picking(&self) -> bool {
         self.in_hand.picking
     }
@@ -84,7 +84,7 @@ impl World {
         }
     }
 
-    /// Where no hand holds the object any more, it is put down: one step of undo.
+    /// Puts the object down once no hand holds it: one step of undo.
     pub(super) fn let_go_of_what_no_hand_holds(&mut self) {
         if self.in_hand.is_held() && !self.hands.is_gripping() && !self.hands.has_waiting() {
             self.report.put_down = self.in_hand.object;

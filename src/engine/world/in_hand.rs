@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{ObjectId, ObjectSettings};
 
-/// What hands do with objects of the scene.
+/// Objects of the scene handled by hands.
 #[derive(Debug, Default)]
 pub(super) struct ObjectsInHand {
-    /// Hands carry objects and not clay.
+    /// True if hands carry objects and not clay.
     pub(super) picking: bool,
     /// The object that is held, or was held last.
     pub(super) object: Option<ObjectId>,
@@ -31,7 +31,7 @@ impl ObjectsInHand {
         ObjectsInHand { picking: saved.picking, object: saved.object, before: None }
     }
 
-    /// Whether a hand holds an object at this moment.
+    /// Returns true while a hand holds an object.
     pub(super) fn is_held(&self) -> bool {
         self.before.is_some()
     }

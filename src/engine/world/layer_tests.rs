@@ -199,7 +199,7 @@ fn other_clay_has_no_layers_and_undo_brings_them_back() {
     assert_eq!(w.mesh().layer_count(), 0);
     tell(&mut w, Command::Undo);
     assert_eq!((w.hash(), w.mesh().layer_count()), (before, 1));
-    // A twin has layers of its own.
+    // A duplicate has separate layers.
     ask(&mut w, SceneCommand::Duplicate(ObjectId(0))).expect("room");
     edit(&mut w, LayerEdit::Bake).expect("layers");
     assert_eq!(w.mesh().layer_count(), 0);

@@ -5,9 +5,9 @@ use crate::scene::{ObjectId, SceneError, SceneEvent, clean_name};
 use sculptd_clay::LayerEdit;
 
 impl World {
-    /// Carries out an edit of the active object's layers. The pages follow in this tick and, where
-    /// they are many, in the next ones. The result has the number of the layer that was made or
-    /// that it was about in the place of an object's, or `u32::MAX` where that is the base.
+    /// Carries out an edit of the active object's layers. The pages follow in this tick and, if
+    /// there are many, in the next ones. Returns the number of the layer made or edited as the
+    /// object id, or `u32::MAX` for the base.
     pub(super) fn edit_layers(&mut self, edit: &LayerEdit) -> SceneResult {
         if !self.layers.goes_on_with(edit) {
             self.lift_all();

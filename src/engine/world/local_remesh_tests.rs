@@ -96,7 +96,7 @@ fn what_was_stretched_is_refined_and_the_rest_stays() {
 #[test]
 fn a_region_is_remeshed_without_a_rim() {
     let mut world = stretched(1);
-    // What is protected stays, in the region too.
+    // Masked vertices stay, in the region too.
     let half = ViewRegion::Box([Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.5)]);
     let left = ViewRegion::Box([Vec2::new(0.0, 0.0), Vec2::new(0.4, 1.0)]);
     let masked = MaskRegion { region: left.clone(), mask: 1.0, front_faces: false };
@@ -119,7 +119,7 @@ fn a_region_is_remeshed_without_a_rim() {
     };
     let inside = |mesh: &TriMesh| mesh.positions.iter().filter(|p| asked(**p)).count();
     assert!(inside(&after) > 3 * inside(&before), "{} of {}", inside(&after), inside(&before));
-    // Outside no vertex moved or went. Those that came lie on an edge that leaves the region.
+    // No vertex outside moved or vanished. The new ones are on edges that leave the region.
     let (old, new) = (bits(&before), bits(&after));
     assert!(old.iter().all(|p| new.binary_search(p).is_ok()));
     assert!(new.len() - old.len() < old.len() / 20, "{} of {}", new.len(), old.len());

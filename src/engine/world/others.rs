@@ -15,11 +15,11 @@ pub const MAX_OTHERS: usize = MAX_PENS;
 pub struct OthersPen {
     /// Whose it is.
     pub person: u8,
-    /// Which of all devices.
+    /// Id of the device, unique among all devices.
     pub device: DeviceId,
     /// The object under it.
     pub object: ObjectId,
-    /// Where it meets the clay, in the world.
+    /// Position on the clay, in world units.
     pub position: Vec3,
     /// The surface's normal there, unit length.
     pub normal: Vec3,

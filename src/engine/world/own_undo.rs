@@ -1,4 +1,4 @@
-//! Undo and redo in a world of several people: whose strokes end for it, and what is told.
+//! Undo and redo in a world of several people: which strokes they end, and what they report.
 
 use super::people::UndoRefusal;
 use super::{HistoryEvent, World};
@@ -75,7 +75,7 @@ impl World {
         self.topology.is_empty() && self.scene.active().clay.layer_count() == 0
     }
 
-    /// What became of an undo or a redo. False: nothing.
+    /// Records the result of an undo or a redo. Returns false if it changed nothing.
     pub(super) fn told_of_undo(&mut self, way: OwnStep, redo: bool) -> bool {
         if let OwnStep::InTheWay(by) = way {
             let tick = self.tick;

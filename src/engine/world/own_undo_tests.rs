@@ -81,7 +81,7 @@ impl Shared {
     fn strokes(&mut self, strokes: &[(u8, Vec2)], meanwhile: Option<(u8, &Command)>) {
         for k in 0..10 {
             let at = |from: Vec2| from + Vec2::new(0.008, 0.005) * k as f32;
-            // Who comes first ends first.
+            // The pen that starts first ends first.
             let tip = |i: usize| k < 8 - i;
             let pens = strokes.iter().enumerate();
             let samples: Vec<Sample> = pens.map(|(i, s)| pen(s.0, tip(i), at(s.1))).collect();
@@ -95,7 +95,7 @@ impl Shared {
         self.rest();
     }
 
-    /// What pages and triangles have to follow is done.
+    /// Finishes the pending work on pages and triangles.
     fn rest(&mut self) {
         for _ in 0..200 {
             self.step(&[], &[]);
@@ -213,7 +213,7 @@ fn apply(shared: &mut Shared, op: &Op) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Everything can be taken back by those who made it, to the bit, and done again.
+    /// Everything can be undone by its authors, to the bit, and redone.
     #[test]
     fn all_is_taken_back_to_the_bit_and_done_again(ops in ops()) {
         let mut shared = Shared::new(1);
@@ -222,7 +222,7 @@ proptest! {
             apply(&mut shared, op);
             shared.verify();
         }
-        // A new step of each: nothing of what was taken back can be done again.
+        // Each makes a new step: no undone step can be redone.
         for person in PEOPLE {
             shared.stroke(person, 0.3 + 0.1 * f32::from(person), 0.65);
         }
@@ -270,7 +270,7 @@ fn a_step_that_is_free_is_taken_back_and_what_came_after_it_stays() {
     let all = places(&shared);
     shared.asks(1, Command::Undo);
     assert_eq!(shared.refused(1), None);
-    // Where the step changed something there is the ball again, elsewhere what the others made.
+    // Vertices that the step changed are back on the ball; the others keep the others' changes.
     let now = places(&shared);
     let moved = |i: &usize| ball[*i] != first[*i];
     let (own, others): (Vec<usize>, Vec<usize>) = (0..ball.len()).partition(moved);
@@ -303,7 +303,7 @@ fn a_step_under_somebody_elses_is_refused_and_whose_it_is_is_told() {
     assert_eq!(shared.world.hash(), first);
     shared.asks(1, Command::Undo);
     assert_eq!(shared.world.hash(), begin);
-    // What the second did lay on what the first did.
+    // The second person's step builds on the first one's.
     shared.asks(2, Command::Redo);
     assert_eq!(shared.refused(2), refusal(shared.tick, true, 1));
     assert_eq!(shared.world.hash(), begin);
@@ -311,7 +311,7 @@ fn a_step_under_somebody_elses_is_refused_and_whose_it_is_is_told() {
     shared.asks(2, Command::Redo);
     assert_eq!(shared.world.hash(), both);
     assert_eq!(shared.refused(2), None);
-    // Who has no step takes nothing back, and nobody is in the way.
+    // A person without a step undoes nothing, and nobody blocks it.
     shared.asks(3, Command::Undo);
     assert_eq!((shared.refused(3), shared.world.hash()), (None, both));
     shared.verify();
@@ -328,7 +328,7 @@ fn strokes_at_once_are_a_step_of_each_where_they_share_no_page_and_one_of_both_w
     assert_ne!(shared.world.hash(), begin, "the other stroke stays");
     shared.asks(1, Command::Undo);
     assert_eq!(shared.world.hash(), begin);
-    // On one place it is one step, which either takes back.
+    // On one place it is one step, which either of them undoes.
     let together = [(1, Vec2::new(0.5, 0.5)), (2, Vec2::new(0.44, 0.5))];
     shared.strokes(&together, None);
     shared.world.show_to(1);
@@ -371,7 +371,7 @@ fn a_stroke_of_somebody_else_goes_on_through_an_undo() {
         shared.world.hash()
     });
     assert_eq!(hashes[0], hashes[1]);
-    // One that lies on the same place is in the way while it goes on.
+    // A stroke under way on the same place blocks it.
     let mut shared = Shared::new(1);
     shared.stroke(1, 0.5, 0.5);
     for k in 0..6 {

@@ -1,10 +1,10 @@
-//! Several people at one world: each has a view and a brush of their own.
+//! Several people at one world: each has their own view and brush.
 //!
-//! A world of one person knows nobody else, and costs and does what it did. A command of a person
-//! comes as [`Command::OfPerson`], and a device of a person has the person's number in the upper
-//! byte of its id. Whoever is new begins with what the world began with. Each takes back the own
-//! steps ([`crate::scene`] keeps them in one timeline), and the hands are followed in the view of
-//! the person whose tracker spoke last.
+//! A world of one person has no state of other people and no extra cost. A command of a person
+//! arrives as [`Command::OfPerson`], and a device of a person has the person's number in the upper
+//! byte of its id. A new person begins with the initial settings of the world. Each person undoes
+//! their own steps ([`crate::scene`] keeps them in one timeline). The hands are followed in the
+//! view of the person whose tracker sent the last frame.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use sculptd_clay::Author;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::DeviceId;
 
-/// What one person has set.
+/// Settings of one person.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct PersonSettings {
     person: u8,
@@ -57,7 +57,7 @@ pub(super) struct People {
 /// An undo or redo that was refused, as a step of somebody else is in the way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UndoRefusal {
-    /// When it was asked for.
+    /// Tick of the request.
     pub tick: u64,
     /// It was a redo.
     pub redo: bool,
@@ -76,7 +76,7 @@ impl People {
         if self.is_nobody() { self.current } else { (device.0 >> 8) as u8 }
     }
 
-    /// Whether it is a device of the person whose input is applied.
+    /// Returns true if the device belongs to the person whose input is being applied.
     pub(super) fn is_current(&self, device: DeviceId) -> bool {
         self.of_device(device) == self.current
     }
@@ -106,9 +106,10 @@ impl People {
 }
 
 impl World {
-    /// Whom the world is shown to: [`World::camera`], [`World::brush`] and the pens are that
-    /// person's. What is stepped does not depend on it: a world is of several people from the first
-    /// [`Command::OfPerson`] on, so that a replay of its input divides the steps among them too.
+    /// Chooses the person that the world is shown to: [`World::camera`], [`World::brush`] and the
+    /// pens are that person's. Stepping does not depend on it: a world has several people from the
+    /// first [`Command::OfPerson`] on, so that a replay of its input divides the steps among them
+    /// too.
     pub fn show_to(&mut self, person: u8) {
         self.people.shown = person;
         if !self.people.is_nobody() {
@@ -116,7 +117,7 @@ impl World {
         }
     }
 
-    /// Whether a device is of the person that the world is shown to.
+    /// Returns true if the device belongs to the person that the world is shown to.
     pub(super) fn is_shown(&self, device: DeviceId) -> bool {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown
     }
@@ -140,7 +141,7 @@ impl World {
         }
     }
 
-    /// Whether several people have shared the world.
+    /// Returns true if several people have shared the world.
     pub fn has_people(&self) -> bool {
         !self.people.is_nobody()
     }
@@ -180,7 +181,7 @@ impl World {
         self.people.hands = self.people.of_device(device);
     }
 
-    /// After a step: what is shown is the own person's.
+    /// After a step, switches to the person that the world is shown to.
     pub(super) fn act_as_shown(&mut self) {
         if !self.people.is_nobody() {
             self.act_as(self.people.shown);

@@ -93,7 +93,7 @@ fn everybody_sees_where_the_others_pens_meet_the_clay() {
         let [one] = seen.as_slice() else { panic!("one pen: {seen:?}") };
         assert_eq!((one.person, one.device), (other, DeviceId(u16::from(other) << 8)));
         assert_eq!(one.down, other == 2);
-        // It lies on the ball, at the side where that person looks, with that person's brush.
+        // The pen is on the ball, at the side that person sees, with that person's brush.
         world.show_to(other);
         assert!(one.position.normalize().dot(world.camera().backward()) > 0.9);
         assert!((one.position.length() - 1.0).abs() < 0.02, "{one:?}");

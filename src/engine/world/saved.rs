@@ -26,19 +26,19 @@ use sculptd_clay::{Clay, Levels, ObjectState, Snapshot, Workers};
 use sculptd_devices::Hands;
 use sculptd_geometry::TriMesh;
 
-/// What was done to the object as a whole.
+/// Change to the object as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HistoryEvent {
     /// A stroke, a mask, a cut: one step of undo.
     Step,
-    /// A step was taken back.
+    /// A step was undone.
     Undo,
-    /// A step was done again.
+    /// A step was redone.
     Redo,
     /// Another object took its place.
     Replace,
-    /// Another person began: nothing before it can be taken back.
+    /// Another person began: no step before it can be undone.
     Begin,
     /// To this node of the history.
     Jump(u64),
@@ -46,10 +46,10 @@ pub enum HistoryEvent {
     Scene(SceneEvent),
 }
 
-/// What was done, and the scene right after it.
+/// A change, and the scene right after it.
 #[derive(Debug, Clone)]
 pub struct HistoryEntry {
-    /// What was done.
+    /// Kind of the change.
     pub deed: HistoryEvent,
     /// The active object's clay right after it.
     pub work: Snapshot,
@@ -64,7 +64,7 @@ pub struct HistoryEntry {
 /// Large things that seldom change, kept beside the state and named by it.
 #[derive(Debug, Clone)]
 pub enum SideData {
-    /// What the hands hold.
+    /// Mesh held by the hands.
     HeldObject(Arc<TriMesh>),
     /// The picture of heights of the alpha `picture`.
     Picture(Arc<Picture>),
@@ -89,18 +89,18 @@ impl SideData {
 pub struct Saved {
     /// The tick after which it was saved.
     pub tick: u64,
-    /// What the clay is besides its pages.
+    /// State of the clay besides its pages.
     pub rest: ObjectState,
     /// Everything small, as bytes; in a scene of several objects the list of them behind it, see
     /// [`Saved::scene`].
     pub core: Vec<u8>,
-    /// What the hands hold; its place is in `core`.
+    /// Mesh held by the hands; its place is in `core`.
     pub thing: Option<Arc<TriMesh>>,
     /// The picture of heights of the alpha `picture`.
     pub picture: Option<Arc<Picture>>,
     /// The multiresolution levels that are not shown.
     pub levels: Option<Arc<Levels>>,
-    /// Steps that could be taken back and done again then; a world made of this has none.
+    /// Numbers of steps to undo and to redo at that time; a restored world has none.
     pub steps: (u32, u32),
     /// Of each struct in `core`, the number of fields that it had when it was written; empty: as
     /// many as today. See [`crate::old_layout`].
@@ -135,7 +135,7 @@ pub struct SavedObject {
     pub middle: glam::Vec3,
     /// As [`Object::extent`].
     pub extent: f32,
-    /// What its clay is besides its pages.
+    /// State of its clay besides its pages.
     pub rest: ObjectState,
 }
 
@@ -155,7 +155,7 @@ impl SavedScene {
         }
     }
 
-    /// What stands behind the rest of a state; `None` where nothing does.
+    /// Reads the data that follows the main part of a state; `None` if there is none.
     fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People, SavedHolding)>, BadState> {
         if bytes.is_empty() {
             return Ok(None);
@@ -267,7 +267,7 @@ impl World {
         }
     }
 
-    /// Nothing can be taken back or done again.
+    /// Discards all steps to undo and redo.
     pub(super) fn forget_steps(&mut self) {
         let World { timeline, scene, garbage, .. } = self;
         timeline.forget(scene, garbage);
@@ -318,7 +318,7 @@ impl World {
         Ok(Answer::Done)
     }
 
-    /// Whether nothing is under way: no stroke, nothing that waits, no open step.
+    /// Returns true if nothing is under way: no stroke, no waiting work, no open step.
     pub fn is_at_rest(&self) -> bool {
         !self.scene.active().clay.is_in_step()
             && !self.layers.is_edit()

@@ -10,7 +10,7 @@ use crate::scene::{
 use sculptd_clay::face_sets::MOST_SETS;
 
 impl World {
-    /// Whether an object is being dragged: nothing was done since, and nothing taken back.
+    /// Returns true while an object is being dragged: no step was made or undone since.
     pub(super) fn is_dragged(&self) -> bool {
         self.dragged.is_some_and(|d| self.timeline.newest_step() == Some(d.1))
     }
@@ -103,7 +103,8 @@ impl World {
         Ok(id)
     }
 
-    /// The result stays as it is; its operands go, but for those that another result follows.
+    /// Applies a live Boolean: keeps the result and removes its operands, unless another live
+    /// result uses them.
     pub(super) fn apply_live(&mut self, id: ObjectId) -> SceneResult {
         let object = self.unlocked(id)?;
         let live = object.live().cloned().ok_or(SceneError::NotLive(id))?;

@@ -182,7 +182,7 @@ fn a_live_result_follows_its_operands_within_their_step_until_it_is_changed_or_a
     assert_eq!(volume(&world), moved.0);
     tell(&mut world, Command::Undo);
     assert_eq!((world.scene().objects().len(), world.hash()), (3, moved.1));
-    // A result that is sculpted is a work of its own.
+    // A sculpted result is independent of its operands.
     ask(&mut world, SceneCommand::Activate(result)).expect("there");
     tell(&mut world, Command::Mask(sculptd_clay::brush::MaskAction::Invert));
     ask(&mut world, SceneCommand::Transform(tool, at(0.9))).expect("there");

@@ -13,10 +13,10 @@ use crate::scene::{
 };
 use sculptd_clay::Clay;
 
-/// What a command to the scene came to: the object that it made or was about. Of
-/// [`SceneCommand::Layers`] it has the number of the layer that was made or that it was about
-/// instead; `u32::MAX` stands for the base. Of [`SceneCommand::Sets`] it has the number of the face
-/// set, 0 for none; of [`SceneCommand::RemeshLocal`] how many edges were changed.
+/// Result of a scene command: the object that it made or changed. For [`SceneCommand::Layers`] it
+/// holds the number of the layer made or edited instead, `u32::MAX` for the base. For
+/// [`SceneCommand::Sets`] it holds the number of the face set, 0 for none. For
+/// [`SceneCommand::RemeshLocal`] it holds the number of changed edges.
 pub type SceneResult = Result<ObjectId, SceneError>;
 
 impl World {
@@ -35,7 +35,7 @@ impl World {
         if result.is_ok() && !noted {
             self.scene.touch();
             self.stand(before);
-            // What is under way is noted where it ends.
+            // A change under way is recorded when it ends.
             let follows = matches!(command, SceneCommand::Recomputed(_)) && self.is_dragged();
             if !follows && !matches!(command, SceneCommand::Drag(..)) {
                 self.note(HistoryEvent::Scene(event_of(command)));
@@ -49,8 +49,8 @@ impl World {
         if let SceneCommand::Layers(edit) = command {
             return self.edit_layers(edit);
         }
-        // Every stroke ends first: it belongs to what is active now. What is computed again is
-        // another object, and nobody asked for it now.
+        // Every stroke ends first, because it belongs to the active object. The exception is a
+        // recomputation of another object, which no person requested.
         let active = self.scene.active().id;
         if !matches!(command, SceneCommand::Recomputed(again) if again.id != active) {
             self.lift_all();
@@ -97,7 +97,7 @@ impl World {
                 }
                 let (before, goes_on) = (self.timeline.newest_step(), self.is_dragged_object(*id));
                 let done = self.put_at(*id, *transform, goes_on);
-                // Where nothing was moved yet there is no step to go on with.
+                // Without an earlier move there is no step to continue.
                 let now = self.timeline.newest_step().filter(|now| goes_on || Some(*now) != before);
                 self.dragged = now.map(|step| (*id, step));
                 done
@@ -269,7 +269,7 @@ impl World {
         self.scene.activate(ids[0]);
         steps.push(SceneStep::Active(shown));
         for id in &exchange.remove {
-            // What is added is there already, so that none of these is the last.
+            // The new objects are already added, so that none of these is the last.
             steps.extend(self.cut_out(*id).ok());
         }
         for id in &exchange.hide {
@@ -357,8 +357,8 @@ impl World {
         done
     }
 
-    /// Does the step again that was taken back last. False: there is none, or somebody else's is in
-    /// the way.
+    /// Redoes the step that was undone last. Returns false if there is none, or if somebody else's
+    /// step blocks it.
     pub(super) fn redo_step(&mut self) -> bool {
         let before = self.stance();
         let done = match self.person() {
@@ -372,13 +372,13 @@ impl World {
         done
     }
 
-    /// Where the active object stands, and how large: what hands are laid over.
+    /// Returns the middle and the size of the active object, onto which hands are mapped.
     fn stance(&self) -> (glam::Vec3, f32) {
         let active = self.scene.active();
         (active.world_middle(), active.world_extent())
     }
 
-    /// Lays the hands over the active object anew, where it stands elsewhere now.
+    /// Remaps the hands if the active object has moved or changed size.
     fn stand(&mut self, before: (glam::Vec3, f32)) {
         if self.stance() != before {
             self.lay_hands();

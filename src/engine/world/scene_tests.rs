@@ -32,7 +32,8 @@ pub(super) fn world(workers: usize, undo_bytes: u64) -> World {
     World::new(ball, Camera::default(), brush, Workers::new(workers), options)
 }
 
-/// What comes of a command, in its tick or, for an edit that takes several, in a later one.
+/// Returns the result of a command, from its tick or, for an edit over several ticks, from a later
+/// one.
 pub(super) fn ask(world: &mut World, command: SceneCommand) -> Result<ObjectId, SceneError> {
     let tick = world.tick() + 1;
     world.step(tick, &[], &[Command::Scene(command)]);
@@ -557,7 +558,7 @@ fn a_world_that_was_saved_with_several_objects_goes_on_to_the_bit() {
     tell(&mut one, Command::LiftAll);
     let saved = one.save().expect("at rest");
     let list = saved.scene().expect("readable").expect("several objects");
-    // What a session file gives: the pages, and what each clay is besides.
+    // Content of a session file: the pages, and the other state of each clay.
     let clays = one.scene().objects().iter().zip(&list.objects).map(|(o, saved)| {
         let pages = (0..o.clay.page_count() as u32).map(|i| o.clay.page(i).clone()).collect();
         Clay::of_stored(pages, &saved.rest).expect("whole")

@@ -22,7 +22,7 @@ impl World {
         self.hands.tracks().map(|t| (t.device, t.id, t.pose))
     }
 
-    /// What the last step did.
+    /// Returns the result of the last step.
     pub fn report(&self) -> &StepReport {
         &self.report
     }
@@ -33,7 +33,7 @@ impl World {
         self.workers.warm();
     }
 
-    /// What is fixed for the life of this world.
+    /// Returns the options, which are fixed for the life of this world.
     pub fn options(&self) -> &WorldOptions {
         &self.options
     }
@@ -53,13 +53,14 @@ impl World {
         &self.scene
     }
 
-    /// Steps that undo can take back, of all objects. Of several people those of the person that
-    /// the world is shown to, whether or not somebody else's are in the way.
+    /// Returns the number of steps that undo can reach, over all objects. With several people,
+    /// those of the person that the world is shown to, blocked or not.
     pub fn undo_steps(&self) -> usize {
         self.shown_person().map_or(self.timeline.past(), |p| self.timeline.steps_of(p).0)
     }
 
-    /// Steps that redo can do again, of all objects; of several people as [`World::undo_steps`].
+    /// Returns the number of steps that redo can reach, over all objects; with several people as
+    /// [`World::undo_steps`].
     pub fn redo_steps(&self) -> usize {
         self.shown_person().map_or(self.timeline.future(), |p| self.timeline.steps_of(p).1)
     }
@@ -89,9 +90,9 @@ impl World {
         self.scratch.picture.as_ref()
     }
 
-    /// What each brush was set to when it was last exchanged for another, by its key
-    /// ([`BrushSettings::key`]): a person's own brush does not share with others of its kind. The
-    /// brush in use is not among them, or as it was when it was last put away.
+    /// Returns the settings of each brush at the time another replaced it, by its key
+    /// ([`BrushSettings::key`]): a person's custom brush does not share them with others of its
+    /// kind. The brush in use is absent, or has the settings from its last replacement.
     pub fn kept_brushes(&self) -> &Arc<Vec<BrushSettings>> {
         &self.kept_brushes
     }
@@ -130,14 +131,14 @@ impl World {
         self.hands.volume()
     }
 
-    /// Where each pen is, over the view, while in range.
+    /// Returns the position of each pen in range, over the view.
     pub fn pens(&self) -> impl Iterator<Item = (DeviceId, PenPoint)> + '_ {
         let shown = self.pens.iter().filter(|s| self.is_shown(s.device));
         shown.filter_map(|s| s.track.seen.map(|at| (s.device, at)))
     }
 
-    /// Where each pen that draws made its last dab and its normal there, in the world: on the
-    /// surface as the stroke found it, for the brushes that measure there.
+    /// Returns the world position and normal of the last dab of each drawing pen. For the brushes
+    /// that measure there, they are those of the surface as the stroke found it.
     pub fn last_dabs(&self) -> impl Iterator<Item = (DeviceId, [Vec3; 2])> + '_ {
         let to_world = self.scene.active().settings.transform;
         let open = self.pens.iter().filter(|s| self.is_shown(s.device) && s.track.is_open());
@@ -147,7 +148,7 @@ impl World {
         })
     }
 
-    /// Where on its own tablet each pen is while in range: shares of the tablet's area.
+    /// Returns the position of each pen in range on its tablet: shares of the tablet's area.
     pub fn tablets(&self) -> impl Iterator<Item = (DeviceId, glam::Vec2)> + '_ {
         let shown = self.pens.iter().filter(|s| self.is_shown(s.device));
         shown.filter_map(|s| s.track.on_tablet.map(|at| (s.device, at)))
@@ -159,12 +160,12 @@ impl World {
         shown.map(|s| s.track.curve_stroke()).find(|d| !d.is_empty())
     }
 
-    /// What the hands hold, and where.
+    /// Returns the object held by the hands, with its place.
     pub fn thing(&self) -> Option<&HeldObject> {
         self.thing.as_ref()
     }
 
-    /// How the hands are followed.
+    /// Returns the state of the hand tools.
     pub fn hand_tools(&self) -> &HandTools {
         &self.hands
     }

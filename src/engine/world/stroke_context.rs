@@ -16,8 +16,8 @@ use sculptd_clay::brush::{
 use sculptd_clay::{Clay, DabReport, Detail, Hit, Ray, Reach, Workers};
 use sculptd_geometry::portable::PortableMath;
 
-/// Of the angle between the two averages of a stroke's direction that still tells of a bend; where
-/// they lie further apart, the stroke turned a corner.
+/// Least cosine of the angle between the two averages of a stroke's direction at which it counts as
+/// a bend; at a wider angle the stroke turned a corner.
 const LEAST_COSINE: f32 = 0.5;
 /// The way over which the pressure that counts may rise from nothing to all, in radii: a stroke
 /// begins softly however hard the pen comes down after its first touch. It falls at once.
@@ -27,16 +27,16 @@ const FIFTH: f32 = 0.2;
 /// Strings by which a brush follows the pen: the shortest and the longest, in heights of the view.
 const STRINGS: (f32, f32) = (0.004, 0.05);
 
-/// What one pen's stroke remembers from dab to dab.
+/// State of one pen's stroke, kept from dab to dab.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Stroke {
-    /// Which stroke of the world it is, and its dabs so far.
+    /// Number of the stroke in this world, then its dabs so far.
     pub(super) number: u32,
     dabs: u32,
     /// Centre of the last dab.
     last: Option<Vec3>,
     travelled: f32,
-    /// What a held brush holds.
+    /// State of a held brush.
     held: Option<HeldStroke>,
     /// Ticks that the pen has rested.
     pub(super) rested: u32,
@@ -66,13 +66,13 @@ pub(super) struct Stroke {
     draws: Option<Option<u16>>,
 }
 
-/// Where a held brush took hold, and how far it was drawn.
+/// Point at which a held brush took hold, and its drag.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct HeldStroke {
     from: PenPoint,
     hit: Hit,
     drag: Vec3,
-    /// The dab that is not final yet: what it may have changed, its own ball first.
+    /// Area of the dab that is not final yet, starting with its main ball.
     shown: Option<(Vec3, f32)>,
     /// The greatest pressure so far: what is not final until the pen lifts keeps it, so that it
     /// does not vanish with the pressure of the lifting pen.
@@ -86,9 +86,9 @@ impl Stroke {
     }
 
     /// [`Dab::course`] and [`Dab::bend`]. `heading` and `lagging` are averages, over one and over
-    /// two windows, of a direction that turns evenly, so each tells where it went a while ago: half
-    /// way into what it averages at the start of a stroke, one and two windows ago later. How far
-    /// apart the two are tells how fast it turns.
+    /// two windows, of a direction that turns evenly. Each gives the direction of a moment ago:
+    /// half way into its window at the start of a stroke, one and two windows ago later. The angle
+    /// between the two measures how fast the direction turns.
     fn course(&self, radius: f32) -> (Vec3, Vec3) {
         let straight = (self.heading, Vec3::ZERO);
         let (Some(heading), Some(lagging)) =
@@ -113,9 +113,9 @@ impl Stroke {
     }
 }
 
-/// What a page that a dab writes counts in the dabs' budget, in visited vertices, where the brush
-/// changes topology: with the default budget of 400,000 the dabs of a tick take about six
-/// milliseconds on one core.
+/// Cost of a page that a dab writes, in visited vertices of the dabs' budget, if the brush changes
+/// topology. With the default budget of 400,000 the dabs of a tick take about six milliseconds on
+/// one core.
 const PAGE_VISITS: u64 = 640;
 
 /// The clay while pens walk over it.
@@ -163,7 +163,7 @@ impl StrokeContext<'_> {
         (self.camera.backward() + right * lean.x - up * lean.y).normalize()
     }
 
-    /// Where a hit was when the stroke began, and the normal there.
+    /// Returns the position and normal of a hit at the start of the stroke.
     fn as_found(&self, hit: &Hit) -> (Vec3, Vec3) {
         let page = self.mesh.before(hit.page);
         let mix = |[a, b, c]: [Vec3; 3]| {
@@ -295,8 +295,8 @@ impl StrokeContext<'_> {
         {
             let (touch, centre) = (image.at(hit.position), image.at(centre));
             let normal = image.m * normal;
-            // The same view from the mirrored eye. On a symmetric work it lands on the mirrored
-            // point, which is then taken as it is; else the brush lies on what is there.
+            // The same view from the mirrored eye. On a symmetric work it hits the mirrored point
+            // exactly; otherwise the brush uses the surface found there.
             let there =
                 self.mesh.pick(Ray { origin: image.at(ray.origin), dir: image.m * ray.dir });
             let held = drag.is_some();
@@ -344,8 +344,8 @@ impl StrokeContext<'_> {
         let done = tool.report;
         self.report.dabs += count as u64;
         self.report.vertices_moved += done.moved as u64;
-        // Where topology changes, each dab is a pass over its pages of its own, and their rings are
-        // less regular: the pages are what it costs.
+        // If topology changes, each dab is a separate pass over its pages, and their rings are less
+        // regular: the pages dominate the cost.
         let pages = if cuts { PAGE_VISITS * done.pages as u64 } else { 0 };
         self.left = self.left.saturating_sub(done.affected as u64 + 1 + pages);
         self.ask_for_topology(&dabs[..count], hit);
@@ -406,7 +406,7 @@ impl StrokeContext<'_> {
         }
     }
 
-    /// How far a pen at `at` was drawn, parallel to the view at the depth where it took hold.
+    /// Returns the drag of a pen at `at`, parallel to the view at the depth where it took hold.
     fn drawn(&self, held: &HeldStroke, at: &PenPoint) -> Vec3 {
         let (right, up) = self.camera.axes();
         let scale = self.world_per_view(&held.hit);
@@ -450,8 +450,7 @@ impl StrokeContext<'_> {
                 }
             }
             _ => {
-                // What was held at the start is held on: pressure later does not change how much
-                // that is.
+                // The radius is that of the start: later pressure does not change how much is held.
                 let radius = self.radius(held.from.pressure);
                 self.one_dab(at, &held.hit, radius, 1.0, Some((drag, held.drag)));
             }

@@ -41,7 +41,7 @@ fn part(edit: PartEdit) -> Command {
 fn edits() -> Vec<Command> {
     let masked = |mask| MaskRegion { region: circle(), mask, front_faces: false };
     let mut all = vec![Command::MaskRegion(masked(0.75)), sets(SetsEdit::FromMask)];
-    // What looks at neighbours, across the borders of portions.
+    // Edits that read neighbours, across the borders of portions.
     all.extend(
         [MaskAction::Blur, MaskAction::Grow, MaskAction::Sharpen, MaskAction::Shrink]
             .map(Command::Mask),
@@ -125,7 +125,7 @@ fn a_result_that_comes_late_is_told_and_a_refusal_changes_nothing() {
     let mut world = large(1);
     let edit = |world: &mut World, command: Command| {
         let tick = world.tick() + 1;
-        // What is refused at once has its place before it.
+        // A command that is refused at once has its answer before it.
         let locked = SceneCommand::Activate(ObjectId(99));
         world.step(tick, &[], &[Command::Scene(locked), command]);
         let none = Err(SceneError::NoObject(ObjectId(99)));
@@ -160,7 +160,7 @@ fn a_result_that_comes_late_is_told_and_a_refusal_changes_nothing() {
     assert_eq!((world.hash(), world.undo_steps()), start);
     assert_eq!(edit(&mut world, part(PartEdit::NewSet)), Ok(Answer::Object(ObjectId(1))));
     assert_eq!(edit(&mut world, sets(SetsEdit::Isolate(1))), Ok(Answer::Object(ObjectId(1))));
-    // Another command finishes it, and both are told in their places.
+    // Another command finishes it, and both answers are at their indices.
     let tick = world.tick() + 1;
     world.step(tick, &[], &[sets(SetsEdit::ShowAll), sets(SetsEdit::FromVisible)]);
     assert_eq!(world.answers(), [Ok(Answer::Object(ObjectId(0))), Ok(Answer::UnderWay)]);

@@ -17,9 +17,9 @@ use sculptd_clay::face_sets::{SetsEdit, SetsError, SetsTask};
 use sculptd_clay::measured_mask::MeasuredMask;
 
 impl World {
-    /// Whether an edit of a whole object's mask or face sets is under way: its pages follow in this
-    /// tick and, where they are many, in the next ones. A command that needs the surface finishes
-    /// it within its tick; see [`crate::command::Command::needs_surface`].
+    /// Returns true while an edit of a whole object's mask or face sets is under way. Its pages
+    /// follow in this tick and, if there are many, in the next ones. A command that needs the
+    /// surface finishes it within its tick; see [`crate::command::Command::needs_surface`].
     pub fn is_in_surface_edit(&self) -> bool {
         self.surface.is_under_way()
     }
@@ -63,8 +63,8 @@ impl World {
         Ok(ObjectId(0))
     }
 
-    /// Begins to give triangles of the active object another size: one step of undo. The result has
-    /// the number of edges that were changed in the place of an object's.
+    /// Begins to resize triangles of the active object: one step of undo. Returns the number of
+    /// changed edges as the object id.
     pub(super) fn remesh_locally(&mut self, asked: &LocalRemesh) -> SceneResult {
         self.open_to_edits()?;
         if asked.region.as_ref().is_some_and(|region| !region.is_sane()) {
@@ -78,7 +78,7 @@ impl World {
         Ok(ObjectId(0))
     }
 
-    /// Whether the active object is neither locked nor hidden.
+    /// Checks that the active object is neither locked nor hidden.
     fn open_to_edits(&self) -> Result<(), SceneError> {
         let active = self.scene.active();
         match (active.settings.locked, active.settings.visible) {
@@ -101,8 +101,8 @@ impl World {
         RegionSeen::new(region, front_faces, &self.camera, transform)
     }
 
-    /// Begins an edit of the active object's face sets: one step of undo. The result has the number
-    /// of the set that was made or that it was about in the place of an object's, 0 for none.
+    /// Begins an edit of the active object's face sets: one step of undo. Returns the number of the
+    /// set made or edited as the object id, 0 for none.
     pub(super) fn edit_sets(&mut self, edit: &SetsEdit) -> SceneResult {
         self.change_sets(SetsTask::Edit(edit.clone()), None)
     }
@@ -123,7 +123,7 @@ impl World {
         }
         let work = active.clay.begin_sets(task)?;
         active.clay.begin_step();
-        // Its place is the next one: the answer stands there when the command has been applied.
+        // Its index is the next one: the answer is pushed there after the command has been applied.
         let place = Asked::Now(self.answers.len());
         self.surface.begin(SurfaceEdit::Sets(work, seen), place);
         Ok(ObjectId(0))
@@ -146,14 +146,14 @@ impl World {
         done.map(|done| self.close_surface_edit(done)).is_some()
     }
 
-    /// Whether a command takes back what is under way, and need not wait for its end.
+    /// Returns true if a command undoes the edit under way, and need not wait for its end.
     pub fn is_taken_back_by(&self, command: &Command) -> bool {
         matches!(command, Command::Undo) && self.surface.is_remesh()
     }
 
-    /// Gives a local remesh up and the object as it was before. False: none is under way.
+    /// Cancels a local remesh and restores the object. Returns false if none is under way.
     pub(super) fn take_back_remesh(&mut self) -> bool {
-        // Somebody else's is finished, and is a step of that person.
+        // Somebody else's remesh is finished, and is a step of that person.
         let clay = &self.scene.active().clay;
         if !self.surface.is_remesh() || self.person().is_some_and(|p| !clay.is_step_of(p)) {
             return false;
@@ -164,7 +164,7 @@ impl World {
         surface.end(&scene.active().clay, garbage);
         if timeline.end_step(scene, options.undo_bytes, garbage) {
             if self.undo_step() {
-                // Half of a remesh is nothing that anybody would do again.
+                // Nobody would want to redo half of a remesh.
                 let World { timeline, scene, garbage, .. } = self;
                 timeline.forget_future(scene, garbage);
             } else {

@@ -29,7 +29,7 @@ fn world(brush: BrushSettings) -> World {
     world
 }
 
-/// What a contact left: its dabs, and how far it moved a vertex at most.
+/// Result of a contact: its dabs, and the greatest distance that a vertex moved.
 #[derive(Debug, Default, Clone, Copy)]
 struct Mark {
     dabs: u64,
@@ -37,7 +37,7 @@ struct Mark {
     firmest: f32,
 }
 
-/// Steps the world by one sample a tick, and tells what each contact left.
+/// Steps the world by one sample a tick, and returns the result of each contact.
 fn contacts(world: &mut World, pens: &[Pen]) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     let (mut down, mut tick) = (false, 1);
@@ -95,13 +95,13 @@ fn tap(at: Vec2, slide: f32, reports: usize) -> Vec<Pen> {
     pens
 }
 
-/// How far a tap of one report moves a vertex at most.
+/// Returns the greatest distance that a tap of one report moves a vertex.
 fn firm(brush: BrushSettings, pressure: f32) -> f32 {
     let at = Vec2::splat(0.5);
     contacts(&mut world(brush), &[pen(at, pressure, true), pen(at, 0.0, false)])[0].moved
 }
 
-/// Each brush that lies on the surface and raises or paints by itself.
+/// Returns each brush that stays on the surface and raises or paints without a drag.
 fn kinds() -> impl Iterator<Item = BrushSettings> {
     [BrushKind::Draw, BrushKind::Inflate, BrushKind::Clay, BrushKind::Layer, BrushKind::Gaussian]
         .into_iter()

@@ -128,7 +128,7 @@ fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
         (seed >> 33) as usize % most
     };
     let count = BrushKind::ALL.len() + own.len();
-    // What each was last set to, once it was.
+    // Last settings of each brush, once it was set.
     let mut set: Vec<Option<BrushSettings>> = vec![None; count];
     set[world.brush().kind as usize] = Some(*world.brush());
     let take = |world: &World, i: usize| {
@@ -150,7 +150,7 @@ fn each_brush_keeps_its_settings_through_a_hundred_switches_and_a_restart() {
         match set[i] {
             Some(set) => assert_eq!(recalled, set, "{} at switch {tick}", recalled.kind),
             None if i < BrushKind::ALL.len() => {
-                // What a person never set comes at the size in hand.
+                // A brush never set starts at the current size.
                 let radius = world.brush().radius;
                 let begins = presets.of(recalled.kind);
                 assert_eq!(recalled, BrushSettings { radius, ..begins }, "at switch {tick}");

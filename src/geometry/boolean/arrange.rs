@@ -16,12 +16,12 @@ use crate::boolean::intersect;
 use crate::boolean::intersect::Intersections;
 use crate::job::{Cancelled, Job};
 
-/// What a face of a result is of the operand's face.
+/// The relation of a result's face to the operand's face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceState {
-    /// The face as it came.
+    /// The face unchanged.
     Whole,
-    /// The whole face, or a triangle of it, seen from behind.
+    /// The whole face, or a triangle of it, with reversed orientation.
     Turned,
     /// A part of it, or the whole with more corners.
     Cut,
@@ -31,7 +31,7 @@ pub enum FaceState {
 /// piece classified.
 #[derive(Debug)]
 pub struct Arrangement {
-    /// Where every corner is.
+    /// The positions of all corners.
     pub points: PointSet,
     /// The operands, corners over the common points.
     pub meshes: [PolyMesh; 2],

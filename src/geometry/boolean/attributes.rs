@@ -9,7 +9,8 @@ use super::BooleanSolid;
 use super::emit::FaceOrigin;
 use crate::{FaceAttributes, GroupName, PolyMesh, triangulate};
 
-/// What the groups are called, B's counted on from A's; `None` where no operand names any.
+/// Returns the names of the groups, with B's numbers after A's; `None` if neither operand names
+/// any.
 fn names(operands: [&PolyMesh; 2], first: u32) -> Option<Arc<FaceAttributes>> {
     let own = operands.map(|m| m.attributes.as_deref().filter(|a| !a.groups.is_empty()));
     if own.iter().all(|a| a.is_none()) {
@@ -86,7 +87,7 @@ fn colour(mesh: &PolyMesh, face: usize, place: DVec3) -> [u8; 4] {
     })
 }
 
-/// Corners of a face, and how much of a place in it is theirs.
+/// The corners of a face, and their weights at a place in it.
 fn shares(mesh: &PolyMesh, face: usize, place: DVec3) -> [(u32, f64); 3] {
     let corners = mesh.face(face);
     let first = corners.first().copied().unwrap_or(0);

@@ -1,5 +1,5 @@
-//! A tree of boxes over triangles: which pairs may meet, which triangles a line may cross. In
-//! double precision, unlike [`crate::bvh`], whose head says why both are there.
+//! A tree of boxes over triangles: finds pairs that may meet, and triangles that a line may cross.
+//! In double precision, unlike [`crate::bvh`], whose documentation explains why both exist.
 
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ impl Span {
         Span { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
 
-    /// Whether the boxes have a point in common.
+    /// Returns true if the boxes have a point in common.
     pub fn meets(&self, o: &Span) -> bool {
         self.lo.cmple(o.hi).all() && o.lo.cmple(self.hi).all()
     }

@@ -19,14 +19,14 @@ const FEW: usize = 2048;
 pub struct SurfaceView<'a> {
     /// Corners of each triangle, counter-clockwise.
     pub triangles: &'a [[u32; 3]],
-    /// Where the corners are.
+    /// The positions of the corners.
     pub at: &'a [DVec3],
-    /// Taken off each corner before it is looked up.
+    /// Subtracted from each corner before it is looked up.
     pub base: u32,
 }
 
 impl SurfaceView<'_> {
-    /// Where the corners of a triangle are.
+    /// Returns the positions of the corners of a triangle.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.at[(v - self.base) as usize])
     }
@@ -146,7 +146,7 @@ impl CellGrid {
         by: Option<&Marked>,
         job: &Job,
     ) -> (Vec<u32>, Marked) {
-        // Few and large parts: each has marks of its own.
+        // Few and large parts: each has separate marks.
         let least = (list.len() / (2 * rayon::current_num_threads())).max(1 << 13);
         let part = |mut to: (Vec<u32>, Marked), t: u32| {
             if t % 4096 == 0 && job.cancelled() {

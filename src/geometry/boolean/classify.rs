@@ -17,7 +17,7 @@ use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
 
-/// How often a surface goes around a point, where the operand at hand is only a part of it.
+/// The winding number of a surface around a point, where the operand is only a part of it.
 pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
 
 /// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
@@ -33,7 +33,7 @@ const NONE: u32 = u32::MAX;
 const FAR: u32 = u32::MAX - 1;
 
 impl Classification {
-    /// Where a face lies; None for a face that is in pieces.
+    /// Returns the placement of a face; `None` for a face that is in pieces.
     pub fn of(&self, face: u32) -> Option<Placement> {
         self.placements.get(self.part[face as usize] as usize).copied()
     }
@@ -108,10 +108,10 @@ pub fn classify(
     Ok(([a, b], first.or(second)))
 }
 
-/// What is known of a connected part.
+/// The data of a connected part.
 #[derive(Clone, Copy)]
 struct ConnectedPart {
-    /// Beyond the other's box: no more is asked.
+    /// True if it is beyond the other's box, so that no test is needed.
     beyond: bool,
     /// The largest triangle so far, and a place in it.
     size: f64,
@@ -251,7 +251,7 @@ fn one_side(
     Ok((Classification { part, placements }, doubt))
 }
 
-/// A solid that is asked how often it goes around a point.
+/// A solid that answers queries for its winding number.
 pub(super) struct WindingOracle<'a> {
     surface: SurfaceView<'a>,
     bounds: Span,
@@ -262,7 +262,7 @@ pub(super) struct WindingOracle<'a> {
     /// The tolerance: nearer to the surface than four of it, nothing is inside or outside.
     eps: f64,
     asked: usize,
-    /// Once so many ask that it is worth it.
+    /// Built once there are enough queries to repay it.
     tree: Option<SpanTree>,
 }
 
@@ -282,7 +282,7 @@ impl<'a> WindingOracle<'a> {
         WindingOracle { surface, bounds, around: None, of_patch: false, eps, asked: 0, tree }
     }
 
-    /// Whether a place is beyond the box of the surface, where that says that it is outside.
+    /// Returns true if a place is beyond the box of the surface, and therefore outside.
     fn beyond(&self, p: DVec3) -> bool {
         let within = self.bounds.lo.cmple(p).all() && p.cmple(self.bounds.hi).all();
         self.around.is_none() && !within
@@ -302,7 +302,7 @@ impl<'a> WindingOracle<'a> {
         }
     }
 
-    /// How many pieces, and how many faces, of a surface are asked again on their own.
+    /// Returns the number of pieces, and of faces, of a surface to classify again separately.
     fn samples(&self, faces: usize, pieces: usize) -> usize {
         if self.of_patch {
             // The parts of a patch are small, most of its faces are cut, and its border is checked.
@@ -335,7 +335,7 @@ impl<'a> WindingOracle<'a> {
         Ok((!close).then_some(winding))
     }
 
-    /// How often the surface goes around a point.
+    /// Returns the winding number of the surface around a point.
     fn winding(&mut self, o: DVec3, job: &Job) -> Result<i32, Cancelled> {
         job.check()?;
         if let Some(around) = self.around {
@@ -393,7 +393,7 @@ fn within(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     a * 0.414_213_562_373_095 + b * 0.267_949_192_431_123 + c * 0.317_837_245_195_782
 }
 
-/// A point inside the piece and how much room there is.
+/// Returns a point inside the piece and its clearance.
 pub(super) fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     let l = loops[0];
     if l.len() == 3 && loops.len() == 1 {
@@ -412,9 +412,9 @@ pub(super) fn probe(loops: &[&[u32]], at: &[DVec3]) -> (f64, DVec3) {
     best
 }
 
-/// Signed crossings of a segment of length `reach` that leaves the surface's box, decided exactly;
-/// a segment that meets an edge is tried anew in another direction. `along` shows the triangles
-/// near the segment to `o`'s far end until told false.
+/// Returns the signed crossings of a segment of length `reach` that leaves the surface's box,
+/// decided exactly. If the segment meets an edge, another direction is tried. `along` passes the
+/// triangles near the segment to `o`'s far end until its callback returns false.
 pub fn crossings(
     o: DVec3,
     reach: f64,

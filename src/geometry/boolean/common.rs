@@ -1,5 +1,5 @@
-//! Both operands over one list of points: places of theirs within the tolerance of each other are
-//! one point, where the surfaces are near each other; elsewhere each keeps its own.
+//! Both operands over one list of points. Where the surfaces are near each other, their places
+//! within the tolerance become one point; elsewhere each keeps its points.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ impl Common {
     }
 }
 
-/// Whether both operands are one and the same surface: the same triangles over the common points,
+/// Returns true if both operands are the same surface: the same triangles over the common points,
 /// in the same direction. Then nothing is between them, however often they cross themselves.
 fn same_surface(a: &[[u32; 3]], b: &[[u32; 3]], contact: usize) -> bool {
     // Triangles that shrank to less are nothing.
@@ -50,7 +50,7 @@ fn same_surface(a: &[[u32; 3]], b: &[[u32; 3]], contact: usize) -> bool {
         least if least == b => [b, c, a],
         _ => [c, a, b],
     };
-    // Where no place is in contact, no triangle of one is a triangle of the other. Most pairs of
+    // Without a place in contact, no triangle of one is a triangle of the other. Most pairs of
     // solids differ in the first triangle.
     let first = a.iter().find(whole).map(least_first);
     if contact == 0 || first.is_none() || !b.iter().any(|t| Some(least_first(t)) == first) {

@@ -11,7 +11,7 @@ use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
 
-/// Which face of which operand a face of the result is, or is a part of.
+/// The operand and the face from which a face of the result comes, whole or in part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaceOrigin {
     /// 0 for A, 1 for B.
@@ -35,7 +35,7 @@ pub struct BooleanFacts {
     pub manifold: bool,
 }
 
-/// Makes the chosen faces, whose corners index `at`, a mesh of its own, and says what it is.
+/// Turns the chosen faces, whose corners index `at`, into a separate mesh, and returns its facts.
 pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<BooleanFacts, Cancelled> {
     let closed = match fans::degrees(mesh, at.len(), job)? {
         Some(degrees) => {
@@ -51,10 +51,10 @@ pub fn finish(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<BooleanFac
     Ok(facts)
 }
 
-/// Takes out faces that lie on each other with their fronts outwards: two faces with the same
-/// corners in opposite order have nothing between them. Such sheets come where surfaces meet within
-/// the tolerance along the border of a face. Only faces whose corners are all marked are looked at.
-/// Returns how many went.
+/// Removes faces that coincide with their fronts outwards: two faces with the same corners in
+/// opposite order have nothing between them. Such sheets arise where surfaces meet within the
+/// tolerance along the border of a face. Considers only faces whose corners are all marked. Returns
+/// the number of faces removed.
 pub fn drop_folded_faces(
     mesh: &mut PolyMesh,
     origins: &mut Vec<FaceOrigin>,
@@ -142,7 +142,7 @@ pub fn facts(mesh: &PolyMesh, job: &Job) -> Result<BooleanFacts, Cancelled> {
     let count = || {
         let mut shells = DisjointSets::new(mesh.positions.len());
         for (i, f) in mesh.faces().enumerate() {
-            // What a cancelled job counts is thrown away.
+            // The counts of a cancelled job are discarded.
             if i % 65_536 == 0 && job.cancelled() {
                 return 0;
             }

@@ -27,8 +27,8 @@ use crate::job::{Cancelled, Job};
 /// A result: its mesh, the origin of each face, its facts.
 pub type Made = (PolyMesh, Vec<FaceOrigin>, BooleanFacts);
 
-/// What the crate gives, or in words why it gave nothing. What it was given is not used again after
-/// a panic.
+/// Runs `what`, and returns its result or the message of its panic. Its input is not used again
+/// after a panic.
 fn guarded<T>(what: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(what)).unwrap_or_else(|payload| {
         let said = payload.downcast_ref::<String>().map(String::as_str);
@@ -45,12 +45,11 @@ fn sound(m: Manifold) -> Result<Manifold, String> {
     }
 }
 
-/// How often the one who waits looks whether it was cancelled.
+/// The interval at which the waiting thread checks for cancellation.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// What `what` gives, on a thread of its own: the crate looks for its end only here and there, and
-/// this wait ends at once. What is left behind ends at its next look at the token or the job that
-/// it is given.
+/// Runs `what` on a separate thread: the crate checks for cancellation only now and then, and this
+/// wait ends at once. The abandoned thread ends when it next checks its token or its job.
 fn aside<T: Send + 'static>(
     job: &Job,
     what: impl FnOnce(&CancelToken, &Job) -> Result<T, String> + Send + 'static,

@@ -8,18 +8,18 @@ use robust::{Coord3D, orient3d};
 use super::points::{Map, PointSet};
 use crate::job::{Cancelled, Job};
 
-/// What the other surface does to one triangle.
+/// The marks that the other surface leaves on one triangle.
 #[derive(Debug, Default, Clone)]
 pub struct TriangleMarks {
     /// Points within it.
     pub inner: Vec<u32>,
     /// Cuts through it, between points of its border or within it.
     pub segments: Vec<(u32, u32)>,
-    /// It lies, within the tolerance, on a face of the other side.
+    /// True if it coincides, within the tolerance, with a face of the other side.
     pub flat: bool,
 }
 
-/// An edge of a triangle and what lies on it.
+/// An edge of a triangle, and the points on it.
 #[derive(Debug)]
 pub struct CutEdge {
     /// The lesser point first.
@@ -150,8 +150,8 @@ fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
 }
 
-/// Whether triangles that share corners have nothing else in common: the other corners of `t` are
-/// beyond the plane of `s`, all on one side, or in it and beyond the edge that both have.
+/// Returns true if triangles that share corners have nothing else in common. The other corners of
+/// `t` are then beyond the plane of `s`, all on one side, or in it and beyond the common edge.
 fn beyond_shared(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     if !t.iter().any(|v| s.contains(v)) {
         return false;
@@ -174,9 +174,9 @@ fn beyond_shared(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     })
 }
 
-/// Whether `t` is beyond an edge of `s`, seen along the normal of `s`, by more than is ever
-/// compared with the tolerance. Of triangles that lie in one plane, as fans around the holes of a
-/// flat face do, thousands have boxes that meet and nothing else.
+/// Returns true if `t` is beyond an edge of `s`, seen along the normal of `s`, by more than any
+/// length compared with the tolerance. Among coplanar triangles, as in fans around the holes of a
+/// flat face, thousands have boxes that meet and nothing else.
 fn beside(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
     let [a, b, c] = s.map(|i| at[i as usize]);
     let n = (b - a).cross(c - a);
@@ -319,7 +319,7 @@ impl Finder<'_> {
         Some(p)
     }
 
-    /// Where an edge of side `s` goes through the inside of triangle `t`.
+    /// Finds the point where an edge of side `s` goes through the inside of triangle `t`.
     fn pierce(&mut self, s: usize, e: u32, id: u32, t: [u32; 3]) {
         let ends = self.m.edges[e as usize].ends;
         if t.contains(&ends[0]) || t.contains(&ends[1]) {
@@ -334,8 +334,7 @@ impl Finder<'_> {
                 let height = |x: DVec3| orient3d(c3(a), c3(b), c3(c), c3(x));
                 let turn = |i: DVec3, j: DVec3| orient3d(c3(p), c3(q), c3(i), c3(j));
                 let (x, y) = (height(p), height(q));
-                // An end that lies on the triangle is known to; all else is as the numbers say,
-                // exactly.
+                // Ends on the triangle are found elsewhere; all other cases are decided exactly.
                 let through = (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0);
                 let inside = through && {
                     let w = [turn(a, b), turn(b, c), turn(c, a)];
@@ -384,7 +383,7 @@ impl Intersections {
         out.dedup();
     }
 
-    /// Whether both points are on one and the same edge of the triangle.
+    /// Returns true if both points are on the same edge of the triangle.
     fn on_one_edge(&self, t: [u32; 3], p: u32, q: u32) -> bool {
         (0..3).any(|k| {
             self.edge_of(t[k], t[(k + 1) % 3]).is_some_and(|e| {

@@ -102,7 +102,7 @@ pub fn joined_rings_where(rings: Vec<Vec<u32>>, accept: impl Fn(&[u32]) -> bool)
     rings.into_iter().flatten().collect()
 }
 
-/// Whether the border somewhere runs back along itself.
+/// Returns true if the border somewhere runs back along itself.
 fn spiked(ring: &[u32], at: &[DVec3]) -> bool {
     let n = ring.len();
     (0..n).any(|i| {
@@ -132,7 +132,7 @@ fn joined(p: &[u32], q: &[u32]) -> Option<Vec<u32>> {
     (out.len() >= 3).then_some(out)
 }
 
-/// Whether a face lies in a plane, within the tolerance.
+/// Returns true if a face is planar, within the tolerance.
 pub fn is_flat(mesh: &PolyMesh, f: usize, at: &[DVec3], eps: f64) -> bool {
     let c = mesh.face(f);
     if c.len() == 3 {

@@ -10,17 +10,17 @@
 //! 4. `pieces`, `planar`: each crossed triangle is cut into the cells of its plane graph.
 //! 5. `classify`: each connected part of a surface between cuts is inside or outside by one winding
 //!    number; faces in contact have equal borders. Samples on the parts are classified again, each
-//!    by a winding number of its own.
+//!    by a separate winding number.
 //! 6. `merge`, `simplify`, `emit`: cells of one face are joined, planes are triangulated again, and
 //!    the result is made a closed manifold.
 //!
 //! Every result is checked before it is returned: closed, samples that agree with the winding
 //! number of the other operand, and volumes that add up (union and intersection give A and B,
-//! difference and intersection give A). Where a check fails, other tolerances are tried, then the
-//! exact engine of the crate `manifold-rust` (`global`); where that fails too, the answer is an
-//! error. An operand that crosses itself, where that engine fails, is taken as the solid of all
-//! places that it goes around, as [`solve`] makes it. Where the answer depends on the tolerance, or
-//! on such a solid, [`BooleanReport`] says so.
+//! difference and intersection give A). If a check fails, other tolerances are tried, then the
+//! exact engine of the crate `manifold-rust` (`global`); if that fails too, the result is an error.
+//! If that engine fails on an operand that crosses itself, [`solve`] replaces the operand by the
+//! solid of all places that it winds around. [`BooleanReport`] states whether the result depends on
+//! the tolerance or on such a solid.
 //!
 //! Not promised: a meaning for operands that cross themselves where a tolerance does help;
 //! features smaller than the tolerance.
@@ -89,7 +89,7 @@ pub enum Operation {
 }
 
 impl ResultFaces {
-    /// Whether all faces of a result are triangles.
+    /// Returns true if all faces of a result are triangles.
     fn triangles(self, operands: [&PolyMesh; 2]) -> bool {
         let all = |m: &PolyMesh| {
             m.corners.len() == 3 * m.face_count()
@@ -122,7 +122,8 @@ impl Operation {
         }
     }
 
-    /// Whether a piece of an operand (0 or 1) is in the result, and whether it is turned.
+    /// Returns whether to turn a piece of an operand (0 or 1), or `None` if the result omits the
+    /// piece.
     fn takes(self, operand: usize, place: Placement, contact: bool) -> Option<bool> {
         use Operation::*;
         use Placement::*;
@@ -139,8 +140,8 @@ impl Operation {
     }
 }
 
-/// What the faces of a result are where a face of an operand was cut. A face that nothing cuts
-/// stays as it came, unless triangles are asked for.
+/// The shape of a result's faces where a face of an operand was cut. An uncut face stays unchanged,
+/// unless triangles are requested.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ResultFaces {
     /// Triangles where both operands are triangles, else polygons of any shape.
@@ -161,7 +162,7 @@ pub struct BooleanOptions {
     /// coordinates can resolve ([`default_tolerance`]). 0: only what rounding of computed points
     /// needs.
     pub tolerance: Option<f64>,
-    /// What the faces of the results are.
+    /// The shape of the results' faces.
     pub faces: ResultFaces,
     /// Faces in which the solids only touch belong to the intersection too, both sides of them.
     pub keep_contact: bool,
@@ -170,7 +171,7 @@ pub struct BooleanOptions {
 /// One of the four results.
 #[derive(Debug, Clone)]
 pub struct BooleanSolid {
-    /// Which of the four.
+    /// The operation.
     pub operation: Operation,
     /// The result; an empty solid has no faces.
     pub mesh: PolyMesh,
@@ -180,13 +181,13 @@ pub struct BooleanSolid {
     pub facts: BooleanFacts,
 }
 
-/// Why there is no result.
+/// The reason why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BooleanError {
     /// An operand has edges without a partner.
     #[error("{operand} is open: {edges} edges lack a partner; mend it first")]
     Open {
-        /// Which operand.
+        /// The name of the operand.
         operand: &'static str,
         /// Edges that lack a partner.
         edges: usize,
@@ -194,7 +195,7 @@ pub enum BooleanError {
     /// An operand has a negative volume.
     #[error("{operand} is inside out: its volume is {volume}")]
     InsideOut {
-        /// Which operand.
+        /// The name of the operand.
         operand: &'static str,
         /// Its volume.
         volume: f64,
@@ -202,7 +203,7 @@ pub enum BooleanError {
     /// A coordinate is infinite or not a number.
     #[error("{operand} has a coordinate that is not finite")]
     NotFinite {
-        /// Which operand, or the plane of a split.
+        /// The name of the operand, or the plane of a split.
         operand: &'static str,
     },
     /// No way led to a result that passes all checks; the text says what failed first.
@@ -213,21 +214,21 @@ pub enum BooleanError {
     Cancelled(#[from] Cancelled),
 }
 
-/// What was done besides the results.
+/// The report that accompanies the results.
 #[derive(Debug, Clone, Default)]
 pub struct BooleanReport {
     /// The tolerance that was used, in the operands' unit.
     pub tolerance: f64,
-    /// What the operands' coordinates resolve; the coarser of the two.
+    /// The precision of the operands' coordinates; the coarser of the two.
     pub precision: Option<Precision>,
     /// Distances that the tolerance decided.
     pub contact: Contact,
-    /// Whether places that the precision of doubles tells apart were taken as one, or nearly were:
-    /// with another tolerance the answer may be another.
+    /// True if places that double precision distinguishes were merged, or nearly were: another
+    /// tolerance may then give another result.
     pub depends_on_tolerance: bool,
-    /// How far a volume may be from that of the operands as they are, in cubic units.
+    /// The greatest error of a volume relative to the operands as given, in cubic units.
     pub volume_bound: f64,
-    /// What the caller should read, one sentence each.
+    /// Warnings for the caller, one sentence each.
     pub warnings: Vec<String>,
     /// The cut: places where both surfaces are, as polylines that end where the curve ends or
     /// branches. A closed one names its first place again at its end. Of the global engine: none.
@@ -236,7 +237,7 @@ pub struct BooleanReport {
     pub phases: Vec<(&'static str, f64)>,
 }
 
-/// What the operands are called in errors.
+/// The names of the operands in errors.
 pub const NAMES: [&str; 2] = ["A", "B"];
 
 /// The asked operations on A and B, from one arrangement. `now` gives seconds (any origin), for the
@@ -279,7 +280,8 @@ pub fn compute(
             return Ok((solids, report));
         }
     }
-    // Where the first tolerance falls between what is and is not in contact, another does not.
+    // If the first tolerance falls between distances in contact and not in contact, another does
+    // not.
     if let Ok(solids) = task.within(&[0.125, 16.0, 1.0 / 64.0], default.precision, &mut report)? {
         report.warnings.push(format!(
             "tolerance {:.3e} taken instead of {wanted:.3e}: {why}",

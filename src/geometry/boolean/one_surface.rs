@@ -1,6 +1,6 @@
-//! Both operands are one surface (`common` tells), in whatever order of
-//! vertices, faces and corners: the results are told by that, instead of by cutting a surface at
-//! itself, which has no end where it crosses itself often.
+//! Both operands are one surface (`common` detects it), in whatever order of vertices, faces and
+//! corners. The results follow from that, without cutting a surface at itself, which takes very
+//! long where it crosses itself often.
 
 use super::emit::{self, FaceOrigin};
 use super::pieces::Placement;
@@ -53,7 +53,7 @@ mod tests {
         compute([a, b], &Operation::ALL, &options, &Job::default(), || 0.0).expect("a result")
     }
 
-    /// Whether the operands were told to be one surface: nothing was cut or classified.
+    /// Returns true if the operands were recognised as one surface: nothing was cut or classified.
     fn at_once(report: &BooleanReport) -> bool {
         report
             .phases

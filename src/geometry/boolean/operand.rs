@@ -1,4 +1,4 @@
-//! What an operand must be, and what it had better be.
+//! The requirements for an operand, and its recommended properties.
 
 use rayon::prelude::*;
 
@@ -7,7 +7,7 @@ use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 use crate::self_intersection;
 
-/// Closed, oriented outwards, finite: the volume, or what is wrong.
+/// Checks that the mesh is closed, oriented outwards and finite. Returns its volume.
 pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, BooleanError> {
     if !mesh.positions.par_iter().all(|p| p.is_finite()) {
         return Err(BooleanError::NotFinite { operand });
@@ -24,8 +24,8 @@ pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, B
     if volume < 0.0 { Err(BooleanError::InsideOut { operand, volume }) } else { Ok(volume) }
 }
 
-/// Whether the edges, each as a number of 128 bits with its direction as its sign, add up to
-/// nothing: so they do where each has its partners, and else all but never.
+/// Returns true if the edges sum to zero, each as a number of 128 bits with its direction as its
+/// sign. The sum is zero if each edge has its partners, and otherwise almost never.
 fn balanced(mesh: &PolyMesh) -> bool {
     let mix = |x: u64, by: u64| {
         let z = (x ^ (x >> 32)).wrapping_mul(by);

@@ -34,7 +34,7 @@ pub fn split(
     Ok((solids, report))
 }
 
-/// A block below the plane around all of the mesh that is there.
+/// Returns a block below the plane that encloses the whole mesh.
 fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
     let span = Span::of(mesh.positions.iter().copied());
     let (middle, size) =
@@ -51,8 +51,8 @@ fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
     out
 }
 
-/// Each connected shell as a mesh of its own, in the order of their first faces, colours and groups
-/// with it.
+/// Returns each connected shell as a separate mesh with its colours and groups, in the order of
+/// their first faces.
 pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
     let mut sets = DisjointSets::new(mesh.positions.len());
     for f in mesh.faces() {

@@ -8,7 +8,7 @@ use crate::PolyMesh;
 use crate::boolean::intersect::Intersections;
 use crate::job::{Cancelled, Job};
 
-/// Where a piece lies as seen from the other operand.
+/// The place of a piece relative to the other operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Placement {
     Inside,
@@ -19,21 +19,21 @@ pub enum Placement {
     Against,
 }
 
-/// A part of a face that lies on one side of the other operand as a whole.
+/// A part of a face that is on one side of the other operand as a whole.
 #[derive(Debug, Clone)]
 pub struct FacePiece {
     /// The operand's face.
     pub face: u32,
-    /// Which part of the face it is.
+    /// The part of the face.
     pub shape: PieceShape,
-    /// Where it lies.
+    /// Its placement.
     pub place: Placement,
 }
 
-/// Which part of a face a piece is.
+/// The shape of a piece within its face.
 #[derive(Debug, Clone)]
 pub enum PieceShape {
-    /// The face as it came.
+    /// The unchanged face.
     Whole,
     /// The face, with more corners on its border.
     Border(Vec<u32>),
@@ -113,7 +113,7 @@ pub fn cut(
     Ok(out)
 }
 
-/// Whether the cut runs along a diagonal by which the face came in triangles.
+/// Returns true if the cut runs along a diagonal of the face's input triangulation.
 fn along_diagonal(corners: &[u32], triangles: &[[u32; 3]], m: &Intersections) -> bool {
     let side = |a: u32, b: u32| {
         (0..corners.len()).any(|i| {
@@ -193,7 +193,7 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
                 })
             })
         };
-        // Where a ring's corner comes twice, the bridge must start in the right one of its angles.
+        // If a ring's corner appears twice, the bridge must start in the right one of its angles.
         let opens = |i: usize, q: u32| {
             let len = ring.len();
             let (p, v, x) =

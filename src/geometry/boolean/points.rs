@@ -39,12 +39,12 @@ impl Hasher for Mix {
 /// A hash map with a fixed hash.
 pub type Map<K, V> = HashMap<K, V, BuildHasherDefault<Mix>>;
 
-/// All points, and a grid of those that may be met again.
+/// All points, and a grid of the points that may be found again.
 #[derive(Debug, Default)]
 pub struct PointSet {
-    /// Where each point is.
+    /// The position of each point.
     pub at: Vec<DVec3>,
-    /// What was decided by the tolerance so far.
+    /// The contacts decided by the tolerance so far.
     pub contact: Contact,
     eps: f64,
     cells: Map<[i64; 3], Vec<u32>>,

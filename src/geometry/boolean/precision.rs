@@ -1,16 +1,16 @@
-//! What the coordinates of an operand can resolve, and the tolerance that follows from it.
+//! The resolution of an operand's coordinates, and the tolerance that follows from it.
 //!
-//! A face that two solids share is stored twice, and each copy is rounded on its own: to 53 bits,
+//! A face that two solids share is stored twice, and each copy is rounded separately: to 53 bits,
 //! to the 24 bits of single precision (STL, PLY, glTF and the clay itself), or to the digits of a
-//! text file. Contact can be recognised only within what that rounding moved. The precision is
-//! found from the coordinates themselves, so that it is the same whatever way a mesh took.
+//! text file. Contact can be recognised only within that rounding. The precision is found from the
+//! coordinates themselves, so that it does not depend on the mesh's history.
 
 use glam::DVec3;
 use serde::Serialize;
 
 use crate::PolyMesh;
 
-/// How the coordinates of a mesh were rounded.
+/// The rounding of a mesh's coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
@@ -33,10 +33,10 @@ impl Precision {
     }
 }
 
-/// What one mesh can resolve.
+/// The resolution of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
-    /// How its coordinates were rounded.
+    /// The rounding of its coordinates.
     pub precision: Precision,
     /// Largest rounding error of one coordinate, in the mesh's unit.
     pub error: f64,
@@ -105,8 +105,8 @@ fn extent(mesh: &PolyMesh) -> f64 {
     if mesh.positions.is_empty() { 0.0 } else { (hi - lo).max_element() }
 }
 
-/// What the coordinates of a mesh resolve. Up to 512 vertices are looked at; a value counts as
-/// rounded only where its digits are used up, so that whole numbers and short decimals are exact.
+/// Returns the resolution of a mesh's coordinates, from up to 512 vertices. A value counts as
+/// rounded only if its digits are used up, so that whole numbers and short decimals are exact.
 pub fn resolution(mesh: &PolyMesh) -> Resolution {
     let reach = mesh.positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
     let double = Resolution { precision: Precision::Double, error: reach * 2f64.powi(-53) };
@@ -140,7 +140,7 @@ pub fn resolution(mesh: &PolyMesh) -> Resolution {
         near_single &= (v - f64::from(v as f32)).abs() <= 0.5 * 10f64.powi(-decimals);
         short.push((digits - decimals, digits, decimals));
     }
-    // What the longest value leaves behind the point of the largest one: exact where digits are
+    // The digits of the longest value after the point of the largest one: exact where digits are
     // counted, and where decimals are counted and a largest value uses all of them.
     let Some(&(largest, ..)) = short.iter().max_by_key(|d| d.0) else { return double };
     let longest = short.iter().map(|d| d.1).max().unwrap_or(0);

@@ -1,11 +1,11 @@
 //! Smaller triangles along the cut of a result: a blend, a smoothing or a simulation needs them
 //! where two surfaces meet, and the cut of two coarse solids leaves long ones there.
 //!
-//! The longest edge of a triangle is halved, and that of its neighbour first where that is longer
-//! (longest-edge propagation path: Rivara, "New longest-edge algorithms for the refinement and/or
-//! improvement of unstructured triangulations", 1997). So no vertex comes to lie on an edge, no
-//! angle becomes less than half of what it was, and triangles grow gradually away from the cut.
-//! The surface stays where it is: each new vertex is the middle of an edge.
+//! The longest edge of a triangle is halved, and its neighbour's longest edge first if that is
+//! longer (longest-edge propagation path: Rivara, "New longest-edge algorithms for the refinement
+//! and/or improvement of unstructured triangulations", 1997). So no vertex is placed inside an
+//! edge, no angle becomes less than half of its old value, and triangles grow gradually away from
+//! the cut. The surface does not move: each new vertex is the middle of an edge.
 
 use glam::DVec3;
 
@@ -26,10 +26,10 @@ pub struct CutRefinement {
 /// Triangles beyond which no more are made, about 2 GiB.
 const MOST: usize = 20_000_000;
 
-/// Makes `solid` triangles of which none with a corner on the cut, the edges between faces of A and
-/// faces of B, has an edge longer than `edge` (in the operands' unit, above 0). Colours are mixed
-/// along edges, and groups stay. Stops where there are 20 million triangles and where an edge is
-/// too short to have a middle, and says so.
+/// Splits the triangles of `solid` at the cut, the edges between faces of A and faces of B, until
+/// none with a corner on the cut has an edge longer than `edge` (in the operands' unit, above 0).
+/// Interpolates colours along edges and keeps groups. Stops, and reports it, at 20 million
+/// triangles or where an edge is too short to have a middle.
 pub fn refine_cut(
     solid: &mut BooleanSolid,
     edge: f64,
@@ -70,7 +70,7 @@ struct Refinement {
     groups: Option<Vec<u32>>,
     /// The triangle that each directed edge belongs to.
     edges: Map<(u32, u32), u32>,
-    /// Whether each vertex is on the cut.
+    /// True for each vertex on the cut.
     on_cut: Vec<bool>,
 }
 

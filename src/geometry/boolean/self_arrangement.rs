@@ -26,7 +26,7 @@ use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
 use crate::self_intersection;
 
-/// So many triangles may lie in the planes of others, however few there are.
+/// The number of coplanar triangles that is always allowed, however few triangles there are.
 const FEW_FLAT: usize = 64;
 
 /// A triangle that nothing cuts, or a cell of one.
@@ -34,13 +34,13 @@ struct SelfCell {
     triangle: u32,
     /// Its border and its holes; of a whole triangle none.
     loops: Vec<Vec<u32>>,
-    /// How often it counts: cells that lie on each other are one, those against it count less.
+    /// The multiplicity: coincident cells are one, and those with the opposite direction subtract.
     times: i32,
     /// Other triangles that have such a cell.
     also: Vec<u32>,
 }
 
-/// The surface over points of its own, cut at itself.
+/// The surface over separate points, cut at itself.
 struct SelfArrangement {
     points: PointSet,
     triangles: Vec<[u32; 3]>,
@@ -157,7 +157,7 @@ impl SelfArrangement {
         Ok(())
     }
 
-    /// Makes one cell of those that have the same border: the first of them.
+    /// Merges cells that have the same border into the first of them.
     fn join_coincident(&mut self, m: &Intersections) {
         let mut first: Map<Vec<u32>, usize> = Map::default();
         for i in 0..self.cells.len() {
@@ -245,8 +245,9 @@ impl SelfArrangement {
         Ok(part.into_iter().map(answer).collect())
     }
 
-    /// Whether a cell bounds the solid, by the winding number on both sides of a place in it: the
-    /// ray leaves on one side, and on the other the surface goes around once more, or once less.
+    /// Returns whether a cell bounds the solid, and its direction. It compares the winding numbers
+    /// on both sides of a place in the cell: the ray leaves on one side, and the other side differs
+    /// by one.
     fn bounds(&self, cell: &SelfCell, place: DVec3, reach: f64, tree: &SpanTree) -> Option<bool> {
         let far = Cell::new(place);
         let sum = crossings(place, reach, |end, visit| {

@@ -13,7 +13,7 @@ use super::planar::flatten;
 use super::points::{Map, PointSet};
 use crate::job::{Cancelled, Job};
 
-/// How often points are put on the lines beside them: each may bring others near.
+/// The number of rounds that snap points to nearby lines: each may bring other points near.
 const ROUNDS: usize = 4;
 
 /// A piece of the line in which two triangles meet.

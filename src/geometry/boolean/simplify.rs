@@ -19,7 +19,7 @@ use crate::triangulate;
 /// A face of a result that is a part of an operand's face.
 #[derive(Debug, Clone)]
 pub struct CutFace {
-    /// Where it comes from.
+    /// The face that it comes from.
     pub origin: FaceOrigin,
     /// Its corners, counter-clockwise seen from outside the result.
     pub corners: Vec<u32>,

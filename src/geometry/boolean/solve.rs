@@ -21,18 +21,18 @@ use crate::self_intersection;
 const PLACES: u32 = 1000;
 const FACES: usize = 300;
 
-/// A surface that crosses itself as the solid of all places that it goes around, counted with its
-/// direction: a shell that faces inwards takes away. The mesh must be closed. The result is
+/// Returns the solid of all places that a self-crossing surface winds around, counted with its
+/// direction: a shell that faces inwards subtracts. The mesh must be closed. The result is
 /// triangles that cross nothing.
 ///
-/// Where the shells all face outwards and each crosses others only, they are united one by one.
-/// Else, and where the tolerance would decide, the surface is arranged with itself. Where that does
-/// not fit together, the global engine rebuilds the whole, which takes up to a thousand times as
-/// long. Each is compared with the winding number of `mesh` at 1,000 places and beside 300 faces
-/// before it is given.
+/// If the shells all face outwards and each crosses only others, they are united one by one.
+/// Otherwise, and if the tolerance would decide, the surface is arranged with itself. If that is
+/// inconsistent, the global engine rebuilds the whole, which takes up to a thousand times as long.
+/// Each result is compared with the winding number of `mesh` at 1,000 places and beside 300 faces
+/// before it is returned.
 ///
 /// # Errors
-/// [`BooleanError::Inconsistent`] where neither gives a result that passes.
+/// Returns [`BooleanError::Inconsistent`] if neither gives a result that passes.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
     let parts = shells(mesh);
     let outwards = |m: &PolyMesh| super::emit::measure(m).0 > 0.0;
@@ -227,8 +227,8 @@ mod tests {
             let (made, origins) = arranged(&mesh, &Job::default()).expect("runs").expect("a solid");
             let facts = crate::check::report(&made, true, &Job::default()).expect("a report");
             assert!(facts.closed && facts.manifold && facts.self_intersections == Some(0));
-            // Nothing moved: each face lies in the plane of the face that it came from. That the
-            // solid is the right one, its winding number was compared for.
+            // Nothing moved: each face is in the plane of the face that it came from. The
+            // comparison of winding numbers shows that the solid is the right one.
             assert_eq!(origins.len(), made.face_count());
             for (face, origin) in made.faces().zip(&origins) {
                 let from = mesh.face(origin.face as usize);

@@ -13,7 +13,7 @@ use super::{
 use crate::PolyMesh;
 use crate::job::Job;
 
-/// What is asked for, once the operands are known to be good.
+/// A request, once the operands passed their checks.
 pub(super) struct BooleanTask<'a, N> {
     pub operands: [&'a PolyMesh; 2],
     pub volumes: [f64; 2],
@@ -50,7 +50,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
             };
             report.tolerance = eps;
             let contact = report.contact;
-            // What rounding alone does to a computed place is less.
+            // Rounding alone moves a computed place by less.
             let decided = contact.farthest > 2.0 * self.floor;
             report.depends_on_tolerance = decided || contact.near_misses > 0;
             if decided {
@@ -147,7 +147,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         report.phases.push(("global", now() - start));
         let start = now();
         let wrong = match doubt(&solids, volumes, 8.0 * floor, &operands[0].positions, report) {
-            // That engine takes places nearer than its own precision of 1e-12 as one.
+            // That engine merges places nearer than its precision of 1e-12.
             None => verify::results(operands, &solids, 512.0 * floor, job)?,
             why => why,
         };
@@ -270,7 +270,8 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
     }
 }
 
-/// What the volumes say against the results; `eps`: how far a surface may have moved.
+/// Returns the contradiction between the results' volumes, if any; `eps` is the distance that a
+/// surface may have moved.
 fn doubt(
     solids: &[BooleanSolid],
     [a, b]: [f64; 2],

@@ -1,5 +1,5 @@
-//! Results held against winding numbers of the operands: a face of a result lies on one operand,
-//! and is there only because of how often the other goes around it.
+//! Checks results against winding numbers of the operands: a face of a result is part of one
+//! operand, and is kept only because of its winding number in the other.
 
 use super::BooleanSolid;
 use super::box_tree::Span;
@@ -12,8 +12,8 @@ use crate::job::{Cancelled, Job};
 /// Faces of each result that are asked.
 const SAMPLES: usize = 1000;
 
-/// What is wrong with the results, by samples on their faces. Samples within four times `eps` of
-/// the other operand decide nothing.
+/// Returns what is wrong with the results, from samples on their faces. Samples within four times
+/// `eps` of the other operand are ignored.
 pub fn results(
     operands: [&PolyMesh; 2],
     solids: &[BooleanSolid],

@@ -19,13 +19,13 @@ const REINSERTION: f32 = 0.02;
 /// less.
 pub(super) const PAD: f32 = 1e-6;
 
-/// The boxes' area over the triangles' area from which on long slanted triangles are put into
-/// several boxes. Triangles of good shape have about 1.5, whichever way they lie.
+/// The ratio of the boxes' area to the triangles' area above which long slanted triangles are put
+/// into several boxes. Well-shaped triangles have about 1.5, in any orientation.
 const SLANTED: f32 = 6.0;
-/// How often the box of such a triangle is halved, at most.
+/// The greatest number of halvings of such a triangle's box.
 const HALVINGS: usize = 12;
-/// Boxes a triangle, over the whole mesh, from which on no more are made; the last halving may
-/// double them.
+/// The number of boxes per triangle, over the whole mesh, at which splitting stops; the last
+/// halving may double it.
 const MOST_BOXES: usize = 3;
 
 /// `several`: whether a triangle may be in several leaves.
@@ -99,10 +99,10 @@ pub(super) fn build(mesh: &TriMesh, several: bool, job: &Job) -> Result<Bvh8, Ca
 /// boxes' area.
 const PAIRED: f32 = 0.75;
 
-/// What lies in each of the boxes that a tree is built of.
+/// The triangles in each of the boxes that a tree is built from.
 struct BoxedTriangles {
     used: Vec<u32>,
-    /// Where each box's triangles start in `used`, and the end of the last; none: one a box.
+    /// The start of each box's triangles in `used`, and the end of the last; `None`: one per box.
     starts: Option<Vec<u32>>,
 }
 

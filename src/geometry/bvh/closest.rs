@@ -10,8 +10,8 @@ use glam::DVec3;
 use super::{Bvh8, LEAF, NO_TRIANGLE};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// Which part of a triangle holds the nearest point. `Edge(k)` runs from corner `k` to corner `k +
-/// 1`.
+/// The part of a triangle that holds the nearest point. `Edge(k)` runs from corner `k` to the next
+/// corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feature {
     /// The interior.
@@ -31,7 +31,7 @@ pub struct NearestPoint {
     pub point: DVec3,
     /// Index into the mesh's `triangles`.
     pub triangle: u32,
-    /// Which part of the triangle holds the point.
+    /// The part of the triangle that holds the point.
     pub feature: Feature,
 }
 
@@ -142,7 +142,7 @@ impl Bvh8 {
         wide::dispatch(self.scalar, NearestSearch { tree: self, p, within, corners })
     }
 
-    /// How far rounding to single precision may have moved a corner.
+    /// Returns the greatest error of a corner rounded to single precision.
     pub(crate) fn rounding(&self) -> f32 {
         let (lo, hi) = self.bounds;
         lo.abs().max(hi.abs()).max_element() * 1.2e-7
@@ -170,7 +170,7 @@ impl WideWork for NearestSearch<'_> {
     fn run<W: Wide>(self, wide: W) -> Option<NearestPoint> {
         let NearestSearch { tree, p: exact, within, corners } = self;
         let p = exact.as_vec3().to_array();
-        // What rounding the point itself may cost.
+        // The greatest error from rounding the point itself.
         let mut moved = p[0].abs().max(p[1].abs()).max(p[2].abs()) * 1.2e-7;
         if !corners.is_empty() {
             // And rounding the corners: that a triangle seems nearer, and that another seems

@@ -13,7 +13,7 @@ use obvhs::bvh2::Bvh2;
 const WIDTH: usize = 8;
 const LEAF_MAX: u32 = 4;
 
-/// What is best done with a binary node.
+/// The cheapest way to collapse a binary node.
 #[derive(Debug, Clone, Copy, Default)]
 struct CollapseChoice {
     /// The least cost with at most 1 to 7 roots.
@@ -111,7 +111,7 @@ impl<'a> CollapsePlan<'a> {
         self.choices[n].leaf
     }
 
-    /// The children of the wide node that `n` becomes, and how many.
+    /// Returns the children of the wide node that `n` becomes, and their number.
     pub fn children(&self, n: usize) -> ([usize; WIDTH], usize) {
         let (mut out, mut count) = ([0; WIDTH], 0);
         if self.is_leaf(n) {

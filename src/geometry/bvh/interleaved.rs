@@ -11,7 +11,7 @@ use crate::simd::wide::{Prepared, Wide, WideWork};
 pub(super) struct Interleaved<'a, A> {
     pub tree: &'a Bvh8,
     pub rays: &'a [Ray],
-    /// Which triangles ray `i` may hit.
+    /// The filter for the triangles that ray `i` may hit.
     pub accept: A,
     /// [`LANES`] times the tree's need.
     pub stack: &'a mut [StackEntry],

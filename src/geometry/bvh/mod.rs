@@ -61,8 +61,8 @@ impl Ray {
     }
 }
 
-/// Where a ray met a triangle: at `origin + t * dir`, and at `(1 - u - v) a + u b + v c` of its
-/// corners.
+/// The place where a ray hits a triangle: at `origin + t * dir`, and at `(1 - u - v) a + u b + v c`
+/// of its corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TreeHit {
     /// In lengths of the ray's `dir`.
@@ -75,8 +75,8 @@ pub struct TreeHit {
     pub v: f32,
 }
 
-/// The tree. It keeps its own copy of the corners, in the order in which rays meet them, and no
-/// reference to the mesh.
+/// The tree. It copies the corners, in the order in which rays meet them, and keeps no reference to
+/// the mesh.
 #[derive(Debug, Clone)]
 pub struct Bvh8 {
     nodes: Vec<WideNode>,
@@ -100,10 +100,10 @@ impl Bvh8 {
         build::build(mesh, false, job)
     }
 
-    /// The same for [`Self::closest_hit`] and its kin and nothing else: where many triangles are
-    /// long and slanted, as in parts that a modeller wrote, they are in several boxes and several
-    /// leaves each, which a ray through such a part is several times faster in. What tells of every
-    /// triangle, [`Self::each_hit`] and [`Self::packs`], tells of these more than once.
+    /// Builds a tree for [`Self::closest_hit`] and its variants only. Where many triangles are long
+    /// and slanted, as in parts from a modeller, they are in several boxes and several leaves each.
+    /// A ray through such a part is several times faster. [`Self::each_hit`] and [`Self::packs`]
+    /// report these triangles more than once.
     pub fn build_for_rays(mesh: &TriMesh, job: &Job) -> Result<Bvh8, Cancelled> {
         build::build(mesh, true, job)
     }
@@ -142,7 +142,7 @@ impl Bvh8 {
         self.stack
     }
 
-    /// Whether plain Rust was asked for, to be handed to [`wide::dispatch`].
+    /// Returns true if plain Rust was requested; for [`wide::dispatch`].
     pub fn scalar(&self) -> bool {
         self.scalar
     }
@@ -164,9 +164,10 @@ impl Bvh8 {
         wide::dispatch(self.scalar, traverse::ClosestHit { tree: self, ray: &ray, accept, stack })
     }
 
-    /// The nearest hit of each ray on a triangle that `accept` takes (it is told the ray's index);
-    /// `hits` becomes as long as `rays`. The same answers as [`Self::closest_hit`]; in a tree too
-    /// large for the caches a fifth faster, for there rays take turns.
+    /// Finds the nearest hit of each ray on a triangle that `accept` (called with the ray's index)
+    /// allows; resizes `hits` to the length of `rays`. Returns the same hits as
+    /// [`Self::closest_hit`]. In a tree too large for the caches it is a fifth faster, because rays
+    /// take turns.
     #[inline]
     pub fn closest_hits(
         &self,

@@ -6,7 +6,7 @@ use super::build::PAD;
 use super::{Bvh8, LEAF, NO_TRIANGLE};
 use crate::TriMesh;
 
-/// Where each triangle, leaf and node hangs; made once for a tree that is to follow its mesh.
+/// The parent of each triangle, leaf and node; made once for a tree that is to follow its mesh.
 #[derive(Debug, Clone)]
 pub struct Parents {
     /// Leaf of each triangle; `u32::MAX` where the triangle was left out.
@@ -46,8 +46,8 @@ impl Bvh8 {
         p
     }
 
-    /// Brings the tree up to date with the corners of `moved` triangles. Rays then answer as in a
-    /// tree built anew.
+    /// Updates the tree to the corners of `moved` triangles. Rays then return the same hits as in a
+    /// rebuilt tree.
     pub fn refit(&mut self, mesh: &TriMesh, moved: &[u32], parents: &mut Parents) {
         let mut leaves: Vec<u32> =
             moved.iter().map(|&t| parents.leaf_of[t as usize]).filter(|&l| l != u32::MAX).collect();

@@ -212,7 +212,7 @@ fn closest<W: Wide>(
 pub(super) struct OneByOne<'a, A> {
     pub tree: &'a Bvh8,
     pub rays: &'a [Ray],
-    /// Which triangles ray `i` may hit.
+    /// The filter for the triangles that ray `i` may hit.
     pub accept: A,
     pub stack: &'a mut [StackEntry],
     /// One for each ray.

@@ -17,7 +17,7 @@ use crate::bvh::{Bvh8, NearestPoint};
 use crate::job::{Cancelled, Job};
 pub use topology::Topology;
 
-/// How inside is told from outside.
+/// The method that separates inside from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sign {
     /// By the winding number: right on every closed mesh, also where shells overlap, and smooth
@@ -36,7 +36,7 @@ pub struct DistanceSolid {
     /// The tree over the triangles.
     pub tree: Bvh8,
     winding: Winding,
-    /// Which triangles meet at an edge, and the pseudonormals.
+    /// The triangles at each edge, and the pseudonormals.
     pub topology: Topology,
     sign: Sign,
     /// Corners of each triangle in double precision; empty: the tree's.
@@ -92,7 +92,7 @@ impl DistanceSolid {
         self
     }
 
-    /// How inside is told from outside.
+    /// Returns the method that separates inside from outside.
     pub fn sign(&self) -> Sign {
         self.sign
     }

@@ -25,7 +25,7 @@ pub struct Topology {
     pub vertex_normals: Vec<DVec3>,
     /// Every edge is passed as often one way as the other.
     pub closed: bool,
-    /// A vertex or an edge of a triangle without area has no pseudonormal of its own.
+    /// True for a vertex or an edge of a triangle without area, which has no valid pseudonormal.
     blunt: Vec<bool>,
 }
 

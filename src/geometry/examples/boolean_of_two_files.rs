@@ -60,7 +60,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     }
     let Some(solid) = solids.into_iter().next() else { return Err("no result".into()) };
     write_mesh(&out, &solid.mesh)?;
-    // What is told are the facts of the file, not of what was in memory.
+    // Prints the facts of the file, not of the mesh in memory.
     let written = check::report(&read_mesh(&out, &job)?.mesh, true, &job)?;
     println!(
         "{}: {} faces, volume {:?}, closed {}, {} crossing pairs",

@@ -1,9 +1,9 @@
 //! Signed distances near a surface only, refined block by block.
 //!
-//! What is sampled is any combination of signed distances that is itself no steeper than a
-//! distance: a value far from zero at the middle of a block settles the whole block. So the cost
-//! follows the surface, not the volume. Exact within one spacing of zero; further away only the
-//! sign is right, and the size is at least one spacing.
+//! The sampled function is any combination of signed distances with a slope of at most one: a value
+//! far from zero at the middle of a block settles the whole block. So the cost follows the surface,
+//! not the volume. Exact within one spacing of zero; further away only the sign is right, and the
+//! size is at least one spacing.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -17,7 +17,7 @@ use crate::job::{Cancelled, Job};
 /// Samples along a block's side.
 const BLOCK: usize = 8;
 
-/// What a parent knows of one solid at its middle.
+/// A parent's signed distance to one solid at its middle.
 #[derive(Clone, Copy)]
 struct KnownDistance {
     at: DVec3,

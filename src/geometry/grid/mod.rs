@@ -27,7 +27,7 @@ pub struct DistanceGrid {
 pub const MAX_SAMPLES: usize = 1 << 31;
 
 impl DistanceGrid {
-    /// Where the samples of a grid of `side` samples along the longest side lie: the box of the
+    /// Returns the layout of a grid with `side` samples along the longest side: the box of the
     /// mesh, `margin` samples wider on every side. `side` is at least 2 + 2 * `margin`.
     pub fn layout((lo, hi): (DVec3, DVec3), side: usize, margin: usize) -> DistanceGrid {
         let side = side.max(2 + 2 * margin);

@@ -12,7 +12,7 @@ use super::{DistanceGrid, MAX_SAMPLES};
 
 const MAGIC: &[u8] = b"\x93NUMPY\x01\x00";
 
-/// Why a file is no grid.
+/// The reason why a file is not a grid.
 #[derive(Debug, thiserror::Error)]
 pub enum NpyError {
     /// The file could not be read.
@@ -28,7 +28,7 @@ pub enum NpyError {
     Format {
         /// The file.
         path: String,
-        /// What was expected.
+        /// The expected format.
         expected: &'static str,
     },
 }

@@ -1,6 +1,6 @@
 //! The formats of mesh files.
 
-/// What a mesh file is, told by its content.
+/// The format of a mesh file, detected from its content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFormat {
     /// Wavefront OBJ.

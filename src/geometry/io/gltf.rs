@@ -550,7 +550,7 @@ struct AccessorValues<'a> {
     size: usize,
     /// Whole numbers stand for parts of 1.
     normalized: bool,
-    /// Values that stand in the place of those in `bytes`.
+    /// The sparse values, which replace those in `bytes`.
     sparse: BTreeMap<usize, [f64; 4]>,
 }
 

@@ -33,10 +33,10 @@ pub fn read_height_picture(bytes: &[u8], most: u64) -> Result<HeightPicture, Str
     Ok(HeightPicture { width, height, pixels })
 }
 
-/// Writes a PNG of 16 bits: of brightness alone where all is opaque, else with opacity.
+/// Encodes a PNG of 16 bits: of brightness alone if all pixels are opaque, else with opacity.
 ///
 /// # Errors
-/// Where the number of pixels is not that of the size, or is 0.
+/// Returns an error if the number of pixels does not match the size, or is 0.
 pub fn write_height_picture(picture: &HeightPicture) -> Result<Vec<u8>, String> {
     let HeightPicture { width, height, pixels } = picture;
     let wrong = || format!("{} pixels are not {width} x {height}", pixels.len());

@@ -1,10 +1,10 @@
 //! Mesh files: OBJ, STL, PLY, glTF/GLB, 3MF, OFF, in and out.
 //!
-//! A file is what its content says; the extension decides only where the content does not.
+//! The content decides the format of a file; the extension decides only if the content does not.
 //! Positions keep double precision and faces their corners, as far as the format has them. Counts
-//! in a file are held against its length before memory is taken for them; what may grow beyond it
-//! (3MF's packed parts, instances in glTF and 3MF) has a bound of its own. What is wrong is told
-//! with its line or byte where the format has one, what was expected and what was found.
+//! in a file are compared with its length before memory is allocated for them; data that may grow
+//! beyond it (3MF's packed parts, instances in glTF and 3MF) has a separate bound. Errors report
+//! the line or byte where the format has one, the expected and the found content.
 
 pub mod beside;
 mod format;
@@ -48,11 +48,11 @@ pub const MAX_FILE: u64 = 16 << 30;
 pub struct LoadedMesh {
     /// The mesh, with the file's coordinates as they stand.
     pub mesh: PolyMesh,
-    /// What the file turned out to be.
+    /// The format detected in the file.
     pub format: MeshFormat,
-    /// What was left out or guessed, one sentence each.
+    /// The data left out or guessed, one sentence each.
     pub warnings: Vec<String>,
-    /// Morph targets of the mesh, which stands without them; glTF only.
+    /// Morph targets, which are not applied to the mesh; glTF only.
     pub targets: Vec<MorphTarget>,
 }
 
@@ -151,7 +151,8 @@ fn extension(name: &Path) -> String {
     name.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// OBJ has no mark of its own: its first words are looked at where the extension says nothing.
+/// Returns true if the text looks like OBJ, which has no signature: checks its first word if the
+/// extension does not decide.
 fn looks_obj(text: &[u8]) -> bool {
     let word = text::TextCursor::new(&text[..text.len().min(1 << 16)]).word_anywhere(true);
     matches!(word, Some(b"v" | b"o" | b"g" | b"mtllib" | b"usemtl" | b"vn" | b"vt"))

@@ -7,9 +7,9 @@ use glam::{DVec3, Vec3};
 pub struct MorphTarget {
     /// For people.
     pub name: String,
-    /// What its offsets are multiplied by.
+    /// The factor of its offsets.
     pub weight: f32,
-    /// Whether it is applied; one that is not has the weight 0 in a file and its own beside it.
+    /// True if it is applied; otherwise a file stores the weight 0, and this weight beside it.
     pub visible: bool,
     /// Numbers of vertices, ascending, each with its offset in the frame of the mesh.
     pub offsets: Vec<(u32, Vec3)>,
@@ -25,7 +25,7 @@ impl MorphTarget {
 /// A mesh without its morph targets, and these.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MorphedMesh {
-    /// Where the vertices are without any target.
+    /// The positions of the vertices without any target.
     pub base: Vec<DVec3>,
     /// The targets, in order.
     pub targets: Vec<MorphTarget>,

@@ -21,8 +21,8 @@ use crate::{FaceAttributes, GroupName, PolyMesh};
 /// Large enough that a piece's start-up costs nothing, small enough that two cores end together.
 const PIECE: usize = 1 << 20;
 
-/// What one piece of the file holds. Corners count from the whole file's first vertex if positive
-/// (from 1), else from the piece's own first vertex: `RELATIVE + n`.
+/// The content of one piece of the file. Corners count from the whole file's first vertex if
+/// positive (from 1), else from the piece's first vertex: `RELATIVE + n`.
 #[derive(Default)]
 struct ObjPiece {
     positions: Vec<DVec3>,
@@ -38,7 +38,7 @@ struct ObjPiece {
     names: Vec<(u32, u8, String)>,
     libraries: Vec<String>,
     short_faces: u64,
-    /// Texture coordinates with a third number other than 0, and those that are no numbers.
+    /// Texture coordinates with a third number other than 0, and ones that are not numbers.
     deep_uvs: u64,
     bad_uvs: u64,
     free_form: u64,
@@ -283,7 +283,7 @@ fn rest_of_line(cursor: &mut TextCursor) -> String {
     String::from_utf8_lossy(&name).trim_end().to_string()
 }
 
-/// A texture coordinate. It moves nothing, so what is wrong with one is counted and told.
+/// A texture coordinate. It moves nothing, so invalid ones are counted and reported.
 fn texture(cursor: &mut TextCursor, out: &mut ObjPiece) {
     let mut values = [0f64; 3];
     let mut good = true;
@@ -448,7 +448,7 @@ struct ObjGroups {
 }
 
 impl ObjGroups {
-    /// What each group is called, by its number. Those that say the number alone are none.
+    /// Returns the name of each group, by its number; empty if the names only repeat the numbers.
     fn names(&self) -> Vec<GroupName> {
         let number = |(names, id): (&[String; 3], &u32)| {
             names[0].is_empty() && names[1] == format!("group_{id}") && names[2].is_empty()

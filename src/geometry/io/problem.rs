@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh file, told so that a person finds the place.
+//! Errors of mesh files, with the place of each.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -16,14 +16,14 @@ pub enum FilePlace {
     File,
 }
 
-/// Where a file is not what it claims, what the format wants there, and what there is.
+/// A place where a file violates its format, the expected and the found content.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileProblem {
     /// The place.
     pub at: FilePlace,
-    /// What the format wants there.
+    /// The expected content.
     pub expected: Cow<'static, str>,
-    /// What there is.
+    /// The found content.
     pub found: Cow<'static, str>,
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for FileProblem {
     }
 }
 
-/// Why [`super::parse`] stopped.
+/// The reason why [`super::parse`] stopped.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ParseError {
     /// The bytes are not what they claim.
@@ -69,7 +69,7 @@ impl From<crate::job::Cancelled> for ParseError {
     }
 }
 
-/// Why [`super::read_mesh`] gave no mesh. Nothing was changed.
+/// The reason why [`super::read_mesh`] returned no mesh. Nothing was changed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened or read.
@@ -85,7 +85,7 @@ pub enum ReadError {
     Format {
         /// The file.
         path: PathBuf,
-        /// Where and what.
+        /// The place and the problem.
         problem: FileProblem,
     },
     /// The job was cancelled.
@@ -96,8 +96,8 @@ pub enum ReadError {
     },
 }
 
-/// Why [`super::write_mesh`] wrote nothing. A file that stood at the path still stands there,
-/// whole.
+/// The reason why [`super::write_mesh`] wrote nothing. An existing file at the path stays
+/// unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The file could not be written.

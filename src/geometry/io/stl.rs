@@ -24,7 +24,7 @@ pub(super) fn binary_count(bytes: &[u8]) -> Option<u64> {
     Some(u32::from_le_bytes(bytes.get(80..HEAD)?.try_into().ok()?) as u64)
 }
 
-/// Whether the length is exactly what a binary file's count says.
+/// Returns true if the length matches a binary file's count exactly.
 pub(super) fn binary_exact(bytes: &[u8]) -> bool {
     binary_count(bytes).is_some_and(|n| HEAD as u64 + n * RECORD as u64 == bytes.len() as u64)
 }

@@ -85,8 +85,8 @@ pub(super) fn integer(token: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// What is wrong with a coordinate, if anything. It must have room in single precision, the clay's
-/// own. (Real files hold boxes of 3.4e38 a side, meant as half spaces.)
+/// Returns what is wrong with a coordinate, if anything. It must fit single precision, which clay
+/// uses. (Real files hold boxes of 3.4e38 a side, meant as half spaces.)
 #[inline]
 pub(super) fn refuse(value: f64) -> Option<&'static str> {
     if (value as f32).is_finite() {
@@ -132,7 +132,8 @@ impl<'a> TextCursor<'a> {
         Some(&self.text[start..self.at])
     }
 
-    /// The next word on this line or a later one; `#` starts a comment where `comments` says so.
+    /// Returns the next word on this line or a later one; `#` starts a comment if `comments` is
+    /// set.
     #[inline]
     pub(super) fn word_anywhere(&mut self, comments: bool) -> Option<&'a [u8]> {
         loop {

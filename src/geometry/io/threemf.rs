@@ -18,7 +18,7 @@ use super::text::{float, integer, refuse};
 use crate::job::Job;
 use crate::{PolyMesh, repair};
 
-/// Where a part's path and an object's number name an object.
+/// The name of an object: its part's path and its number.
 type PartName = (String, i64);
 
 #[derive(Default)]

@@ -48,7 +48,7 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
     }
 }
 
-/// What of `mesh` a file of the ending `kind` does not hold, one sentence each.
+/// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.
 pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     let mut out = Vec::new();
     if mesh.colours.is_some() && matches!(kind, "stl" | "3mf") {
@@ -120,8 +120,8 @@ fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// What begins a group: the names that differ from those in force. A name that ends while others go
-/// on is the format's own word for none.
+/// Writes the lines that begin a group: the names that changed. If a name ends while others
+/// continue, writes the format's word for none.
 fn group_lines(
     line: &mut Vec<u8>,
     number: u32,

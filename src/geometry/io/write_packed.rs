@@ -15,9 +15,9 @@ pub(super) struct GltfMesh<'a> {
     pub mesh: &'a PolyMesh,
     /// The name of its node.
     pub name: Option<&'a str>,
-    /// Its base and its morph targets, in the place of its positions.
+    /// Its base and its morph targets, which replace its positions.
     pub morphed: Option<&'a MorphedMesh>,
-    /// Shift, turn and scale of its node; `None`: it stands where it is.
+    /// Shift, turn and scale of its node; `None` for no transform.
     pub place: Option<(DVec3, DQuat, f64)>,
 }
 
@@ -90,7 +90,7 @@ fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
             morphs.push(json!({"POSITION": accessors.len()}));
             let zero = (glam::Vec3::ZERO, glam::Vec3::ZERO);
             let mut bounds = target.offsets.iter().map(|o| (o.1, o.1));
-            // Where every vertex has an offset, 0 is not among them.
+            // If every vertex has an offset, 0 is not among them.
             let first =
                 bounds.next().filter(|_| target.offsets.len() == points.len()).unwrap_or(zero);
             let offsets = target.offsets.iter().map(|o| o.1);

@@ -19,9 +19,9 @@ pub struct SceneMesh {
     pub name: String,
     /// In its own frame.
     pub mesh: PolyMesh,
-    /// Where its origin is.
+    /// The position of its origin.
     pub shift: DVec3,
-    /// How it is turned; unit length.
+    /// Its rotation; unit length.
     pub turn: DQuat,
     /// World units for a unit of the mesh, > 0.
     pub scale: f64,
@@ -46,20 +46,20 @@ impl SceneMesh {
     }
 }
 
-/// Writes several meshes in the format that the extension of `path` names, whole or not at all, and
-/// says what of them the file does not hold, one sentence each. glTF keeps each as a node with its
-/// name and its transform, 3MF as a component of one object; every other format gets one mesh, in
-/// which the transforms are applied, the meshes one after the other, and in OBJ each has its name.
+/// Writes several meshes in the format that the extension of `path` names, whole or not at all.
+/// Returns the parts that the file does not hold, one sentence each. glTF keeps each mesh as a node
+/// with its name and its transform, 3MF as a component of one object. Every other format gets one
+/// mesh with the transforms applied, the meshes one after the other; in OBJ each has its name.
 ///
 /// # Errors
-/// An extension that no format has, and what the disk does not take.
+/// Returns an error if no format has the extension, or the file cannot be written.
 pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<Vec<String>, WriteError> {
     let kind = writable_format(path)?;
     encode_scene(path, kind, meshes)?;
     Ok(scene_left_out(kind, meshes))
 }
 
-/// What of the meshes a file of the ending `kind` does not hold.
+/// Returns the parts of the meshes that a file of the ending `kind` does not hold.
 fn scene_left_out(kind: &str, meshes: &[SceneMesh]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for text in meshes.iter().flat_map(|m| left_out(kind, &m.mesh)) {
@@ -115,8 +115,8 @@ fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), Wri
     }
 }
 
-/// All meshes as one, in the world. Where there are several, each has its name and its own groups.
-/// Colours stay where any mesh has them; the others are white.
+/// Returns all meshes as one, in world coordinates. Each of several meshes has its name and
+/// separate groups. Colours stay if any mesh has them; the others are white.
 pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
     let mut all = PolyMesh::new();
     let coloured = meshes.iter().any(|m| m.mesh.colours.is_some());
@@ -168,7 +168,7 @@ pub fn merged(meshes: &[SceneMesh]) -> PolyMesh {
     all
 }
 
-/// The groups of one mesh of several: its name as the object, and its own groups within it.
+/// Returns the groups of one mesh of several: its name as the object, and its groups within it.
 fn named_groups(part: &SceneMesh) -> Vec<GroupName> {
     let own = part.mesh.groups.as_ref().and_then(|g| g.iter().max());
     let count = own.map_or(1, |most| most + 1);

@@ -1,11 +1,11 @@
 //! Orthographic projection of a solid: its shadow's outline and area, by three methods.
 //!
-//! *Exact*: the silhouette edges resolved into polygons, right to about 1e-14 of the extent,
-//! or to the bound that it states where edges nearly coincide.
-//! *Sample*: random points of the plane, told inside from outside by rays; the area has the
-//! standard error of a binomial share, the outline is the points' alpha shape. *March*: the same
-//! with rays through a sampled distance; those that pass nearer to the surface than the samples are
-//! exact are decided by the mesh, so that the stated error is the points' alone.
+//! *Exact*: the silhouette edges resolved into polygons, right to about 1e-14 of the extent, or to
+//! the bound that it states where edges nearly coincide. *Sample*: random points of the plane,
+//! classified as inside or outside by rays; the area has the standard error of a binomial share,
+//! the outline is the points' alpha shape. *March*: the same with rays through a sampled distance;
+//! the mesh decides rays that come closer to the surface than the samples' error, so that the
+//! stated error is the points' alone.
 
 mod draw;
 
@@ -24,7 +24,7 @@ pub use draw::{png, svg};
 /// Points of one task.
 const CHUNK: usize = 512;
 
-/// What is asked of each random point.
+/// The test for each random point.
 #[derive(Debug, Clone, Copy)]
 pub enum PointTest<'a> {
     /// The mesh, by its tree.

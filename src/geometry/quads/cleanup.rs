@@ -18,7 +18,7 @@ fn excess(s: &QuadSurface, v: u32, faces: usize) -> i64 {
     by * by
 }
 
-/// One pass of every operation; how many were done.
+/// Runs one pass of every operation; returns the number of operations.
 pub(super) fn pass(s: &mut QuadSurface, job: &Job) -> Result<usize, Cancelled> {
     let mut done = 0;
     for v in 0..s.positions.len() as u32 {
@@ -70,7 +70,7 @@ fn close_best(s: &mut QuadSurface, f: u32) -> bool {
     false
 }
 
-/// Whether no face around turns over when `a` and `c` meet at `to`.
+/// Returns true if no face around turns over when `a` and `c` meet at `to`.
 fn closes_upright(s: &QuadSurface, f: u32, a: u32, c: u32, to: DVec3) -> bool {
     let up = (s.vertex_normal(a) + s.vertex_normal(c)).normalize_or_zero();
     s.around[a as usize].iter().chain(&s.around[c as usize]).filter(|&&g| g != f).all(|&g| {
@@ -134,7 +134,7 @@ pub(super) fn mend_folded(s: &mut QuadSurface) -> usize {
     done
 }
 
-/// How well a face with these corners is shaped, 1 at best, 0 or below where it is folded.
+/// Returns the quality of a face with these corners: 1 at best, 0 or below if it is folded.
 fn shape_of(s: &QuadSurface, face: [u32; 4], up: DVec3) -> f64 {
     let at = |v: u32| s.positions[v as usize];
     if face[3] != GONE {
@@ -192,8 +192,8 @@ struct FaceRecut {
     two: Option<[u32; 4]>,
 }
 
-/// Cuts the faces at an edge of `f` anew, so that the worse of them becomes better; two triangles
-/// may become one quad.
+/// Recuts the faces at an edge of `f`, so that the worse of them improves; two triangles may become
+/// one quad.
 fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
     let mut best: Option<FaceRecut> = None;
     for k in 0..corners(&s.faces[f as usize]).len() {
@@ -234,7 +234,7 @@ fn turn_folded(s: &mut QuadSurface, f: u32) -> bool {
     true
 }
 
-/// Cuts the quads that are reflex or folded into triangles; how many.
+/// Cuts the quads that are reflex or folded into triangles; returns their number.
 pub(super) fn cut_folded(s: &mut QuadSurface) -> usize {
     let mut cut = 0;
     for f in 0..s.faces.len() as u32 {

@@ -8,7 +8,7 @@ use crate::portable::PortableMath;
 
 /// Lines that turn by more than this cosine end at the turn: 50 degrees.
 const TURN: f64 = 0.642_787_609_686_539_3;
-/// Creases that hang together for less than so many sides of a quad are noise.
+/// Connected creases shorter than this many sides of a quad are noise.
 const SHORTEST: f64 = 4.0;
 /// Ends of creases shorter than this, in sides of a quad, are cut off.
 const SPUR: f64 = 1.5;
@@ -89,7 +89,7 @@ pub(super) fn number_chains(s: &mut EditSurface) -> Vec<Vec<[u32; 2]>> {
             }
         }
     }
-    // What is left are loops without a pinned vertex.
+    // The remaining lines are loops without a pinned vertex.
     for v in 0..s.positions.len() as u32 {
         if let [first, _] = s.lines[v as usize][..]
             && !s.pinned[v as usize]

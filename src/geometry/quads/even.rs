@@ -94,7 +94,7 @@ pub(super) fn collapse_short(
     Ok(())
 }
 
-/// Whether merging both vertices at `to` keeps edges short and triangles upright.
+/// Returns true if merging both vertices at `to` keeps edges short and triangles upright.
 fn fits(s: &EditSurface, keep: u32, gone: u32, to: DVec3, long: f64) -> bool {
     for (v, other) in [(keep, gone), (gone, keep)] {
         for &t in &s.around[v as usize] {

@@ -6,7 +6,7 @@ use super::hierarchy::{FieldHold, FieldLevel};
 use super::input::QuadInput;
 use super::target::ProjectionTarget;
 
-/// How far from a guide its direction holds, in sides of a quad.
+/// The distance from a guide within which its direction applies, in sides of a quad.
 const REACH: f64 = 0.5;
 
 /// Sets the direction of the vertices near the guides. Lines and pinned vertices keep theirs.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::surface::EditSurface;
 
-/// Where a field is given. A level's fields are arrays beside it.
+/// The vertices on which a field is given. A level's fields are separate arrays.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FieldLevel {
     pub positions: Vec<DVec3>,
@@ -20,21 +20,21 @@ pub(super) struct FieldLevel {
     pub parent: Vec<u32>,
     /// The direction that the orientation has to follow, of unit length, or zero.
     pub along: Vec<DVec3>,
-    /// Whether the lattice has to pass through the vertex: across `along`, or both ways.
+    /// The constraint of each vertex on the lattice: none, a line along `along`, or a point.
     pub hold: Vec<FieldHold>,
     /// The vertices by colour: no two of a colour are neighbours, so that they can be updated at
     /// the same time.
     pub colours: Vec<Vec<u32>>,
 }
 
-/// What a vertex asks of the position field.
+/// The constraint of a vertex on the position field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum FieldHold {
     #[default]
     Free,
     /// A lattice line passes through the vertex along its direction.
     Line,
-    /// A lattice point lies on the vertex.
+    /// A lattice point coincides with the vertex.
     Point,
 }
 

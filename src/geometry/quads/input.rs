@@ -1,5 +1,5 @@
-//! From a mesh file to a manifold surface in a frame of its own: the middle of the box at the
-//! origin, the wanted side of a quad as the unit.
+//! Converts a mesh file to a manifold surface in a local frame: the middle of the box is the
+//! origin, the target side of a quad is the unit.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ pub(super) struct QuadInput {
     pub mesh: TriMesh,
     /// The segments of each chain of lines, as triangles without area.
     pub chains: Vec<TriMesh>,
-    /// What was changed to make a manifold of the input.
+    /// The changes that made the input a manifold.
     pub warnings: Vec<String>,
 }
 
@@ -125,7 +125,7 @@ fn edge_faults(mesh: &PolyMesh) -> (usize, usize) {
     (bad, turned)
 }
 
-/// Gives each fan of triangles at a vertex a vertex of its own; returns how many were added.
+/// Gives each fan of triangles at a vertex a separate vertex; returns the number of vertices added.
 fn split_fans(positions: &mut Vec<DVec3>, triangles: &mut [[u32; 3]]) -> usize {
     let before = positions.len();
     let mut around = vec![Vec::new(); before];

@@ -20,7 +20,7 @@ const ROUNDS: usize = 6;
 fn offset(a: &LatticeFrame, b: &LatticeFrame, step: f64) -> [f64; 2] {
     let (i, j) = closest_points(a, b, step);
     let (p, q) = closest_pair(a.along, a.normal, b.along, b.normal);
-    // How often the cross of `b` is turned to `a`'s.
+    // The rotation from the cross of `b` to `a`'s.
     let own = [a.along, a.normal.cross(a.along)];
     let other = [b.along, b.normal.cross(b.along)];
     let mut turned = [0.0; 2];
@@ -36,7 +36,7 @@ fn offset(a: &LatticeFrame, b: &LatticeFrame, step: f64) -> [f64; 2] {
     [i[0] - turned[0], i[1] - turned[1]].map(f64::round)
 }
 
-/// Collapses the fine surface to one vertex a lattice point; vertices lie on the lattice points.
+/// Collapses the fine surface to one vertex per lattice point; vertices end on the lattice points.
 pub(super) fn collapse_to_lattice(
     s: &mut EditSurface,
     frames: &[LatticeFrame],
@@ -51,7 +51,7 @@ pub(super) fn collapse_to_lattice(
         }
     }
     same.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    // Sum of lattice points and how many, by vertex that stays.
+    // The sum and the number of lattice points, by vertex that stays.
     let mut sums: Vec<(DVec3, f64)> = frames.iter().map(|f| (f.origin, 1.0)).collect();
     let mut home: Vec<u32> = (0..frames.len() as u32).collect();
     for _ in 0..ROUNDS {

@@ -23,7 +23,7 @@ pub struct QuadMetrics {
     pub least_angle: Option<f64>,
     /// The greatest angle of a quad, in degrees.
     pub greatest_angle: Option<f64>,
-    /// By how much the angles of the quads differ from 90 degrees in the mean.
+    /// The mean deviation of the quads' angles from 90 degrees.
     pub mean_deviation: Option<f64>,
     /// The share of the vertices with four faces, or with two on a border, 0 to 1.
     pub regular: f64,

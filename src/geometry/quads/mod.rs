@@ -1,18 +1,18 @@
 //! Field-aligned quad remeshing: a mesh of quads of even size that follow the shape, its creases
 //! and borders, and strokes drawn as guides.
 //!
-//! The road, one module a stage:
+//! The stages, one module each:
 //!
 //! 1. `input`: triangles, welded and manifold, in a frame whose unit is the side of a quad.
 //! 2. `even`: even triangles of two fifths of that side.
 //! 3. `orientation`, `position`: the fields of Jakob et al., "Instant Field-Aligned Meshes"
 //!    (2015), on the levels of `hierarchy`.
-//! 4. `lattice`: the triangles of one lattice point are drawn together by edge collapses. Other
-//!    than the greedy extraction of the paper this keeps a closed manifold closed and manifold,
-//!    with the same genus, whatever the fields say.
+//! 4. `lattice`: the triangles of one lattice point are merged by edge collapses. Unlike the greedy
+//!    extraction of the paper this keeps a closed manifold closed and manifold, with the same
+//!    genus, whatever the fields are.
 //! 5. `pairing`: triangles are joined to quads by a maximum matching.
-//! 6. `cleanup`, `smooth`, `reach`: irregular vertices are removed, quads are made square,
-//!    vertices lie on the input surface and on its tips.
+//! 6. `cleanup`, `smooth`, `reach`: irregular vertices are removed, quads are made square, and
+//!    vertices are projected onto the input surface and its tips.
 //!
 //! Guaranteed: closed input gives a closed manifold of the same genus; creases and borders are
 //! chains of edges of the result and their corners stay; the same bits with any number of threads.
@@ -57,14 +57,15 @@ pub const LEAST_QUADS: usize = 6;
 /// The most quads that can be asked for.
 pub const MOST_QUADS: usize = 1_000_000;
 
-/// What the new mesh is like.
+/// The settings of the new mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct QuadSettings {
-    /// About how many quads, [`LEAST_QUADS`] to [`MOST_QUADS`].
+    /// The approximate number of quads, [`LEAST_QUADS`] to [`MOST_QUADS`].
     pub quads: usize,
-    /// Edges whose faces turn by more than this many degrees, 0 to 180, are kept; `None`: none.
+    /// Edges whose faces turn by more than this angle, in degrees, 0 to 180, are kept; `None`:
+    /// none.
     pub creases: Option<f64>,
-    /// Polylines on the surface, in the mesh's unit, that the edges of the quads shall follow.
+    /// Polylines on the surface, in the mesh's unit, that the edges of the quads follow.
     pub guides: Vec<Vec<DVec3>>,
 }
 
@@ -73,11 +74,11 @@ pub struct QuadSettings {
 pub struct QuadMesh {
     /// Quads, and triangles where there had to be some.
     pub mesh: PolyMesh,
-    /// What was changed in the input first.
+    /// The changes made to the input first.
     pub warnings: Vec<String>,
 }
 
-/// Why there is no quad mesh.
+/// The reason why there is no quad mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum QuadError {
     /// The job was cancelled.
@@ -86,7 +87,7 @@ pub enum QuadError {
     /// A coordinate is not a number.
     #[error("expected finite coordinates, found others")]
     NotFinite,
-    /// Nothing with an area.
+    /// The mesh has no area.
     #[error("expected a surface with an area, found none")]
     Empty,
     /// Edges of more than two faces.
@@ -105,9 +106,9 @@ pub enum QuadError {
 
 /// The length of the even triangles' edges, in sides of a quad.
 const FINE: f64 = 0.4;
-/// How often the size is corrected to meet the number of quads.
+/// The number of size corrections that approach the number of quads.
 const SIZES: usize = 3;
-/// The number of quads is met to this share.
+/// The accepted relative error of the number of quads.
 const NEAR_ENOUGH: f64 = 0.05;
 
 /// A quad mesh of the surface `mesh`, which may be open and of several parts.
@@ -180,7 +181,7 @@ fn at_step(
     if cleanup::cut_folded(&mut quads) > 0 {
         smooth::smooth(&mut quads, target, step, 4, job)?;
     }
-    // What was pulled out stays while the others follow.
+    // Vertices moved to the tips stay while the others follow.
     let pulled = reach::reach_out(&mut quads, input, step, job)?;
     pulled.iter().for_each(|&v| quads.pinned[v as usize] = true);
     smooth::smooth(&mut quads, target, step, 3, job)?;

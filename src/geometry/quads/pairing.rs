@@ -13,8 +13,8 @@ use crate::job::{Cancelled, Job};
 /// Triangles that one search for a partner looks at, at most.
 const SEARCH: usize = 6000;
 
-/// How square the quad with these corners is: 1 for right angles, 0 where a corner is straight or
-/// folded away, below 0 where it is reflex or turned against `up`, which has unit length.
+/// Returns the squareness of the quad with these corners: 1 for right angles, 0 if a corner is
+/// straight or degenerate, below 0 if it is reflex or turned against `up`, which has unit length.
 pub(super) fn squareness(corners: [DVec3; 4], up: DVec3) -> f64 {
     let mut worst = 1.0f64;
     for k in 0..4 {
@@ -60,7 +60,7 @@ pub(super) fn pair(s: &EditSurface, job: &Job) -> Result<Vec<u32>, Cancelled> {
     Ok(search.partner)
 }
 
-/// How good the quad across the edge would be.
+/// Returns the quality of the quad across the edge.
 fn score(s: &EditSurface, t: u32, u: u32, a: u32, b: u32) -> f64 {
     let up = (s.normal(t) + s.normal(u)).normalize_or_zero();
     let tri = s.triangles[t as usize];

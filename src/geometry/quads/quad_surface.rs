@@ -18,7 +18,7 @@ pub(super) struct QuadSurface {
     pub pinned: Vec<bool>,
     /// The chain of lines of each vertex.
     pub chain: Vec<u32>,
-    /// Whether the vertex lies on the border.
+    /// True for each vertex on the border.
     pub border: Vec<bool>,
 }
 
@@ -121,7 +121,7 @@ impl QuadSurface {
         true
     }
 
-    /// Whether quad `f` may be closed by merging its corner `k + 2` into corner `k`.
+    /// Returns true if quad `f` may be closed by merging its corner `k + 2` into corner `k`.
     pub fn can_close(&self, f: u32, k: usize) -> bool {
         let face = self.faces[f as usize];
         if face[3] == GONE {
@@ -219,7 +219,7 @@ impl QuadSurface {
         }
     }
 
-    /// Whether an edge runs between two vertices.
+    /// Returns true if an edge joins two vertices.
     pub fn joined(&self, a: u32, b: u32) -> bool {
         self.neighbours(a).binary_search(&b).is_ok()
     }

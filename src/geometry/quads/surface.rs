@@ -14,7 +14,7 @@ use glam::DVec3;
 
 /// Marks a triangle that is gone.
 pub(super) const GONE: u32 = u32::MAX;
-/// A closed part keeps so many vertices: those of a cube.
+/// The number of vertices that a closed part keeps: those of a cube.
 pub(super) const LEAST_PART: u32 = 8;
 
 /// An editable manifold triangle surface.
@@ -69,7 +69,7 @@ impl EditSurface {
         self.lines[a as usize].contains(&b)
     }
 
-    /// What holds a vertex: 0 nothing, 1 a line, 2 its place.
+    /// Returns the constraint of a vertex: 0 none, 1 a line, 2 its position.
     pub fn rank(&self, v: u32) -> u8 {
         if self.pinned[v as usize] { 2 } else { u8::from(!self.lines[v as usize].is_empty()) }
     }
@@ -321,7 +321,7 @@ impl EditSurface {
         }
     }
 
-    /// Numbers vertices and triangles anew, without those that are gone.
+    /// Returns the surface with vertices and triangles renumbered, without the removed ones.
     pub fn compact(&self) -> EditSurface {
         let mut new = vec![GONE; self.positions.len()];
         let mut positions = Vec::new();

@@ -11,7 +11,7 @@ fn remeshed(mesh: &PolyMesh, quads: usize, creases: Option<f64>) -> (PolyMesh, Q
     (out, metrics)
 }
 
-/// Whether there is such an angle, and it is at most so many degrees.
+/// Returns true if there is such an angle, of at most this many degrees.
 fn at_most(angle: Option<f64>, degrees: f64) -> bool {
     angle.is_some_and(|a| a <= degrees)
 }
@@ -27,7 +27,8 @@ fn facts(mesh: &PolyMesh) -> MeshReport {
     report(mesh, true, &Job::default()).unwrap()
 }
 
-/// Closed, manifold and oriented, with these handles, nearly all quads, and about so many.
+/// Checks for a closed, manifold, oriented mesh with these handles, nearly all quads, and about
+/// this many of them.
 fn sound(mesh: &PolyMesh, metrics: &QuadMetrics, genus: i64, quads: usize) {
     let r = facts(mesh);
     assert!(r.closed && r.manifold && r.oriented && r.unused_vertices == 0, "{r:?}");
@@ -75,7 +76,7 @@ fn a_box_with_creases_is_a_box() {
     let cuboid = shapes::cuboid(DVec3::ZERO, DVec3::new(3.0, 2.0, 1.0));
     let (mesh, f) = remeshed(&cuboid, 600, Some(30.0));
     sound(&mesh, &f, 0, 600);
-    // The corners are kept, every vertex lies on a face, and the volume is that of the box.
+    // The corners are kept, every vertex is on a face, and the volume is that of the box.
     for corner in &cuboid.positions {
         assert!(mesh.positions.iter().any(|p| p.distance(*corner) < 1e-6));
     }
@@ -231,14 +232,13 @@ fn faces_that_disagree_are_turned_and_a_touching_vertex_is_split() {
 
 #[test]
 fn a_guide_turns_the_quads() {
-    // A round plate has no direction of its own but at its rim; a chord across the middle gives
-    // it one.
+    // A round plate gives no direction except at its rim; a chord across the middle gives it one.
     let mut plate = shapes::grid(20.0, 20.0, 20, 20);
     let angle = 0.4f64;
     let along = DVec3::new(angle.cos(), angle.sin(), 0.0);
     plate.positions.iter_mut().for_each(|p| p.z = -0.001 * p.length_squared());
     let guide = vec![along * -4.0, along * 4.0];
-    // How far the edges in the middle are from the guide's cross, in degrees.
+    // The deviation of the edges in the middle from the guide's cross, in degrees.
     let off = |guides: Vec<Vec<DVec3>>| {
         let settings = QuadSettings { quads: 1600, creases: None, guides };
         let out = quad_remesh(&plate, &settings, &Job::default()).unwrap().mesh;

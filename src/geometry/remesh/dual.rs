@@ -33,7 +33,7 @@ fn ends(e: usize) -> (usize, usize) {
     (from, from | 1 << axis)
 }
 
-/// For one pattern of inside corners: each edge's patch, and how many there are.
+/// For one pattern of inside corners: each edge's patch, and the number of patches.
 #[derive(Clone, Copy)]
 struct CellPattern {
     patch: [u8; 12],
@@ -113,7 +113,7 @@ impl CrossedCells<'_> {
         [1, self.grid.size[0], self.grid.size[0] * self.grid.size[1]][axis]
     }
 
-    /// Where edge `e` of cell `at` is crossed.
+    /// Returns the point where edge `e` of cell `at` is crossed.
     fn crossing_point(&self, at: usize, e: usize) -> DVec3 {
         let [nx, ny, _] = self.grid.size;
         let (a, b) = ends(e);

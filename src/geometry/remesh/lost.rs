@@ -12,7 +12,7 @@ use crate::distance::DistanceSolid;
 
 /// Cells along the longest side at most: the marks then take 17 MB.
 const MOST_CELLS: f64 = 510.0;
-/// A sample is taken for inside where a point so many voxels outside its triangle is.
+/// A sample counts as inside if a point this many voxels outside its triangle is inside.
 const OUTSIDE: f64 = 0.05;
 
 /// Parts of the old surface that are further than a voxel from the new one.
@@ -67,7 +67,7 @@ impl Marks {
     }
 }
 
-/// Returns what of `old`, from which `solid` was built, the new vertices are nowhere near.
+/// Returns the parts of `old`, from which `solid` was built, that are far from all new vertices.
 pub(super) fn lost_parts(
     old: &TriMesh,
     solid: &DistanceSolid,

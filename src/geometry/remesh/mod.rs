@@ -20,13 +20,13 @@ pub use lost::LostParts;
 use lost::lost_parts;
 use untangle::{CalmPlaces, untangle};
 
-/// How fine the new mesh is, and whether edges stay sharp.
+/// The resolution of the new mesh, and the treatment of sharp edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RemeshSettings {
     /// Samples along the longest side of the box, 8 to 1024.
     pub side: usize,
-    /// Vertices at the meeting point of the faces around (Ju et al., "Dual contouring of Hermite
-    /// data", 2002) instead of in their middle.
+    /// True to place vertices at the meeting point of the faces around (Ju et al., "Dual contouring
+    /// of Hermite data", 2002) instead of in their middle.
     pub sharp: bool,
 }
 
@@ -36,7 +36,7 @@ impl Default for RemeshSettings {
     }
 }
 
-/// Why there is no new mesh.
+/// The reason why there is no new mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RemeshError {
     /// The job was cancelled.
@@ -87,14 +87,15 @@ pub(super) fn layout(
     if x * y * z > MAX_SAMPLES { Err(RemeshError::Side(side)) } else { Ok(grid) }
 }
 
-/// What came of a remeshing.
+/// The result of a remeshing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remade {
     /// The new mesh.
     pub mesh: TriMesh,
     /// Pairs of its triangles that cross each other.
     pub crossings: usize,
-    /// What of the old surface is further than a voxel from the new one; `None`: nothing.
+    /// The parts of the old surface farther than a voxel from the new one; `None` if there are
+    /// none.
     pub lost: Option<LostParts>,
 }
 
@@ -143,8 +144,8 @@ fn onto(solid: &DistanceSolid, p: DVec3, h: f64) -> DVec3 {
     }
 }
 
-/// Where the planes of the surface at `points` meet, as near to `middle` as they leave open; at
-/// most a spacing away.
+/// Returns the point where the planes of the surface at `points` meet, as near to `middle` as they
+/// permit; at most a spacing away.
 fn corner(solid: &DistanceSolid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
     // A weak pull to the middle decides along a flat or an edge.
     let (mut a, mut b) = (DMat3::from_diagonal(DVec3::splat(0.01)), DVec3::ZERO);

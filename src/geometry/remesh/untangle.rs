@@ -1,12 +1,12 @@
 //! Moves the vertices of a dual surface where it crosses itself, until it no longer does.
 //!
-//! A vertex that is projected onto the old surface, or put where sharp edges meet, can leave its
+//! A vertex that is projected onto the old surface, or placed where sharp edges meet, can leave its
 //! cell, and a wall thinner than a voxel brings two sheets into one: triangles cross. Such a vertex
-//! goes back in steps to the middle of its patch's crossings, which lies in its cell (Ju and
-//! Udeshi, "Intersection-free contouring on an octree grid", 2006), then to where these would be if
-//! the surface halved every edge of the grid, where sheets are farthest apart. Only vertices of
-//! triangles that cross move; where all of those have come to the end of their way, their
-//! neighbours follow.
+//! moves back in steps to the middle of its patch's crossings, which is in its cell (Ju and Udeshi,
+//! "Intersection-free contouring on an octree grid", 2006). Then it moves to the corresponding
+//! place on the surface that halves every edge of the grid, where sheets are farthest apart. Only
+//! vertices of triangles that cross move; once all of those have reached the end, their neighbours
+//! follow.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::self_intersection::{pairs, pairs_with};
 
 /// Steps from the wanted place to the middle of the crossings, and as many from there to the end.
 const STEPS: u8 = 2;
-/// Rounds at most. A crossing takes four if only its own vertices need to move.
+/// The maximum number of rounds. A crossing takes four if only its vertices need to move.
 const ROUNDS: usize = 24;
 
 /// The places to which a surface's vertices go back.

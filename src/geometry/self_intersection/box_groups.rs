@@ -73,7 +73,7 @@ impl BoxGroup {
         (0..8).fold(RoundedBox::EMPTY, |b, lane| b.join(self.lane(lane)))
     }
 
-    /// Which of the eight boxes have a point in common with `b`, one bit each.
+    /// Returns a bit for each of the eight boxes that has a point in common with `b`.
     #[inline(always)]
     fn meets(&self, b: &RoundedBox) -> u32 {
         let mut bits = [0u32; 8];
@@ -163,7 +163,7 @@ impl BoxGroups {
                     let whole = group.whole();
                     self.descend(&whole, own + 1, &mut stack, |other| {
                         let theirs = &groups[other];
-                        // Only those of the own eight that reach the other eight's box.
+                        // Only boxes of the first eight that reach the box around the other eight.
                         let near = group.meets(&theirs.whole());
                         for (lane, &t) in lanes.clone().filter(|l| near >> l.0 & 1 == 1) {
                             let met = theirs.meets(&group.lane(lane));

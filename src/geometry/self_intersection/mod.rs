@@ -1,12 +1,12 @@
 //! Which triangles of a mesh cross others: boxes in a tree, then exact tests.
 //!
-//! Two triangles cross if their insides have a line in common, or if they lie in one plane and
-//! overlap. A surface also crosses another exactly along edges: an edge that runs through a
-//! triangle's inside with faces on both sides of it, and two edges on one line whose faces come in
-//! turns. What both share by index and touches from outside do not count. Signs are those of exact
-//! arithmetic (Shewchuk's `orient3d`) on the coordinates as they are, so all cases of surfaces that
-//! go through each other are among these: such surfaces have a line in common, and each piece of it
-//! is inside of, or an edge of, a face of either.
+//! Two triangles cross if their insides have a line in common, or if they are coplanar and overlap.
+//! A surface also crosses another exactly along edges: an edge that runs through a triangle's
+//! inside with faces on both sides of it, and two edges on one line whose faces alternate. Parts
+//! shared by index and touches from outside do not count. Signs are exact (Shewchuk's `orient3d`)
+//! for the given coordinates, so these cases include all surfaces that go through each other. Such
+//! surfaces have a line in common, and each piece of it is inside of, or an edge of, a face of
+//! either.
 
 mod box_groups;
 mod predicate;
@@ -25,12 +25,12 @@ use shared::along_shared_edge;
 use stars::Stars;
 use touch::{Touch, through, touch};
 
-/// How often a mesh crosses itself.
+/// The number of a mesh's self-crossings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossings {
     /// Pairs of triangles.
     pub pairs: usize,
-    /// Triangles with a part in a pair.
+    /// Triangles that are part of a pair.
     pub triangles: usize,
 }
 
@@ -112,7 +112,7 @@ pub fn pairs_with(
     if changed.is_empty() {
         return Ok(Vec::new());
     }
-    // What an edge on a surface is, all triangles at the edge tell: they are all compared.
+    // The status of an edge on a surface depends on all triangles at the edge: all are compared.
     let sides = |t: u32| {
         let t = triangles[t as usize];
         [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (a.min(b), a.max(b)))
@@ -241,8 +241,8 @@ pub fn count(
     Ok(Crossings { pairs: found.len(), triangles: crossed.len() })
 }
 
-/// Whether the insides of two triangles have a line or an area in common, beyond the corners that
-/// they share.
+/// Returns true if the insides of two triangles have a line or an area in common, beyond the
+/// corners that they share.
 pub fn crosses(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> bool {
     triangles_meet(positions, s, t) != Meet::No
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-/// Whether three points lie on one line, exactly.
+/// Returns true if three points are collinear, exactly.
 pub(super) fn on_a_line(a: DVec3, b: DVec3, c: DVec3) -> bool {
     (0..3).all(|axis| {
         let flat = |p: DVec3| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
@@ -16,14 +16,14 @@ pub(super) fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     orient3d(at(a), at(b), at(c), at(d))
 }
 
-/// How two triangles meet where that may be a crossing.
+/// The way two triangles meet where that may be a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meet {
     No,
     /// Their insides have a line or an area in common.
     Cross,
     /// An edge (by its number) of the second, or of the first, runs through the other's inside. A
-    /// crossing, if the surface goes on at the other side.
+    /// crossing, if the surface continues on the other side.
     Along(Which, usize),
     /// Edge of the first, edge of the second: parts of one line. A crossing, if the surfaces change
     /// sides there.
@@ -62,8 +62,8 @@ impl RoundedPlane {
     }
 }
 
-/// Whether an edge of the first triangle parts it from the second, seen along the first's normal,
-/// by more than rounding: corners that both have may lie on the edge.
+/// Returns true if an edge of the first triangle separates it from the second, seen along the
+/// first's normal, by more than rounding: common corners may be on the edge.
 fn beside(ps: [DVec3; 3], pt: [DVec3; 3], s: [u32; 3], t: [u32; 3]) -> bool {
     let n = (ps[1] - ps[0]).cross(ps[2] - ps[0]);
     let reach = ps.iter().chain(&pt).fold(DVec3::ZERO, |r, p| r.max(p.abs())).max_element();
@@ -78,7 +78,7 @@ fn beside(ps: [DVec3; 3], pt: [DVec3; 3], s: [u32; 3], t: [u32; 3]) -> bool {
     })
 }
 
-/// How two triangles meet beyond what they share.
+/// Returns the way two triangles meet beyond their shared parts.
 pub(super) fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> Meet {
     let p = |v: u32| positions[v as usize];
     let shared = s.iter().filter(|v| t.contains(v)).count();
@@ -96,7 +96,7 @@ pub(super) fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> M
         of.map(|v| if plane.contains(&v) { None } else { rounded.side(p(v)) })
     };
     let near = rounded(s, ps, t);
-    // Triangles beside each other in one plane need exact signs, and are told apart without.
+    // Coplanar neighbours need exact signs, but this test separates them without.
     let unsure = (0..3).any(|i| near[i].is_none() && !s.contains(&t[i]));
     if unsure && (beside(ps, pt, s, t) || beside(pt, ps, t, s)) {
         return Meet::No;
@@ -134,13 +134,13 @@ pub(super) fn triangles_meet(positions: &[DVec3], s: [u32; 3], t: [u32; 3]) -> M
     }
 }
 
-/// The edge whose ends lie in the plane, given the corners' sides of it.
+/// Returns the edge whose ends are in the plane, given the corners' sides of it.
 fn edge_on(d: &[f64; 3]) -> Option<usize> {
     (0..3).find(|&k| d[k] == 0.0 && d[(k + 1) % 3] == 0.0)
 }
 
-/// Whether the lines in which two triangles cut each other's plane have more than a point in
-/// common; each is astride the other's plane. After Guigue and Devillers, *Fast and robust
+/// Returns true if the lines in which two triangles cut each other's plane have more than a point
+/// in common; each is astride the other's plane. After Guigue and Devillers, *Fast and robust
 /// triangle-triangle overlap test using orientation predicates* (2003).
 fn lines_overlap(ps: [DVec3; 3], of_s: [f64; 3], pt: [DVec3; 3], of_t: [f64; 3]) -> bool {
     // Turned so that the first corner is alone on its side, the others on the other side or on the
@@ -166,7 +166,7 @@ fn lines_overlap(ps: [DVec3; 3], of_s: [f64; 3], pt: [DVec3; 3], of_t: [f64; 3])
     side(a[0], a[1], b[0], b[1]) < 0.0 && side(a[0], a[2], b[2], b[0]) < 0.0
 }
 
-/// Whether a piece of a line in the triangle's plane runs through the triangle's inside.
+/// Returns true if a piece of a line in the triangle's plane runs through the triangle's inside.
 fn runs_through(p: DVec3, q: DVec3, t: [DVec3; 3]) -> bool {
     let flat = flatten([t, t]);
     let (a, p, q) = (t.map(&flat), flat(p), flat(q));
@@ -177,7 +177,7 @@ fn runs_through(p: DVec3, q: DVec3, t: [DVec3; 3]) -> bool {
     turn != 0.0 && of.iter().any(|&v| v > 0.0) && of.iter().any(|&v| v < 0.0) && !(0..3).any(beside)
 }
 
-/// Whether two pieces of one line have a length in common.
+/// Returns true if two pieces of one line have a length in common.
 fn along_each_other(e: [DVec3; 2], f: [DVec3; 2]) -> bool {
     let d = (e[1] - e[0]).abs();
     let axis = if d.x >= d.y && d.x >= d.z {
@@ -208,8 +208,7 @@ pub(super) fn flatten([s, t]: [[DVec3; 3]; 2]) -> impl Fn(DVec3) -> Coord<f64> {
     }
 }
 
-/// Whether two triangles in one plane have an area in common: no edge's line has one on either
-/// side.
+/// Returns true if two coplanar triangles have an area in common: no edge's line separates them.
 pub(super) fn overlap(ps: [DVec3; 3], pt: [DVec3; 3]) -> bool {
     let flat = flatten([ps, pt]);
     let (a, b) = (ps.map(&flat), pt.map(&flat));

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::predicate::{on_a_line, overlap, side};
 
-/// Pairs of the triangles at the edge from `a` to `b` that cross: those that lie in one plane, on
-/// the same side of the edge. The triangles are sorted by their direction around it, so that
-/// thousands at one edge are not compared each with each.
+/// Adds the pairs of triangles at the edge from `a` to `b` that cross: coplanar ones on the same
+/// side of the edge. The triangles are sorted by their direction around it, so that thousands at
+/// one edge are not compared each with each.
 pub(super) fn along_shared_edge(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -34,8 +34,8 @@ pub(super) fn along_shared_edge(
         }
         return;
     }
-    // Around the edge from the first one's direction on: first the half turn on one side of its
-    // plane, its own direction before all, the opposite one between.
+    // The order around the edge from the first direction: that direction, the half turn on one side
+    // of its plane, the opposite direction, the other half turn.
     let first = fan[0].1;
     let half = |q: DVec3| {
         let s = side(p(a), p(b), first, q);

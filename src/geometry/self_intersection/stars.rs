@@ -1,11 +1,12 @@
-//! What is known of triangles that share a vertex without a look at each two of them.
+//! Triangles around a vertex that are known not to cross without testing each pair.
 //!
-//! Seen along an axis, the triangles around a vertex that all face the same way, whose edges at the
-//! vertex have two triangles each, and which go around it once, cover their surroundings once:
-//! no two of them have more in common than their vertex or their edge. So it is at nearly every
-//! vertex of a smooth surface (Volino and Magnenat-Thalmann, "Efficient self-collision detection on
-//! smoothly discretized surface animations using geometrical shape regularity", 1994, ask the same
-//! of larger patches). All signs are certain: what rounding could hide counts as unknown.
+//! Consider the triangles around a vertex that all face the same way along an axis, whose edges at
+//! the vertex have two triangles each, and which go around it once. Seen along the axis, they cover
+//! their surroundings once: no two of them have more in common than their vertex or their edge.
+//! That holds at nearly every vertex of a smooth surface (Volino and Magnenat-Thalmann, "Efficient
+//! self-collision detection on smoothly discretized surface animations using geometrical shape
+//! regularity", 1994, test the same on larger patches). All signs are certain: a sign within
+//! rounding counts as unknown.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -59,7 +60,7 @@ impl Stars {
         Ok(stars)
     }
 
-    /// Whether triangles that share this vertex are known not to cross.
+    /// Returns true if triangles that share this vertex are known not to cross.
     #[inline(always)]
     pub fn clear(&self, v: u32) -> bool {
         self.clear[v as usize]
@@ -111,8 +112,8 @@ impl Stars {
     }
 
     /// Calls `f(state of the task, lower vertex, upper vertex, triangles)` for each edge of two or
-    /// more triangles at which two of them may lie in one plane on the same side of it. Triangles
-    /// with a vertex twice are no triangles.
+    /// more triangles if two of them may be coplanar on the same side of it. Skips triangles with a
+    /// vertex twice.
     pub fn doubtful_edges<T: Send + Default>(
         &self,
         triangles: &[[u32; 3]],
@@ -143,7 +144,7 @@ impl Stars {
                     }
                     uses.sort_unstable();
                     for edge in uses.chunk_by(|x, y| x.0 == y.0).filter(|e| e.len() > 1) {
-                        // Facing the same way, two triangles lie on both sides of their edge.
+                        // Two triangles that face the same way are on both sides of their edge.
                         if let &[(_, s, x), (_, t, y)] = edge
                             && x != y
                             && self.facing[s as usize] & self.facing[t as usize] != 0

@@ -63,7 +63,7 @@ fn edges((at, faces): &Flat) -> Vec<I64Vec3> {
         .collect()
 }
 
-/// Whether two convex solids have inner points in common: no direction parts them.
+/// Returns true if two convex solids have inner points in common: no direction separates them.
 fn overlap_inside(a: &Flat, b: &Flat) -> bool {
     let mut ways: Vec<I64Vec3> = planes(a).iter().chain(&planes(b)).map(|p| p.0).collect();
     for e in edges(a) {
@@ -85,7 +85,7 @@ fn within(a: &Flat, b: &Flat) -> bool {
     a.0.iter().all(|p| planes.iter().all(|&(n, d)| n.dot(*p) <= d))
 }
 
-/// Whether faces of both lie in one plane and have an area in common.
+/// Returns true if faces of both are coplanar and have an area in common.
 fn faces_overlap(a: &Flat, b: &Flat) -> bool {
     let corners = |s: &Flat, f: usize| s.1[f].map(|v| s.0[v as usize]);
     (0..a.1.len()).any(|i| {
@@ -106,7 +106,7 @@ fn faces_overlap(a: &Flat, b: &Flat) -> bool {
     })
 }
 
-/// Whether the surfaces of two convex solids go through each other or lie on each other.
+/// Returns true if the surfaces of two convex solids cross or coincide in part.
 fn expected(a: &Flat, b: &Flat) -> bool {
     faces_overlap(a, b) || overlap_inside(a, b) && !within(a, b) && !within(b, a)
 }
@@ -209,7 +209,7 @@ fn thousands_of_faces_at_one_edge_are_sorted_around_it() {
         triangles.push([1, 0, positions.len() as u32 - 1]);
     }
     let found = pairs(&positions, &triangles, &job).unwrap();
-    // Halves and sums of coordinates are exact, and so is whether four points lie in one plane.
+    // Halves and sums of coordinates are exact, and so is the test for four coplanar points.
     assert!(found.contains(&(0, 8000)), "{found:?}");
     assert!(found.iter().all(|&(a, b)| [0, 2345, 7999].contains(&a) && b >= 8000), "{found:?}");
 }

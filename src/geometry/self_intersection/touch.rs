@@ -1,12 +1,12 @@
-//! Places where an edge lies on another surface: whether the surface goes through there is told by
-//! the other triangles at the edge.
+//! Places where an edge is on another surface: the other triangles at the edge decide if the
+//! surface crosses there.
 
 use glam::DVec3;
 use robust::orient2d;
 
 use super::predicate::{Meet, Which, flatten, side};
 
-/// What one triangle has to say of a place where an edge lies on another surface.
+/// The contribution of one triangle at a place where an edge is on another surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Touch {
     /// Edge; the triangle that it runs through; a triangle at the edge, and whether it is above.

@@ -65,7 +65,7 @@ fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
     a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
 }
 
-/// What weighs the two neighbours of a triangle: `b` by the first, `c` by the second.
+/// Returns the weights of a triangle's two neighbours: the first for `b`, the second for `c`.
 #[inline(always)]
 fn pair<L: Lanes>(bb: L, cc: L, bc: L) -> (L, L) {
     let inverse = bb.mul(cc).sub(bc.mul(bc)).inverse_root();

@@ -2,14 +2,14 @@
 
 use glam::{Mat4, Vec4};
 
-/// The vertices of each leaf, each once. Whoever has as many rows as they need can follow every
-/// index: that is known from the start, so the inner loop does not ask.
+/// The vertices of each leaf, each once. Every index is below the number of rows, which is checked
+/// once, so the inner loop needs no bounds checks.
 #[derive(Debug, Clone, Default)]
 pub struct Leaves {
-    /// Each leaf's filled up to a multiple of four with its last one: a loop that turns two or
-    /// three times is foreseen.
+    /// Each leaf's vertices, padded to a multiple of four with the last one: a loop of two or three
+    /// turns is predictable.
     corners: Vec<u16>,
-    /// Where each leaf's end.
+    /// The end of each leaf's vertices.
     ends: Vec<u16>,
     rows: usize,
 }
@@ -29,7 +29,7 @@ impl Leaves {
         Some(Leaves { corners, ends, rows })
     }
 
-    /// Forgets all leaves and makes room for so many leaves and corners.
+    /// Forgets all leaves and makes room for this many leaves and corners.
     pub fn reserve(&mut self, leaves: usize, corners: usize) {
         self.corners.clear();
         self.ends.clear();
@@ -38,12 +38,12 @@ impl Leaves {
         self.ends.reserve(leaves);
     }
 
-    /// Leaves of `each` triangles in a row. `seen` has an entry for each row, all `u16::MAX`; what
-    /// was met is another number afterwards. False where there are more corners than 16 bits
-    /// count.
+    /// Refills with leaves of `each` triangles in a row. `seen` has an entry for each row, all
+    /// `u16::MAX`; entries of visited vertices change. Returns false if there are more corners than
+    /// 16 bits count.
     ///
     /// # Panics
-    /// When a corner has no entry in `seen`.
+    /// Panics if a corner has no entry in `seen`.
     #[must_use]
     pub fn refill(&mut self, triangles: &[[u16; 3]], each: usize, seen: &mut [u16]) -> bool {
         self.corners.clear();
@@ -73,7 +73,7 @@ impl Leaves {
         self.ends.len()
     }
 
-    /// Whether there is no leaf.
+    /// Returns true if there is no leaf.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }

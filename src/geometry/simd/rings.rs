@@ -8,9 +8,8 @@
 
 use glam::{Vec4, Vec4Swizzles};
 
-/// Rings of six neighbours each, counter-clockwise, one a vertex from vertex 0 on. Whoever has as
-/// many rows as [`Hexes::rows`] says can follow every index: that is known from the start, so the
-/// inner loop does not ask.
+/// Rings of six neighbours each, counter-clockwise, one per vertex from vertex 0 on. Every index is
+/// below [`Hexes::rows`], which is checked once, so the inner loop needs no bounds checks.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 #[serde(from = "Vec<[u16; 6]>", into = "Vec<[u16; 6]>")]
 pub struct Hexes {
@@ -32,7 +31,7 @@ impl Hexes {
         self.rows = 0;
     }
 
-    /// Forgets all rings and makes room for so many.
+    /// Forgets all rings and makes room for this many.
     pub fn reserve(&mut self, count: usize) {
         self.clear();
         self.rings.reserve(count);
@@ -51,7 +50,7 @@ impl Hexes {
         self.rings.len()
     }
 
-    /// Whether no vertex has its ring here.
+    /// Returns true if no vertex has its ring here.
     pub fn is_empty(&self) -> bool {
         self.rings.is_empty()
     }
@@ -116,11 +115,11 @@ pub struct Rows<'a> {
     pub first: usize,
     /// As they were; the fourth lane is kept.
     pub old: &'a [Vec4],
-    /// Where the normals go, as many as `old`.
+    /// The output normals, as many as `old`.
     pub rows: &'a mut [Vec4],
-    /// Gets `mark` where a normal is not, to the bit, what it was.
+    /// Gets `mark` where a normal differs, to the bit, from the old one.
     pub marks: &'a mut [u8],
-    /// What a mark is.
+    /// The value of a mark.
     pub mark: u8,
 }
 
@@ -256,7 +255,7 @@ pub(super) unsafe fn joined(rows: *const f32, low: usize, high: usize) -> __m256
     }
 }
 
-/// Writes two normals, and marks those that are others than before.
+/// Writes two normals, and marks the changed ones.
 ///
 /// # Safety
 /// The processor has AVX2; `old` and `new` have two rows, `marks` two bytes.

@@ -43,7 +43,7 @@ pub struct WideNode {
     pub child: [u32; 8],
 }
 
-/// The bit of [`WideNode::child`] that tells a pack from a node.
+/// The bit of [`WideNode::child`] that separates a pack from a node.
 pub const LEAF: u32 = 1 << 31;
 
 /// A ray made ready for both tests. The fields are private because the tests trust the indices.
@@ -113,10 +113,10 @@ impl Prepared {
         }
     }
 
-    /// Where the ray meets the plane of triangle `i` of `pack`, of which the signs say that it
-    /// meets the triangle: not before its first corner and not behind its last, for the signs may
-    /// be wrong by a rounding of the corners. `known` is what single precision gave, for a triangle
-    /// seen exactly edge on.
+    /// Returns where the ray meets the plane of triangle `i` of `pack`, which it hits according to
+    /// the signs. The result is limited to the range of the corners, because the signs may be wrong
+    /// by a rounding of the corners. `known` is the result of single precision, for a triangle seen
+    /// exactly edge on.
     #[inline(never)]
     fn settle(&self, pack: &Pack, i: usize, known: [f32; 3]) -> [f32; 3] {
         let d = DVec3::from_array(self.dir.map(f64::from));
@@ -142,9 +142,9 @@ impl Prepared {
         [t as f32, (weights.y / all) as f32, (weights.z / all) as f32]
     }
 
-    /// Decides the lanes of `hits.unsure` that `accept` takes (it is told the triangle's id): what
-    /// single precision wrote there is replaced, and is a hit where it lies on the part of the ray
-    /// that counts.
+    /// Decides the lanes of `hits.unsure` that `accept` (called with the triangle's id) allows.
+    /// Replaces the results of single precision; a lane is a hit if the result is on the valid part
+    /// of the ray.
     #[inline(always)]
     pub fn settle_all(
         &self,
@@ -173,7 +173,7 @@ impl Prepared {
 const SURE: f32 = 1.0;
 
 /// Widens the far side so that rounding never loses a box: 1 + 2 gamma(3), and one rounding more of
-/// its own product.
+/// that product.
 const WIDEN: f32 = 1.000_000_5;
 
 /// Squared sine of the angle from which on a triangle's plane is sure to a few roundings: below it
@@ -198,11 +198,11 @@ pub struct PackHits {
 
 /// The tests. Both implementations give the same bits.
 pub trait Wide: Copy {
-    /// Which of the eight boxes the ray meets between its `t_min` and `t_max`, and at which t it
-    /// enters each.
+    /// Returns which of the eight boxes the ray meets between its `t_min` and `t_max`, and writes
+    /// the t at which it enters each.
     fn boxes(self, ray: &Prepared, node: &WideNode, t_max: f32, near: &mut [f32; 8]) -> u32;
-    /// Which of the four triangles the ray meets between its `t_min` and `t_max`, both included,
-    /// and which are left to [`Prepared::settle_all`].
+    /// Returns which of the four triangles the ray meets between its `t_min` and `t_max`, both
+    /// included, and which are left to [`Prepared::settle_all`].
     fn triangles(self, ray: &Prepared, pack: &Pack, t_max: f32) -> PackHits;
     /// Squared distances of the eight boxes from `p`, and which of them are at most `bound`, which
     /// is finite: an unused box is infinitely far.
@@ -548,7 +548,7 @@ mod avx2 {
 /// Work that is written once and compiled for each kind of processor. `run` must be
 /// `#[inline(always)]`, or it is not compiled for AVX2.
 pub trait WideWork {
-    /// What the work gives.
+    /// The result of the work.
     type Output;
     /// Does the work with the tests of `w`.
     fn run<W: Wide>(self, w: W) -> Self::Output;
@@ -572,7 +572,7 @@ pub fn dispatch<J: WideWork>(scalar: bool, work: J) -> J::Output {
     work.run(PortableLanes)
 }
 
-/// What is known of the processor: 0 nothing yet, 1 it has what `has_fast` asks for, 2 it has not.
+/// The detected processor: 0 unknown, 1 has the features of `has_fast`, 2 lacks them.
 static KNOWN: AtomicU8 = AtomicU8::new(0);
 
 /// From here on all work is done in plain Rust, as on a processor without AVX2: the same bits,

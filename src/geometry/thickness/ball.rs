@@ -3,17 +3,16 @@
 //!
 //! Shrinking ball (Ma, Bae, Choi, "3D medial axis point approximation using nearest neighbors and
 //! the normal field", 2012): begin with the ball whose diameter is the axis ray's length; while a
-//! surface point `q` lies inside it, take the ball through the site and `q`, tangent at the site:
-//! `r = |pq|^2 / (2 away . pq)`. Each ball lies inside the last, so no earlier constraint comes
-//! back.
+//! surface point `q` is inside it, take the ball through the site and `q`, tangent at the site. Its
+//! radius is `|pq|^2 / (2 away . pq)`. Each ball is inside the last, so no earlier constraint
+//! returns.
 //!
-//! The ball of a *wall* ([`Caster::wall_ball`], the definition *sphere*) is held by the opposite
+//! The ball of a *wall* ([`Caster::wall_ball`], the definition *sphere*) is limited by the opposite
 //! side alone: facets turned by less than 40 degrees from parallel, touched within 20 degrees of
-//! the normal. What stands beside the ball, as the sides of a plate do along its edges, does not
-//! hold it, so the value does not go to zero there. The inscribed ball ([`Caster::ball`]) is held
-//! by everything. Left out: the site's own triangles, and triangles that turn from the site's
-//! normal by less than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests
-//! on it.
+//! the normal. Facets beside the ball, such as the sides of a plate along its edges, do not limit
+//! it, so the value does not go to zero there. The inscribed ball ([`Caster::ball`]) is limited by
+//! all facets. Both ignore the site's triangles, and triangles that turn from the site's normal by
+//! less than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests on it.
 
 use glam::Vec3;
 
@@ -118,10 +117,10 @@ struct BallSearch<'a, F> {
     point: Vec3,
     away: Vec3,
     r: f32,
-    /// What the ball of radius `r` touches besides `point`.
+    /// The point, besides `point`, where the ball of radius `r` touches.
     touch: Option<Vec3>,
     from: F,
-    /// Touches beside the wall do not hold the ball.
+    /// True to ignore touches beside the wall.
     opposed: bool,
 }
 

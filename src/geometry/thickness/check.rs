@@ -17,20 +17,20 @@ use crate::job::Job;
 use crate::measure::measures;
 use crate::{CentredMesh, TriMesh};
 
-/// Worst spots that are told.
+/// The greatest number of worst spots in the answer.
 pub const SPOTS: usize = 10;
 
 /// Places to measure at that a coarse part is given, about.
 const PLACES: usize = 20_000;
 /// More than this many are too many: long thin triangles take several times what their area says.
 const MOST_PLACES: usize = 32_000;
-/// How often the spacing is made a quarter wider then. A part of which that does not make fewer has
-/// places enough of its own.
+/// The greatest number of times that the spacing is then widened by a quarter. A part that still
+/// exceeds the limit has enough vertices and gets no places.
 const WIDER: usize = 16;
 
-/// Puts places to measure on walls that have none, and gives the walls as they were. `spacing` is
-/// the longest edge that stays, millimetres; without it, a part of which more than half of the
-/// vertices lie on sharp edges (by `crease`, degrees) gets about 20,000 of them, other parts none.
+/// Adds places to measure to walls that have none, and returns the walls before that. `spacing` is
+/// the longest edge that stays, in millimetres. Without it, a part gets about 20,000 places if more
+/// than half of its vertices are on sharp edges (by `crease`, degrees), and other parts none.
 pub fn add_places(mesh: &mut TriMesh, spacing: Option<f32>, crease: f32) -> Option<Walls> {
     let told = spacing.is_some();
     let spacing = spacing.or_else(|| {
@@ -87,7 +87,7 @@ impl From<&Preset> for ThicknessLimits {
     }
 }
 
-/// What the limits say of a part.
+/// The verdict of the limits on a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -95,7 +95,7 @@ pub enum Verdict {
     Unjudged,
     /// Every value is within the limits.
     Pass,
-    /// A value asks for a second look.
+    /// A value is beyond the warning limit.
     Warn,
     /// A value fails.
     Fail,
@@ -110,7 +110,7 @@ pub struct AreaBeyond {
     pub limit: f32,
     /// Of the area that has values, 0 to 100.
     pub area_percent: f64,
-    /// How far `area_percent` may be off.
+    /// The greatest error of `area_percent`.
     pub error_percent: f64,
 }
 
@@ -132,21 +132,21 @@ pub struct WorstSpot {
 pub struct ThicknessAnswer {
     /// The name of the file as it was given.
     pub file: String,
-    /// How thickness was defined.
+    /// The definition of thickness.
     pub method: ThicknessMethod,
     /// Rays a place; 1 for the sphere.
     pub rays: usize,
     /// All settings.
     pub settings: ThicknessSettings,
-    /// The limits that the part was held against.
+    /// The limits that the part was compared with.
     pub limits: ThicknessLimits,
-    /// What they say.
+    /// The verdict of the limits.
     pub verdict: Verdict,
     /// The least wall between two bounds; `null` where no place has a wall.
     pub least: Option<LeastWall>,
-    /// What the bounds say, in one sentence.
+    /// The conclusion from the bounds, in one sentence.
     pub statement: String,
-    /// The statistics; their fields stand beside these in JSON.
+    /// The statistics, flattened into this object in JSON.
     #[serde(flatten)]
     pub summary: ThicknessSummary,
     /// The area below the failing limit, or the warning one.
@@ -169,18 +169,18 @@ pub struct ThicknessAnswer {
     pub area: f64,
     /// Extents along x, y and z, millimetres.
     pub dimensions: [f64; 3],
-    /// What the measuring took.
+    /// The duration of the measurement.
     pub seconds: f64,
     /// Rays over seconds.
     pub rays_per_second: f64,
-    /// One sentence for each thing that is wrong with the mesh.
+    /// The faults of the mesh, one sentence each.
     pub warnings: Vec<String>,
 }
 
 /// An answer with what it was made from.
 #[derive(Debug, Clone)]
 pub struct CheckedPart {
-    /// What is told.
+    /// The answer.
     pub answer: ThicknessAnswer,
     /// The values at every vertex.
     pub thickness: Thickness,
@@ -288,7 +288,7 @@ pub fn check(
     Ok(CheckedPart { answer, thickness, spots })
 }
 
-/// What the bounds of the least wall say of a limit.
+/// Returns the sentence that compares the bounds of the least wall with a limit.
 fn statement(least: Option<LeastWall>, limit: Option<f32>, thickness: &Thickness) -> String {
     let Some(l) = least else {
         return "no place has a wall: each belongs to an edge or meets nothing".into();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Which values of a cone are outliers and do not count. The kept values are never none: the median
+/// The rule for outliers of a cone, which do not count. At least one value is kept: the median
 /// always stays.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -20,7 +20,7 @@ pub enum Outliers {
     SigmaMedian,
 }
 
-/// What a value counts in the mean.
+/// The weight of a value in the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
@@ -37,7 +37,7 @@ pub enum Weights {
 pub struct Cone {
     /// Of unit length, the axis first.
     pub dirs: Vec<Vec3>,
-    /// What each ray counts in the mean, one a direction.
+    /// The weight of each ray in the mean, one per direction.
     pub weights: Vec<f32>,
 }
 
@@ -85,7 +85,7 @@ pub fn frame_along(n: Vec3, along: Vec3) -> (Vec3, Vec3) {
     (x, n.cross(x))
 }
 
-/// What a cone's values come to.
+/// The result of a cone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Folded {
     /// The weighted mean of the kept values.

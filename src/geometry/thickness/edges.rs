@@ -56,7 +56,7 @@ pub(super) fn apply(
     }
 }
 
-/// Marks what tells of an edge and not of a wall: the opposite side is turned by more than 40
+/// Marks values that measure an edge and not a wall: the opposite side is turned by more than 40
 /// degrees, and a sharp vertex is as near (along the mesh's edges) as the edge of such a wedge must
 /// be, within 1.5 times the value.
 fn mark(surface: &WeldedSurface, values: &mut [SiteValue]) {
@@ -129,8 +129,8 @@ fn spread(surface: &WeldedSurface, values: &mut [SiteValue], marked: &mut Vec<us
     }
 }
 
-/// The smallest of the walls under the faces around `v`, each measured along its own normal from a
-/// point one per cent of the way into the face.
+/// Returns the smallest of the walls under the faces around `v`, each measured along the face's
+/// normal from a point one per cent of the way into the face.
 fn under_faces(
     caster: &Caster<'_>,
     surface: &WeldedSurface,

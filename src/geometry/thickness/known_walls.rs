@@ -230,7 +230,7 @@ fn placed(part: &KnownPart, scale: f64, r: &mut Random) -> CentredMesh {
         1 => refine(&tri, size / 12.0).mesh,
         _ => with_slivers(tri, r),
     };
-    // New vertices lie on the faces to single precision of the unturned part.
+    // New vertices are on the faces to single precision of the unturned part.
     let rounded = cut.positions.len() > mesh.positions.len();
     let before = mesh.positions.clone();
     mesh = cut.to_poly();

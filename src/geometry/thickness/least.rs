@@ -2,14 +2,14 @@
 //!
 //! Definition (*ray*): at a point of a facet, the length of the ray opposite the facet's normal to
 //! the first facet that faces it. The least wall is the least of these over all points of all
-//! facets. `FacetShaft` gives it exactly for a pair of facets, and a walk over the tree finds the
-//! pairs; what is deeper than the least wall found so far is not looked at. So the result depends
-//! neither on where samples lie, nor on the triangles that a flat facet is cut into.
+//! facets. `FacetShaft` computes it exactly for a pair of facets, and a walk over the tree finds
+//! the pairs; the walk skips everything deeper than the least wall found so far. So the result
+//! depends neither on the positions of samples, nor on the triangles that a flat facet is cut into.
 //!
-//! Edges: where the opposite side is turned by more than 40 degrees from parallel, and an acute
-//! edge or tip (less than 90 degrees of material) lies within 1.5 times the value, the place tells
-//! of that edge and has no wall. An edge of less than 40 degrees is a wall that runs out to zero.
-//! A wedge that ends in a land or a rounding is as thick as it is there.
+//! Edges: a place measures an edge and has no wall if the opposite side is turned by more than 40
+//! degrees from parallel, and an acute edge or tip (less than 90 degrees of material) is within 1.5
+//! times the value. An edge of less than 40 degrees is a wall that runs out to zero. A wedge that
+//! ends in a land or a rounding is as thick as that land or rounding.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -29,26 +29,26 @@ pub(super) const OPPOSED: f64 = 0.766_044_443;
 const ROUNDINGS: f64 = 4.0;
 /// Slope beyond which sides are a wall beside the shaft and not below it.
 const STEEPEST: f64 = 50.0;
-/// Parts into which a patch is cut to decide what of it belongs to an edge.
+/// The number of parts into which a patch is cut to decide which of them belong to an edge.
 const PARTS: usize = 256;
 /// Facets in a task; what one task finds bounds the later facets of the same task.
 const CHUNK: usize = 512;
 /// Facets in the first round; each round has twice as many, and starts from what the last found.
 const ROUND: usize = 4096;
 
-/// What the search needs to know of the solid.
+/// The solid, as the search needs it.
 #[derive(Debug)]
 pub(super) struct Solid<'a> {
     pub tree: &'a Bvh8,
     pub surface: &'a WeldedSurface,
-    /// 1 where normals point out of what is measured, -1 where into it.
+    /// 1 if normals point out of the measured side, -1 if into it.
     pub sign: f64,
-    /// How far a coordinate may be off, in the mesh's unit.
+    /// The greatest error of a coordinate, in the mesh's unit.
     pub grain: f64,
     pub edges: &'a AcuteEdges,
     /// See [`WeldedSurface::tilts`].
     pub tilts: &'a [f32],
-    /// Sides turned by more than 40 degrees from parallel do not count.
+    /// True to ignore sides turned by more than 40 degrees from parallel.
     pub opposed_only: bool,
 }
 
@@ -65,7 +65,7 @@ pub struct LeastWall {
     pub certified: bool,
     /// The bounds differ by rounding only.
     pub settled: bool,
-    /// Where the wall of `upper` is measured from.
+    /// The point from which the wall of `upper` is measured.
     pub position: [f64; 3],
     /// The opposite point of that wall.
     pub opposite: [f64; 3],
@@ -73,7 +73,7 @@ pub struct LeastWall {
     pub normal: [f64; 3],
 }
 
-/// How a wall compares with a limit.
+/// The comparison of a wall with a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Comparison {
@@ -81,12 +81,12 @@ pub enum Comparison {
     Reached,
     /// Below the limit for sure.
     Below,
-    /// The bounds are too far apart to tell.
+    /// The bounds are too far apart to decide.
     Undecided,
 }
 
 impl LeastWall {
-    /// Where it is measured from.
+    /// Returns the point from which it is measured.
     pub fn place(&self) -> DVec3 {
         self.position.into()
     }
@@ -111,7 +111,7 @@ pub struct ThinFacet {
     pub triangle: u32,
     /// The least wall under it.
     pub least: f64,
-    /// Where that is measured from.
+    /// The point from which that is measured.
     pub position: DVec3,
     /// Out of the wall, of unit length.
     pub normal: DVec3,
@@ -119,7 +119,7 @@ pub struct ThinFacet {
     pub corners: [u32; 3],
     /// The area with walls below the limit.
     pub area: f64,
-    /// How far `area` may be off.
+    /// The greatest error of `area`.
     pub error: f64,
 }
 
@@ -132,13 +132,13 @@ struct FoundWall {
     away: DVec3,
 }
 
-/// What a search carries along.
+/// The state of a search.
 #[derive(Debug, Clone, Copy)]
 struct Search {
-    /// Walls that are not thinner by the tolerance are not looked for.
+    /// Thinner walls than this, by more than the tolerance, are searched for.
     best: f64,
     found: Option<FoundWall>,
-    /// The least depth of places of which it was not decided whether they are an edge's.
+    /// The least depth of places that may belong to an edge, which was not decided.
     open: f64,
     /// The least depth that rounding may have hidden at the sides of a shaft.
     low: f64,
@@ -313,8 +313,8 @@ impl Solid<'_> {
         }
     }
 
-    /// Whether a part of a turned patch is an edge's: all of it, or its lowest place not; `None`
-    /// where that differs within it.
+    /// Returns true if a part of a turned patch belongs to an edge, false if its lowest place does
+    /// not, and `None` if that differs within it.
     fn belongs_to_edge(&self, shaft: &FacetShaft, part: &Patch, low: DVec3) -> Option<bool> {
         let own = self.edges.nearest(shaft.foot(low), REACH * low.z + 4.0 * self.grain);
         if own.is_none() {
@@ -344,13 +344,13 @@ impl Solid<'_> {
         nearer && self.facing(shaft, u) < OPPOSED && self.edge_at(shaft, inside, depth)
     }
 
-    /// Whether a value to a turned side is an edge's, measured at `place`.
+    /// Returns true if a value to a turned side, measured at `place`, belongs to an edge.
     pub fn is_edge(&self, place: Vec3, value: f32) -> bool {
         let reach = REACH * f64::from(value) + 8.0 * self.grain;
         self.edges.nearest(place.as_dvec3(), reach).is_some()
     }
 
-    /// Whether a value of `depth`, to a turned side, is an edge's at this place.
+    /// Returns true if a value of `depth`, to a turned side, belongs to an edge at this place.
     fn edge_at(&self, shaft: &FacetShaft, place: DVec3, depth: f64) -> bool {
         self.edges.nearest(shaft.foot(place), REACH * depth + 8.0 * self.grain).is_some()
     }
@@ -413,7 +413,7 @@ impl Solid<'_> {
                 area += own;
                 error += doubt;
             } else if facing < -side {
-                // Where a ray enters matter again, it may leave it again and be counted twice.
+                // A ray that re-enters matter may leave it again and be counted twice.
                 again += patch.area();
             }
         }

@@ -24,14 +24,14 @@ use crate::tight_frame::tight_frame;
 /// Vertices a task takes at once: a cancel is seen within a few milliseconds.
 const CHUNK: usize = 512;
 
-/// What is asked of a measurement besides the map.
+/// The results requested besides the map.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WallQuery {
     /// The facets with walls below this are listed, in the mesh's unit.
     pub limit: Option<f64>,
-    /// Without a limit, the facets with the thinnest hundredth of the area are listed.
+    /// True to list, without a limit, the facets with the thinnest hundredth of the area.
     pub thinnest: bool,
-    /// How far a coordinate of the mesh may be off besides the rounding to single precision.
+    /// The greatest error of the mesh's coordinates besides the rounding to single precision.
     pub grain: f64,
 }
 
@@ -74,7 +74,7 @@ pub fn measure_at_places(
             rayon::join(|| ready(&turned(mesh, turn), &turned(solid, turn)), || of(mesh));
         let made = made?;
         let own = &made.1.0;
-        // The same vertices and triangles, though they are rounded anew.
+        // The same vertices and triangles, although rounded again.
         if own.weld == surface.weld && own.triangles == surface.triangles {
             let grain = query.grain + single(&made.0);
             let mut done = measured(made, WallQuery { grain, ..query })?;
@@ -386,7 +386,7 @@ fn one(
         let error = c.folded.error + c.wall.map_or(0.0, |t| whole.sagitta(t));
         return SiteValue { value: c.folded.value, error, reason, turned: c.turned };
     }
-    // Where every ray of the cone leaves the solid (a needle's tip), the ball still has a size.
+    // If every ray of the cone leaves the solid (at a needle's tip), the ball still has a size.
     let ball = caster.wall_ball(site).or_else(|| caster.ball(site));
     ball.map_or(SiteValue::missing(Reason::NothingAhead), |b| SiteValue {
         value: b.diameter,

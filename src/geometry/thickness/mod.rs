@@ -47,7 +47,7 @@ pub use samples::AreaSample;
 pub use surface::{MeshFaults, WeldedSurface};
 pub use walls::Walls;
 
-/// How thickness is defined.
+/// The definition of thickness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ThicknessMethod {
@@ -59,7 +59,7 @@ pub enum ThicknessMethod {
     Sphere,
 }
 
-/// What is measured.
+/// The measured side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeasuredSide {
@@ -69,22 +69,22 @@ pub enum MeasuredSide {
     Gap,
 }
 
-/// What a vertex on a sharp edge says, where "the opposite side" has no meaning.
+/// The value of a vertex on a sharp edge, where "the opposite side" has no meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgePolicy {
-    /// Whatever was measured with the mean of the normals.
+    /// The value measured with the mean of the normals.
     Raw,
     /// The median of the nearest vertices beside the edge; where there are none (a box of eight
     /// vertices), the smallest of the walls under the faces that meet there.
     Extrapolate,
     /// The inscribed sphere, which goes to zero there.
     Sphere,
-    /// Nothing, with [`Reason::Edge`].
+    /// No value, with [`Reason::Edge`].
     Neutral,
 }
 
-/// Why a value is what it is.
+/// The reason for a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u8)]
@@ -94,7 +94,7 @@ pub enum Reason {
     /// On a sharp edge, or a ball held by one: the value follows the edge policy, or is missing
     /// under `Neutral`.
     Edge,
-    /// Missing: no wall ahead; the mesh is open there, or nothing lies in front of it.
+    /// Missing: no wall ahead; the mesh is open there, or nothing is in front of it.
     NothingAhead,
     /// Missing: the faces around the vertex cancel each other, so there is no direction to measure
     /// in.
@@ -103,39 +103,39 @@ pub enum Reason {
     NoFace,
 }
 
-/// Where values are wanted.
+/// The places to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeasuredPlaces {
     /// At each welded vertex.
     Vertices,
-    /// At each triangle's centroid, too.
+    /// At each triangle's centroid as well.
     VerticesAndFaces,
 }
 
-/// What is measured, where and how. The default is what `sculptd thickness` does: one ray along the
+/// The settings of a measurement. The default is that of `sculptd thickness`: one ray along the
 /// normal. A cone has 25 rays within 60 degrees, corrected by the chord.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct ThicknessSettings {
-    /// How thickness is defined.
+    /// The definition of thickness.
     pub method: ThicknessMethod,
-    /// What is measured: walls or gaps.
+    /// The measured side: walls or gaps.
     pub side: MeasuredSide,
     /// Rays in a cone, 1 to 1000.
     pub rays: usize,
     /// The cone's full angle, degrees, 0 to 120.
     pub opening: f32,
-    /// What a ray's length is corrected by.
+    /// The correction of a ray's length.
     pub correction: Correction,
-    /// Which rays of a cone do not count.
+    /// The rule for outliers among the rays of a cone.
     pub outliers: Outliers,
-    /// What a ray counts in the cone's mean.
+    /// The weight of a ray in the cone's mean.
     pub weights: Weights,
-    /// What a vertex on a sharp edge says.
+    /// The value of a vertex on a sharp edge.
     pub edges: EdgePolicy,
     /// An edge that turns by more than this, degrees, is sharp.
     pub crease: f32,
-    /// Where values are wanted.
+    /// The places to measure.
     pub at: MeasuredPlaces,
 }
 
@@ -202,18 +202,19 @@ impl ThicknessSettings {
 /// why.
 #[derive(Debug, Clone)]
 pub struct Thickness {
-    /// What was asked for.
+    /// The requested settings.
     pub settings: ThicknessSettings,
     /// One a vertex of the mesh.
     pub values: Vec<f32>,
-    /// Why each value is what it is, one a vertex of the mesh.
+    /// The reason for each value, one per vertex of the mesh.
     pub reasons: Vec<Reason>,
-    /// One a vertex: how far the value may be off besides rounding and the vertex's normal: the
-    /// opposite facet's distance from the curved surface, and of a cone its mean's from its axis.
+    /// The greatest error of each vertex's value besides rounding and the vertex's normal: the
+    /// opposite facet's distance from the curved surface, and for a cone the distance of its mean
+    /// from its axis.
     pub errors: Vec<f32>,
     /// One a triangle, with [`MeasuredPlaces::VerticesAndFaces`].
     pub face_values: Vec<f32>,
-    /// Why each of `face_values` is what it is.
+    /// The reason for each of `face_values`.
     pub face_reasons: Vec<Reason>,
     /// Places spread evenly over the area, for statistics that do not depend on how the part is
     /// meshed. Their triangles are those of the walls, where there were any.
@@ -285,8 +286,8 @@ struct SiteValue {
     value: f32,
     error: f32,
     reason: Reason,
-    /// The other side is not parallel enough to make a wall: near a sharp edge the value tells of
-    /// the edge.
+    /// True if the other side is not parallel enough to make a wall: near a sharp edge the value
+    /// measures the edge.
     turned: bool,
 }
 

@@ -15,10 +15,11 @@ use crate::{CentredMesh, PolyMesh, TriMesh};
 /// Facets beside which the winding number is looked at.
 const FACETS: usize = 4000;
 
-/// The union of the shells of `part`, or nothing where they do not overlap, or the part is open.
+/// Returns the union of the shells of `part`, or `None` if they do not overlap, or the part is
+/// open.
 ///
 /// # Errors
-/// Where they overlap and no union passes the checks of [`solve`].
+/// Returns an error if they overlap and no union passes the checks of [`solve`].
 pub fn united(part: &PolyMesh, job: &Job) -> Result<Option<PolyMesh>, BooleanError> {
     let own = CentredMesh::new(part, 1.0).mesh;
     if !boxes_overlap(&own) || !overlaps(part, &own, job)? {
@@ -27,7 +28,7 @@ pub fn united(part: &PolyMesh, job: &Job) -> Result<Option<PolyMesh>, BooleanErr
     solve(part, job).map(Some)
 }
 
-/// Whether the boxes of two shells overlap: the cheap look.
+/// Returns true if the boxes of two shells overlap: the cheap test.
 fn boxes_overlap(mesh: &TriMesh) -> bool {
     let (weld, positions) = weld_positions(&mesh.positions);
     let mut sets = DisjointSets::new(positions.len());
@@ -52,7 +53,7 @@ fn boxes_overlap(mesh: &TriMesh) -> bool {
     })
 }
 
-/// Whether a facet lies inside matter, or shells cross.
+/// Returns true if a facet is inside matter, or shells cross.
 fn overlaps(part: &PolyMesh, own: &TriMesh, job: &Job) -> Result<bool, BooleanError> {
     let surface = super::WeldedSurface::new(own, 0.7);
     let faults = surface.faults;

@@ -20,21 +20,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
-    /// What the command line calls it.
+    /// The name on the command line.
     pub name: String,
-    /// What people call it.
+    /// The displayed name.
     pub title: String,
-    /// Thinner than this asks for a second look.
+    /// A wall thinner than this gives a warning.
     pub warn_below: f32,
-    /// Thinner than this fails.
+    /// A wall thinner than this fails.
     pub fail_below: f32,
-    /// Thicker than this fails (sink marks, cooling time), where the process has such a limit.
+    /// A wall thicker than this fails (sink marks, cooling time), where the process has such a
+    /// limit.
     #[serde(default)]
     pub fail_above: Option<f32>,
     /// Largest sensible ratio between neighbouring walls, where the process has one.
     #[serde(default)]
     pub neighbour_ratio: Option<f32>,
-    /// Where the numbers are from.
+    /// The source of the numbers.
     pub source: String,
 }
 

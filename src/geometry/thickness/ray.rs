@@ -4,17 +4,18 @@
 //! hit, `c = h - o`, `b` the unit normal of the hit wall turned towards `a` (so `a . b > 0` on a
 //! wall that faces the vertex).
 //!
-//! - Uncorrected, a ray says `|c|`: on a slab of thickness d a cone of 120 degrees averages to
+//! - An uncorrected ray measures `|c|`: on a slab of thickness d a cone of 120 degrees averages to
 //!   about 1.3 d.
-//! - Corrected by the hit angle, it says `-c . b`, the distance of `o` from the plane of the hit
-//!   face: exact on a slab, too small on a wedge, biased by the curvature of a wall that bends.
-//! - Corrected by the chord (ours): let `h0` be where the axis ray, at the unknown depth `s`, meets
-//!   the wall, and `b0` the wall's normal there. On a plane, a sphere and a right cylinder alike
-//!   the chord from `h0` to `h` is at right angles to `b0 + b` (the tangents at both ends of an arc
-//!   make the same angle with its chord). So `s = -c . (b0 + b) / (a . (b0 + b))`: every ray of the
-//!   cone gives the depth along the axis without bias, on a wedge and on bent walls too. What is
-//!   left is the tessellation's error. A hit on another wall than the axis ray's (its normal turned
-//!   by more than 60 degrees) says nothing about this wall and does not count.
+//! - Corrected by the hit angle, it measures `-c . b`, the distance of `o` from the plane of the
+//!   hit face: exact on a slab, too small on a wedge, biased by the curvature of a wall that bends.
+//! - Corrected by the chord (a new method): let `h0` be the point where the axis ray, at the
+//!   unknown depth `s`, meets the wall, and `b0` the wall's normal there. On a plane, a sphere and
+//!   a right cylinder alike the chord from `h0` to `h` is at right angles to `b0 + b` (the tangents
+//!   at both ends of an arc make the same angle with its chord). So `s = -c . (b0 + b) / (a . (b0 +
+//!   b))`: every ray of the cone measures the depth along the axis without bias, on a wedge and on
+//!   bent walls too. Only the tessellation's error remains. A hit on another wall than the axis
+//!   ray's (its normal turned by more than 60 degrees) does not measure this wall and does not
+//!   count.
 
 use glam::Vec3;
 
@@ -22,7 +23,7 @@ use super::cone::{Cone, Folded, Outliers, fold, frame_along};
 use super::sharp_edges::{AcuteEdges, GRAZING};
 use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
-/// What a ray's length is corrected by.
+/// The correction of a ray's length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Correction {
@@ -37,21 +38,21 @@ pub enum Correction {
 /// A point from which thickness is measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Site<'a> {
-    /// Where thickness is measured.
+    /// The point where thickness is measured.
     pub point: Vec3,
-    /// Away from what is measured, of unit length.
+    /// The unit direction away from the measured side.
     pub away: Vec3,
-    /// A direction along the surface, which the cone's directions follow; zero: none is known.
+    /// A direction along the surface, which the cone's directions follow; zero: unknown.
     pub along: Vec3,
-    /// Triangles that the point lies on, rising.
+    /// The triangles that contain the point, ascending.
     pub own: &'a [u32],
-    /// How far its own triangles are left out of account by balls, mesh units; infinity: all the
-    /// way.
+    /// The distance within which balls ignore the site's triangles, in mesh units; infinity ignores
+    /// them everywhere.
     pub clear: f32,
 }
 
 impl Site<'_> {
-    /// Whether the site lies on triangle `t`. Thousands of triangles may share a vertex.
+    /// Returns true if triangle `t` contains the site. Thousands of triangles may share a vertex.
     #[inline(always)]
     pub(super) fn owns(&self, t: u32) -> bool {
         if self.own.len() <= 16 {
@@ -62,12 +63,12 @@ impl Site<'_> {
     }
 }
 
-/// What stays the same from site to site.
+/// The data shared by all sites.
 #[derive(Debug)]
 pub struct Caster<'a> {
     /// The tree over the measured mesh.
     pub tree: &'a Bvh8,
-    /// One a triangle, of unit length; zero where a triangle is left out.
+    /// One per triangle, of unit length; zero for a triangle that is left out.
     pub face_normals: &'a [Vec3],
     /// For [`Correction::Chord`]: smooth normals of each triangle's corners.
     pub corner_normals: &'a [[Vec3; 3]],
@@ -75,9 +76,9 @@ pub struct Caster<'a> {
     pub sign: f32,
     /// The directions of the rays.
     pub cone: &'a Cone,
-    /// Which rays do not count.
+    /// The rule for rays that do not count.
     pub outliers: Outliers,
-    /// What a ray's length is corrected by.
+    /// The correction of a ray's length.
     pub correction: Correction,
     /// Places beside these have no wall to a turned side; without them each has one.
     pub acute: Option<&'a AcuteEdges>,
@@ -87,7 +88,7 @@ pub struct Caster<'a> {
 /// degrees.
 const SAME_WALL: f32 = 0.5;
 
-/// What a cone of rays measures.
+/// The measurement of a cone of rays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConeValue {
     /// The mean and its error.
@@ -98,7 +99,7 @@ pub struct ConeValue {
     pub wall: Option<u32>,
 }
 
-/// What a thread reuses from site to site.
+/// Memory that a thread reuses from site to site.
 #[derive(Debug, Default)]
 pub struct ConeScratch {
     values: Vec<(f32, f32)>,
@@ -111,8 +112,8 @@ pub struct ConeScratch {
 const TURNED: f32 = 0.766;
 
 impl Caster<'_> {
-    /// The nearest wall ahead that faces the site: not its own triangles, none whose normal points
-    /// the site's way.
+    /// Returns the nearest wall ahead that faces the site: excludes the site's triangles, and any
+    /// whose normal points the site's way.
     pub fn hit(&self, site: &Site<'_>, dir: Vec3) -> Option<TreeHit> {
         self.tree.closest_hit(Ray::new(site.point, dir), |t| self.faces(site, t))
     }
@@ -125,7 +126,7 @@ impl Caster<'_> {
             && !site.owns(t)
     }
 
-    /// How far the box of the mesh reaches along the site's axis: no wall is thicker.
+    /// Returns the extent of the mesh's box along the site's axis: no wall is thicker.
     pub(super) fn longest(&self, site: &Site<'_>) -> f32 {
         let (lo, hi) = self.tree.bounds();
         (hi - lo).dot(site.away.abs()) * 1.000_01
@@ -192,8 +193,7 @@ impl Caster<'_> {
                 }
             }
         }
-        // Where nothing met the rule of the same wall, the plain lengths still tell more than
-        // nothing.
+        // If no hit is on the same wall, the plain lengths are still better than no value.
         if scratch.is_empty() && self.correction == Correction::Chord {
             for ((ray, hit), &weight) in rays.iter().zip(&*hits).zip(&self.cone.weights) {
                 if let Some(hit) = hit {

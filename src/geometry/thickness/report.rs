@@ -12,7 +12,7 @@ use super::{Correction, ThicknessMethod};
 use crate::CentredMesh;
 use crate::picture::{Camera, Picture, draw};
 
-/// What the page cannot know by itself.
+/// The data that the page cannot derive.
 #[derive(Debug, Clone, Copy)]
 pub struct ReportOrigin<'a> {
     /// FNV-1a, 64 bits, of the file's bytes.
@@ -93,7 +93,8 @@ details{margin:.5rem 0}@media \
 print{main{padding:0;max-width:none}h2{break-after:avoid}figure,tr,svg{break-inside:avoid}\
 details>summary{display:none}.verdict{print-color-adjust:exact}}";
 
-/// The page is for others: where the file lies on this machine is not theirs.
+/// Returns the file's name without its folder: the page is for others, and must not reveal local
+/// paths.
 fn name_of(a: &ThicknessAnswer) -> Cow<'_, str> {
     Path::new(&a.file).file_name().map_or(a.file.as_str().into(), |n| n.to_string_lossy())
 }

@@ -101,7 +101,7 @@ impl AcuteEdges {
         self.build(from + half, to);
     }
 
-    /// Whether a value to a turned side, measured at `place`, is an edge's.
+    /// Returns true if a value to a turned side, measured at `place`, belongs to an edge.
     pub fn own(&self, place: DVec3, value: f64) -> bool {
         self.nearest(place, REACH * value * (1.0 + 1e-6)).is_some()
     }
@@ -158,7 +158,7 @@ fn meets_acutely(surface: &WeldedSurface, tilts: &[f32], s: u32, t: u32, sign: f
     m.dot(n) < -grazing(tilts, s, t) && convex(surface, s, t, sign)
 }
 
-/// Seen from the first triangle's plane, the second lies on the measured side.
+/// Returns true if the second triangle is on the measured side of the first one's plane.
 fn convex(surface: &WeldedSurface, s: u32, t: u32, sign: f64) -> bool {
     let (Some(a), Some(b)) = (surface.corners(s as usize), surface.corners(t as usize)) else {
         return false;

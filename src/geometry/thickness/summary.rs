@@ -27,13 +27,13 @@ pub struct ThicknessSummary {
     /// The area in each of [`CLASSES`] classes, in the square of the unit. The last class also
     /// holds what is thicker than its end.
     pub histogram: Vec<f64>,
-    /// Where the last class ends: the maximum, or a twentieth above what 99 of 100 parts of the
-    /// area stay below, where that is less. So the rims of a plate, which are as thick as the plate
-    /// is long, do not press the walls into one class.
+    /// The end of the last class: the maximum, or a twentieth above the value that 99 of 100 parts
+    /// of the area stay below, if that is less. So the rims of a plate, which are as thick as the
+    /// plate is long, do not press the walls into one class.
     pub histogram_top: Option<f32>,
-    /// Where the least wall is.
+    /// The position of the least wall.
     pub thinnest: Option<[f32; 3]>,
-    /// Where the largest value is.
+    /// The position of the largest value.
     pub thickest: Option<[f32; 3]>,
     /// Vertices without a value, by the reason.
     pub missing: MissingCounts,
@@ -52,7 +52,7 @@ pub struct MissingCounts {
     pub no_normal: u64,
     /// The vertex belongs to no face of any area.
     pub no_face: u64,
-    /// The vertex lies on a sharp edge, and the policy is [`super::EdgePolicy::Neutral`].
+    /// The vertex is on a sharp edge, and the policy is [`super::EdgePolicy::Neutral`].
     pub edge: u64,
 }
 
@@ -61,9 +61,9 @@ pub struct MissingCounts {
 pub struct BeyondArea {
     /// The area.
     pub area: f64,
-    /// How far `area` may be off.
+    /// The greatest error of `area`.
     pub error: f64,
-    /// The area that has values at all.
+    /// The area that has values.
     pub all: f64,
 }
 
@@ -125,7 +125,7 @@ impl Thickness {
             histogram[class_of(s.value, top)] += self.sample_area;
         }
         let most_frequent = top.and_then(|top| self.usual(top, &histogram));
-        // Where every place belongs to an edge, the map's least value still tells of the size.
+        // If every place belongs to an edge, the map's least value still indicates the size.
         let least = match self.least {
             Some(l) => Some((l.value as f32, l.place().as_vec3())),
             None => least,
@@ -169,12 +169,13 @@ impl Thickness {
         AreaStatistics { mean: Some(mean), median: Some(share(0.5)), most: Some(share(0.99)) }
     }
 
-    /// A bound that every value keeps that does not lie on a sharp edge, against the
-    /// curved surface that the triangles stand for. Four parts are added: single precision; the
-    /// normal, uncertain by half of how the faces at the vertex spread, which lengthens a ray by
-    /// 1/cos of it; the facets' distance from the curved surface; and for a cone how far its mean
-    /// lies from the ray along the normal. A cone that is not corrected also carries the bias of
-    /// its geometry, up to 32 % at 120 degrees, which is included.
+    /// Returns a bound on the error of every value that is not on a sharp edge, relative to the
+    /// curved surface that the triangles approximate. It is the sum of four parts. The first is
+    /// single precision. The second is the normal, uncertain by half of the spread of the faces at
+    /// the vertex, which lengthens a ray by 1/cos of it. The third is the facets' distance from the
+    /// curved surface. The fourth, for a cone, is the distance of its mean from the ray along the
+    /// normal. A cone that is not corrected also carries the bias of its geometry, up to 32 % at
+    /// 120 degrees, which is included.
     pub fn error_bound(&self) -> f32 {
         let s = &self.surface;
         let half = (self.settings.opening * 0.5).to_radians();
@@ -209,7 +210,7 @@ impl Thickness {
             }
             most = most.max(bound);
         }
-        // Places between the vertices lie on facets, which stand off the curved surface.
+        // Places between the vertices are on facets, which deviate from the curved surface.
         let off = (0..s.triangles.len() as u32).map(|t| s.sagitta(t)).fold(0.0, f32::max);
         most + off
     }

@@ -32,11 +32,11 @@ pub struct WeldedSurface {
     pub around: Vec<u32>,
     /// An edge at this vertex turns by more than the crease angle.
     pub sharp: Vec<bool>,
-    /// What is wrong with the mesh.
+    /// The faults of the mesh.
     pub faults: MeshFaults,
 }
 
-/// What is wrong with a mesh, counted.
+/// The faults of a mesh, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct MeshFaults {
     /// Triangles with an index out of range or a coordinate that is not finite.
@@ -127,7 +127,8 @@ impl WeldedSurface {
         (corners[0] != DROPPED).then(|| corners.map(|v| self.positions[v as usize]))
     }
 
-    /// How far rounding may turn each triangle, radians; `grain`: how far a coordinate may be off.
+    /// Returns the greatest rotation of each triangle by rounding, in radians; `grain` is the
+    /// greatest error of a coordinate.
     pub fn tilts(&self, grain: f64) -> Vec<f32> {
         let one = |t: usize| {
             let Some([a, b, c]) = self.corners(t) else { return 1.0 };
@@ -138,8 +139,8 @@ impl WeldedSurface {
         (0..self.triangles.len()).map(one).collect()
     }
 
-    /// How far triangle `t` may lie from the curved surface that it stands for: by how its normal
-    /// differs from those at its corners that are not sharp.
+    /// Returns the greatest distance of triangle `t` from the curved surface that it approximates,
+    /// from the difference between its normal and those at its corners that are not sharp.
     pub fn sagitta(&self, t: u32) -> f32 {
         let Some([a, b, c]) = self.corners(t as usize) else { return 0.0 };
         let own = self.face_normals[t as usize];

@@ -12,18 +12,18 @@ use crate::bvh::Bvh8;
 /// many triangles does.
 const MORE_BOXES: f64 = 32.0;
 
-/// A surface as it was before places were put on it.
+/// A surface before places were added to it.
 #[derive(Debug, Clone)]
 pub struct Walls {
     /// The surface, in the frame and the unit of the mesh with the places.
     pub mesh: TriMesh,
-    /// Of each triangle of the mesh with the places, the triangle of `mesh` that it is a part of.
+    /// For each triangle of the mesh with the places, the triangle of `mesh` that contains it.
     pub of: Vec<u32>,
 }
 
 impl Walls {
-    /// Whether these belong to `fine`, and to cast at them costs less: the boxes of long slanted
-    /// triangles are mostly empty, and those of their parts are not.
+    /// Returns true if these belong to `fine`, and rays against them cost less: the boxes of long
+    /// slanted triangles are mostly empty, and those of their parts are not.
     pub(super) fn serve(&self, fine: &TriMesh) -> bool {
         let right = self.of.len() == fine.triangles.len()
             && self.mesh.triangles.len() <= self.of.len()
@@ -50,8 +50,8 @@ fn boxes(mesh: &TriMesh) -> f64 {
     (0..mesh.triangles.len()).map(one).filter(|s| s.is_finite()).sum()
 }
 
-/// Gives a triangle that was cut for places its own normal at all corners: it is so long that what
-/// lies between its corners is a flat wall, and no bent one that it stands for.
+/// Gives a triangle that was cut for places its face normal at all corners. It is so long that the
+/// area between its corners is a flat wall, not an approximation of a bent one.
 pub(super) fn flatten_what_was_cut(corners: &mut [[Vec3; 3]], faces: &[Vec3], of: &[u32]) {
     let mut parts = vec![0u32; corners.len()];
     of.iter().for_each(|&t| parts[t as usize] += 1);
@@ -102,8 +102,8 @@ impl<'a> OwnWalls<'a> {
         }
     }
 
-    /// How far about welded vertex `v` its walls are left out of account: as far as the surface's
-    /// own triangles at it reach everywhere. All the way, where the walls are those triangles.
+    /// Returns the distance around welded vertex `v` within which its walls are ignored: as far as
+    /// the surface's triangles at it reach everywhere. Infinite if the walls are those triangles.
     pub(super) fn clear(&self, v: usize) -> f32 {
         if self.cut.is_none() {
             return f32::INFINITY;

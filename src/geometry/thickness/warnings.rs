@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, and what that means for its thickness.
+//! The faults of a mesh, and their effect on its thickness.
 
 use super::MeshFaults;
 use super::summary::ThicknessSummary;

@@ -1,4 +1,4 @@
-//! Many files at once: a row, a report and a page of all, taken up again where it was broken off.
+//! Many files at once: a row, a report and a summary page; an interrupted batch is resumed.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ pub(super) struct Row {
     max: Option<f32>,
     below_percent: Option<f64>,
     pub(super) seconds: f64,
-    /// Why it failed, or could not be read.
+    /// The reason why it failed, or could not be read.
     pub(super) why: Option<String>,
 }
 
@@ -78,7 +78,7 @@ pub(super) fn run(args: &ThicknessArgs, limits: ThicknessLimits, json: bool) -> 
     }
 }
 
-/// A name for each file's row and report: its own, numbered where two share it.
+/// Returns a name for each file's row and report: the file's name, numbered if several share it.
 fn names(paths: &[PathBuf]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     paths

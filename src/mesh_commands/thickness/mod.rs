@@ -55,13 +55,12 @@ pub struct ThicknessArgs {
     /// Write the outcome as JUnit XML.
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Where a batch writes its reports and its page of all; taken up again where it was broken
-    /// off.
+    /// Folder for a batch's reports and summary page; an interrupted batch is resumed.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
 }
 
-/// How thickness is defined and measured.
+/// The definition and the settings of the measurement.
 #[derive(Debug, Clone, clap::Args)]
 pub struct How {
     /// Rays of a cone, 1 to 1000 [default: 25]. More than one means `--method cone`.
@@ -73,21 +72,21 @@ pub struct How {
     /// The cone's full angle, degrees, 0 to 120.
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0)]
     pub opening: f32,
-    /// What the length of each ray of a cone is corrected by: nothing, the hit face's angle, or the
-    /// chord's (no bias on bent walls).
+    /// Correction of the length of each ray of a cone: none, the hit face's angle, or the chord's
+    /// (no bias on bent walls).
     #[arg(long, value_enum, default_value = "chord")]
     pub correction: CorrectionArg,
     /// Rays of a cone that do not count: keep, within:0.1-0.9 (of the range of the values),
     /// range:0.1 to range:0.9, sigma-mean, sigma-median
     #[arg(long, value_name = "RULE", default_value = "sigma-median", value_parser = outliers)]
     pub outliers: Outliers,
-    /// What a ray counts in the mean.
+    /// Weight of a ray in the mean.
     #[arg(long, value_enum, default_value = "plain")]
     pub weights: WeightsArg,
     /// `wall`: behind the surface; `gap`: the clearance in front of it.
     #[arg(long, value_enum, default_value = "wall")]
     pub side: SideArg,
-    /// What vertices on sharp edges say.
+    /// Value of vertices on sharp edges.
     #[arg(long, value_enum, default_value = "extrapolate")]
     pub edges: EdgesArg,
     /// An edge that turns by more than this is sharp.
@@ -222,8 +221,8 @@ impl How {
 }
 
 impl LimitArgs {
-    /// The preset's limits, each replaced by what was said itself; `presets` are those that a
-    /// name can mean.
+    /// Returns the preset's limits, each replaced by its option if given; `presets` are the ones
+    /// available by name.
     pub fn limits(&self, presets: &[Preset]) -> Result<ThicknessLimits, Fail> {
         let mut limits = ThicknessLimits::default();
         if let Some(name) = &self.preset {
@@ -252,7 +251,7 @@ impl LimitArgs {
     }
 }
 
-/// The preset of this name, or a sentence that names those that exist.
+/// Returns the preset of this name, or a sentence that lists the available ones.
 fn named<'a>(name: &str, presets: &'a [Preset]) -> Result<&'a Preset, String> {
     let known = presets.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
     presets

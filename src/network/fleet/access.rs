@@ -1,5 +1,5 @@
-//! Who may do what in a fleet. Staff hold one key; each installation holds one that is made of it
-//! for its name alone, so that a computer that is stolen out of a hall opens no other.
+//! Access rights in a fleet. Staff hold one key; each installation holds one that is derived from
+//! it for its name alone, so that a stolen computer gives access to no other installation.
 //!
 //! A published state carries a tag (HMAC-SHA-256, RFC 2104); requests and answers are sealed
 //! (ChaCha20-Poly1305) under keys that the sender draws for each message's stream.
@@ -122,14 +122,14 @@ pub fn state_tag(secret: &Secret, json: &[u8]) -> [u8; TAG] {
     secret.derived("sculptd fleet state 1", &[json]).0
 }
 
-/// Whether a tag is that of a state; takes as long for any tag.
+/// Returns true if a tag belongs to a state, in constant time.
 pub fn is_tagged(secret: &Secret, json: &[u8], tag: &[u8]) -> bool {
     let expected = state_tag(secret, json);
     let differs = expected.iter().zip(tag).fold(0, |d, (a, b)| d | (a ^ b));
     tag.len() == TAG && differs == 0
 }
 
-/// Which way a sealed message goes.
+/// Direction of a sealed message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FleetWay {
     /// From staff to an installation.
@@ -155,7 +155,7 @@ pub struct FleetSeal {
 }
 
 impl FleetSeal {
-    /// A seal with a stream of its own.
+    /// Creates a seal with a new random stream.
     pub fn new(secret: &Secret, way: FleetWay, entropy: &mut Entropy) -> FleetSeal {
         let mut stream = [0; STREAM];
         entropy(&mut stream);

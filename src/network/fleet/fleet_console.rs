@@ -14,7 +14,7 @@ use super::state::InstallationState;
 use crate::keyring::Entropy;
 use sculptd_devices::Clock;
 
-/// How often requests are looked at.
+/// Interval at which requests are checked.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// The staff's end.

@@ -19,12 +19,12 @@ const LEASE_MS: u32 = 4_000;
 /// Messages that wait to be read; more are dropped, as a full network drops them.
 const WAITING: usize = 8192;
 
-/// What has come for staff.
+/// Message received by staff.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StaffMessage {
     /// A published state, and its tag.
     State {
-        /// The installation's name, as the key says.
+        /// The installation's name, from the key.
         name: String,
         /// The state.
         json: Vec<u8>,
@@ -64,10 +64,10 @@ pub struct InstallationLink {
 }
 
 impl InstallationLink {
-    /// Opens a session and says that the run is there.
+    /// Opens a session and announces the run.
     ///
     /// # Errors
-    /// Where an endpoint cannot be used, as a text.
+    /// An endpoint cannot be used; the text says why.
     pub fn open(
         fleet: &str,
         name: &str,
@@ -121,7 +121,7 @@ impl InstallationLink {
 pub struct StaffLink {
     session: zenoh::Session,
     fleet: String,
-    /// What has come.
+    /// Received messages.
     pub incoming: cc::Receiver<StaffMessage>,
     _subscribers: [Subscriber<()>; 3],
 }
@@ -130,7 +130,7 @@ impl StaffLink {
     /// Opens a session and listens to a fleet.
     ///
     /// # Errors
-    /// Where an endpoint cannot be used, as a text.
+    /// An endpoint cannot be used; the text says why.
     pub fn open(fleet: &str, endpoints: &Endpoints) -> Result<StaffLink, String> {
         let session = open_session(endpoints, LEASE_MS)?;
         let failed = |e: zenoh::Error| e.to_string();

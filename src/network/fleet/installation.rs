@@ -14,7 +14,7 @@ use crate::seal::Secret;
 /// Requests that are looked at at once, and a second, whoever sends them.
 const REQUESTS: (f64, f64) = (64.0, 16.0);
 
-/// What carries out the requests of staff.
+/// Actions that carry out the requests of staff.
 pub trait InstallationPort {
     /// Shows a text to the staff on the spot; an empty one: nothing more.
     ///
@@ -54,7 +54,7 @@ pub struct InstallationIdentity {
     pub secret: Secret,
     /// Names the run: 16 hexadecimal digits.
     pub run: String,
-    /// When the run begins, seconds since 1970 (UTC).
+    /// Start of the run, in seconds since 1970 (UTC).
     pub started_s: u64,
 }
 
@@ -66,7 +66,7 @@ pub struct Installation {
     publisher: StatePublisher,
     guard: RequestGuard,
     limit: RateLimit,
-    /// Settings on trial are taken back then.
+    /// Time at which settings on trial are reverted.
     trial_until_us: Option<u64>,
     restarts: bool,
     /// Requests that nobody with the key can have sent, and those beyond the bound.
@@ -98,12 +98,12 @@ impl Installation {
         }
     }
 
-    /// Whether the program is to begin a new run, with the settings that are in place now.
+    /// Returns true if the program must start a new run with the settings now in place.
     pub fn restarts(&self) -> bool {
         self.restarts
     }
 
-    /// When a state is due whether or not it has changed.
+    /// Returns the time at which a state is due even without a change, in microseconds.
     pub fn due_us(&self) -> u64 {
         self.publisher.due_us()
     }
@@ -169,8 +169,8 @@ impl Installation {
         }
     }
 
-    /// Passes time: the state to be published, if one is due, made of what was measured. Settings
-    /// that nobody has kept until their trial is over are taken back.
+    /// Passes time: returns the state to publish, if one is due, built from the measurements.
+    /// Reverts settings that nobody has kept by the end of their trial.
     pub fn advance(
         &mut self,
         mut measured: InstallationState,

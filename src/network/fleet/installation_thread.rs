@@ -1,8 +1,8 @@
-//! An installation's end of the fleet beside its daemon, on a thread of its own (`sculptd-fleet`):
-//! it measures what is published, and carries out what staff ask for.
+//! An installation's end of the fleet beside its daemon, on a separate thread (`sculptd-fleet`): it
+//! measures the published state, and carries out the requests of staff.
 //!
-//! Nothing of the daemon waits for it. A network that is gone costs it nothing: it goes on
-//! measuring, and what it publishes is heard again when the network is back.
+//! The daemon never waits for it. A lost network costs it nothing: it keeps measuring, and its
+//! publications arrive again when the network is back.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -31,9 +31,9 @@ use sculptd_daemon::kiosk::keeper::KioskDesk;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::Clock;
 
-/// How often it is measured whether something has changed.
+/// Interval at which changes are measured.
 const LOOK: Duration = Duration::from_millis(200);
-/// Disk and devices are looked at so often, microseconds.
+/// Interval at which disk and devices are checked, in microseconds.
 const SLOW_US: u64 = 1_000_000;
 /// Bytes of the newest error, and of a device's line.
 const MAX_LINE: usize = 500;
@@ -53,7 +53,7 @@ pub trait LogLines: Send {
 /// Says what is wrong with the text of a settings file.
 pub type SettingsCheck = Box<dyn Fn(&str) -> Result<(), String> + Send>;
 
-/// What an installation shows to its fleet, and what that may touch.
+/// Data that an installation shows to its fleet, and the resources that the fleet may change.
 pub struct FleetPart {
     /// The fleet's name.
     pub fleet: String,
@@ -61,7 +61,7 @@ pub struct FleetPart {
     pub name: String,
     /// Its key.
     pub secret: Secret,
-    /// Where others are found.
+    /// Endpoints of the others.
     pub endpoints: Endpoints,
     /// The settings file, and what the start of the program found of a trial.
     pub settings: (SettingsFiles, TrialStart),
@@ -69,7 +69,7 @@ pub struct FleetPart {
     pub check: SettingsCheck,
     /// The log.
     pub log: Box<dyn LogLines>,
-    /// Where sculptures are kept.
+    /// Folder of the sculptures.
     pub gallery: PathBuf,
     /// Seconds since 1970 (UTC) at the start.
     pub started_s: u64,
@@ -84,7 +84,7 @@ impl std::fmt::Debug for FleetPart {
     }
 }
 
-/// What the thread looks at of a run.
+/// The parts of a run that the thread observes.
 #[derive(Debug)]
 pub struct RunInSight {
     /// The loop's newest state.
@@ -93,7 +93,7 @@ pub struct RunInSight {
     pub desk: Arc<KioskDesk>,
     /// The devices.
     pub adaptors: Arc<Adaptors>,
-    /// How the window stands.
+    /// State of the window.
     pub window: WindowLink,
     /// Ends the run.
     pub stop: Arc<AtomicBool>,
@@ -104,7 +104,7 @@ pub struct RunInSight {
 /// Starts the thread; it ends with the run.
 ///
 /// # Errors
-/// Where the network or a thread cannot be had, as a text.
+/// The network or a thread is not available; the text says why.
 pub fn start(mut part: FleetPart, run: RunInSight) -> Result<JoinHandle<()>, String> {
     let mut id = [0; 8];
     (part.entropy)(&mut id);
@@ -160,9 +160,9 @@ fn look_after(
 struct DaemonPort {
     part: FleetPart,
     run: RunInSight,
-    /// What the run began with.
+    /// Settings with which the run started.
     settings: SettingsState,
-    /// What is looked at seldom, and when it was.
+    /// Slow measurements, and their time.
     slow: Option<(u64, Option<u64>, Vec<DeviceLine>)>,
 }
 

@@ -15,11 +15,11 @@
 //! ```
 //!
 //! Laws kept here:
-//! * State says nothing of visitors. Anybody on the network can read it; nobody without the key of
-//!   the installation can publish one that is believed.
-//! * Nobody without the staff's key can ask for anything, and nothing is done twice.
-//! * A network that is gone stops no installation. Settings on trial are taken back by the
-//!   installation itself where nobody tells it to keep them.
+//! * State says nothing of visitors. Anybody on the network can read it; only a holder of the
+//!   installation's key can publish an accepted one.
+//! * Only holders of the staff's key can send requests, and no request is carried out twice.
+//! * A lost network stops no installation. The installation itself reverts settings on trial unless
+//!   a request keeps them.
 
 pub mod access;
 #[cfg(feature = "zenoh")]

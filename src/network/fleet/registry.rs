@@ -1,8 +1,8 @@
-//! The list of a fleet: the newest state of each installation, and whether it is there.
+//! The list of a fleet: the newest state of each installation, and whether it is online.
 //!
-//! An installation is there while its publications come; one that says nothing for [`LOST_US`] is
-//! lost, and one whose liveliness token ends is lost at once. One that comes back is there with its
-//! next publication: there is nothing to be caught up with, as each publication is whole.
+//! An installation is online while its publications arrive. One that is silent for [`LOST_US`] is
+//! lost, and one whose liveliness token ends is lost at once. A returning one is online with its
+//! next publication: nothing has to be caught up, because each publication is complete.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -15,32 +15,32 @@ const PAST_RUNS: usize = 32;
 /// Installations of one fleet.
 pub const MAX_INSTALLATIONS: usize = 10_000;
 
-/// What is known of an installation.
+/// State of an installation in the list.
 #[derive(Debug, Clone)]
 pub struct RegistryEntry {
     /// Its newest state.
     pub state: Arc<InstallationState>,
-    /// When that came; 0: it is remembered from an earlier list.
+    /// Time of its arrival, in microseconds; 0: it is remembered from an earlier list.
     pub heard_us: u64,
-    /// Since when it is there, or lost.
+    /// Time since which it is online or lost, in microseconds.
     pub since_us: u64,
     here: bool,
     past_runs: VecDeque<String>,
 }
 
 impl RegistryEntry {
-    /// Whether it is there.
+    /// Returns true if it is online.
     pub fn is_here(&self) -> bool {
         self.here
     }
 }
 
-/// What has changed in the list.
+/// Change of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FleetChange {
-    /// An installation is there that was not.
+    /// An installation came online.
     Came(String),
-    /// It is there no more.
+    /// It is lost.
     Lost(String),
     /// Its state says something else.
     Changed(String),
@@ -94,7 +94,7 @@ impl FleetRegistry {
         let newer = if state.run == old.run {
             state.sequence > old.sequence
         } else {
-            // The clock of an installation may have been set back; what is lost may begin anew.
+            // The clock of an installation may have been set back; a lost one may restart.
             (state.started_s >= old.started_s || !entry.here)
                 && !entry.past_runs.contains(&state.run)
         };
@@ -146,12 +146,12 @@ impl FleetRegistry {
         }
     }
 
-    /// What is known of an installation.
+    /// Returns the entry of an installation.
     pub fn get(&self, name: &str) -> Option<&RegistryEntry> {
         self.entries.get(name)
     }
 
-    /// Whether the run that an installation publishes came after another one.
+    /// Returns true if the run that an installation publishes started after this one.
     pub fn is_newer(&self, name: &str, run: &str) -> bool {
         self.get(name).is_some_and(|e| e.state.run != run && e.past_runs.iter().any(|r| r == run))
     }
@@ -186,7 +186,7 @@ mod tests {
         assert!(!list.observe(state("a", 100, 9), 4), "the run before");
         assert!(!list.observe(state("0", 50, 9), 4), "one before that, which nobody heard");
         assert_eq!(list.refused, 4);
-        // Lost, it begins anew with a clock that was set back; an old run stays an old run.
+        // A lost installation restarts with a clock that was set back; an old run stays an old run.
         list.token_ended("hall", "a", 5);
         assert!(
             list.get("hall").is_some_and(RegistryEntry::is_here),

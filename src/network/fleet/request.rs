@@ -24,11 +24,11 @@ pub struct FleetRequest {
     pub run: String,
     /// Greater than that of any request that this run has taken.
     pub sequence: u64,
-    /// What is asked for.
+    /// The requested action.
     pub action: FleetAction,
 }
 
-/// What is asked for.
+/// Action that staff request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "do", rename_all = "kebab-case")]
@@ -42,12 +42,11 @@ pub enum FleetAction {
     RestartVisit,
     /// The newest lines of the log.
     Logs {
-        /// How many, 1 to 1000.
+        /// Number of lines, 1 to 1000.
         lines: u32,
     },
-    /// Puts a settings file in the place of the installation's, on trial, and begins a new run with
-    /// it. The installation keeps its own table `[fleet]`. Where the file is in place already,
-    /// nothing is done.
+    /// Replaces the installation's settings file, on trial, and starts a new run with it. The
+    /// installation keeps its table `[fleet]`. If the file is in place already, nothing is done.
     TrySettings {
         /// The text of the file, without a table `[fleet]`; at most 64 KiB.
         text: String,
@@ -69,10 +68,10 @@ pub enum FleetAction {
 }
 
 impl FleetAction {
-    /// Whether it is within its bounds.
+    /// Checks that it is within its bounds.
     ///
     /// # Errors
-    /// Says what is expected.
+    /// The text names the expected range.
     pub fn check(&self) -> Result<(), String> {
         let least = |what: &str, found: u32, most: u32| match (1..=most).contains(&found) {
             true => Ok(()),
@@ -98,12 +97,12 @@ impl FleetAction {
 pub struct FleetAnswer {
     /// The request's.
     pub id: String,
-    /// What became of it.
+    /// Result of the request.
     #[serde(flatten)]
     pub outcome: FleetOutcome,
 }
 
-/// What became of a request.
+/// Result of a request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "outcome", rename_all = "kebab-case")]

@@ -8,10 +8,10 @@ use super::request::{FleetAnswer, FleetOutcome, FleetRequest};
 /// Requests whose answers are kept for who asks again.
 const REMEMBERED: usize = 64;
 
-/// What is done about a request that has come.
+/// Decision about a received request.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Admission {
-    /// It is to be carried out, and [`RequestGuard::answered`] told.
+    /// Carry it out, and pass the result to [`RequestGuard::answered`].
     CarryOut(FleetRequest),
     /// This is the answer.
     Answer(FleetAnswer),
@@ -19,7 +19,7 @@ pub enum Admission {
     UnderWay,
 }
 
-/// What a run has taken.
+/// Requests that a run has accepted.
 #[derive(Debug)]
 pub struct RequestGuard {
     run: String,

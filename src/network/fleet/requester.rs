@@ -8,12 +8,12 @@ use super::request::{FleetAction, FleetAnswer, FleetOutcome, FleetRequest};
 /// A request without an answer is sent again after so long, microseconds.
 pub const AGAIN_US: u64 = 1_000_000;
 
-/// What became of a request, for who asked.
+/// End of a request, for its sender.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RequestEnd {
     /// The installation answered.
     Answered(FleetOutcome),
-    /// It did not, in the time that was given.
+    /// It did not, within the given time.
     Silent,
 }
 
@@ -44,8 +44,8 @@ impl Requester {
         self.pending.insert(id, pending);
     }
 
-    /// What is to be sent now: to whom, and the request. An installation that is not there is asked
-    /// once it is.
+    /// Returns the requests to send now, each with its receiver. A request to an offline
+    /// installation waits until it is online.
     pub fn advance(
         &mut self,
         registry: &FleetRegistry,
@@ -69,7 +69,7 @@ impl Requester {
             };
             request.next_us = now_us + AGAIN_US;
             let used = self.used.entry(request.installation.clone()).or_default();
-            // What an installation answered is newer than what it published before.
+            // An answer of an installation is newer than its earlier publications.
             if used.0.is_empty() || used.0 == entry.state.run {
                 let most = used.1.max(entry.state.accepted);
                 *used = (entry.state.run.clone(), most);
@@ -111,7 +111,7 @@ impl Requester {
         self.ended.pop_front()
     }
 
-    /// Whether requests are on their way.
+    /// Returns true while requests are pending.
     pub fn is_busy(&self) -> bool {
         !self.pending.is_empty()
     }

@@ -1,10 +1,10 @@
 //! A settings file rolled out over a fleet: to one installation first, the canary, which is watched
-//! for a time; then to the others, which are watched as well. Where one of them is lost, begins
-//! anew, logs an error or refuses the file, it is taken back from all.
+//! for a time; then to the others, which are watched as well. If one of them is lost, restarts,
+//! logs an error or refuses the file, the roll-out is reverted everywhere.
 //!
-//! All of this is on trial until the end: an installation that cannot be told anything any more
-//! takes the file back by itself. One that was not there is named in the end; the same roll-out
-//! again brings it what it missed, and does nothing to those that have it.
+//! All of this is on trial until the end: an installation that can no longer be reached reverts the
+//! file by itself. An offline one is named in the end; repeating the same roll-out completes it
+//! there, and changes nothing on those that have the file.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub const START_US: u64 = 90_000_000;
 /// Seconds of a trial beyond the times that the roll-out needs.
 const SPARE_S: u64 = 60;
 
-/// What is rolled out, and how.
+/// Content and parameters of a roll-out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RolloutPlan {
     /// The settings file.
@@ -28,7 +28,7 @@ pub struct RolloutPlan {
     pub canary: String,
     /// The others.
     pub others: Vec<String>,
-    /// How long each is watched, microseconds.
+    /// Time for which each is watched, in microseconds.
     pub watch_us: u64,
 }
 
@@ -39,12 +39,12 @@ impl RolloutPlan {
     }
 }
 
-/// What a roll-out wants done.
+/// Next action of a roll-out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RolloutStep {
-    /// An installation is to be asked; [`Rollout::ended`] is told how that ended.
+    /// Send a request to an installation; [`Rollout::ended`] receives its result.
     Ask {
-        /// Whom.
+        /// Name of the installation.
         installation: String,
         /// For what.
         action: FleetAction,
@@ -53,18 +53,18 @@ pub enum RolloutStep {
     Note(String),
 }
 
-/// How a roll-out ended.
+/// Result of a roll-out.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 #[serde(tag = "result", rename_all = "kebab-case")]
 pub enum RolloutEnd {
-    /// Everybody has it but those that were not there.
+    /// Every installation has it, except the offline ones.
     Kept {
         /// They have it.
         kept: Vec<String>,
         /// They were not there, or did not answer at the end.
         missed: Vec<String>,
     },
-    /// It was taken back.
+    /// It was reverted.
     TakenBack {
         /// Who failed.
         failed: String,
@@ -129,7 +129,7 @@ impl Rollout {
         rollout
     }
 
-    /// How it ended; `None`: it is under way.
+    /// Returns the result; `None` while it is under way.
     pub fn end(&self) -> Option<&RolloutEnd> {
         self.end.as_ref()
     }
@@ -196,7 +196,7 @@ impl Rollout {
         self.failed.get_or_insert((installation.into(), why));
     }
 
-    /// Looks at those that were offered the file.
+    /// Watches the installations that were offered the file.
     fn watch(&mut self, registry: &FleetRegistry, now_us: u64) {
         let mut seen = Vec::new();
         for (name, stage) in &self.targets {
@@ -226,7 +226,7 @@ impl Rollout {
                         () => continue,
                     }
                 }
-                // It is there until the end, or the file is taken back from all.
+                // It stays online until the end, or the file is reverted everywhere.
                 TargetStage::Good if !entry.is_here() => Err("it is lost".into()),
                 TargetStage::Good if !has => Err("it has taken the file back".into()),
                 TargetStage::Good if state.errors.errors > 0 => Err("it logs an error".into()),
@@ -292,7 +292,7 @@ impl Rollout {
 
     /// Asks all that were offered the file for the last thing.
     fn close(&mut self, action: impl Fn(&RolloutPlan) -> FleetAction) {
-        // Who had it before this roll-out keeps it.
+        // An installation that had the file before this roll-out keeps it.
         let back = self.failed.is_some();
         self.targets
             .retain(|_, s| !back || !matches!(s, TargetStage::Closed | TargetStage::Missed));

@@ -1,12 +1,12 @@
 //! The settings file of an installation on its disk, the one before it, and a file on trial.
 //!
 //! Each file is written beside and renamed, in an order in which a cut at any place leaves either
-//! the old settings or the new ones on trial. A trial that ends in the death of the program is
-//! taken back by its next start.
+//! the old settings or the new ones on trial. If the program dies during a trial, its next start
+//! reverts the trial.
 //!
 //! ```text
 //! kiosk.toml             in place
-//! kiosk.toml.previous    what a roll-back brings
+//! kiosk.toml.previous    restored by a roll-back
 //! kiosk.toml.before      in place before the trial
 //! kiosk.toml.trial       the mark of a trial: the revision, its seconds, how often it began
 //! ```
@@ -32,12 +32,12 @@ struct TrialMark {
     starts: u32,
 }
 
-/// What a start finds.
+/// State found by a start.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TrialStart {
-    /// Settings that nobody has to keep.
+    /// Settings without a trial.
     Settled,
-    /// Settings on trial, for so many seconds.
+    /// Settings on trial, for this number of seconds.
     OnTrial {
         /// Seconds.
         trial_s: u32,
@@ -59,7 +59,7 @@ pub struct SettingsFiles {
 /// table `[fleet]` and its comments.
 ///
 /// # Errors
-/// Where it is no TOML.
+/// The text is no TOML.
 pub fn revision_of(text: &str) -> Result<String, String> {
     let mut table: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
     table.remove(OWN_TABLE);
@@ -96,7 +96,7 @@ impl SettingsFiles {
         revision_of(&read(&self.beside(before))?).ok()
     }
 
-    /// Whether what is in place is on trial.
+    /// Returns true if the settings in place are on trial.
     pub fn is_on_trial(&self) -> bool {
         self.mark().is_some()
     }
@@ -127,7 +127,7 @@ impl SettingsFiles {
     /// To be called once by each start of the program, before the settings are read.
     ///
     /// # Errors
-    /// Where a file cannot be written or removed.
+    /// A file cannot be written or removed.
     pub fn begin(&self) -> Result<TrialStart, String> {
         let Some(mut mark) = self.mark() else {
             self.remove_mark()?;
@@ -146,7 +146,8 @@ impl SettingsFiles {
     /// Puts settings in place, on trial. `Ok(false)`: they are in place already.
     ///
     /// # Errors
-    /// Where they are no TOML, hold a table `[fleet]`, or cannot be written; nothing has changed.
+    /// The text is no TOML or has a table `[fleet]`, or a file cannot be written; nothing has
+    /// changed.
     pub fn try_settings(&self, text: &str, trial_s: u32) -> Result<bool, String> {
         let table: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
         if table.contains_key(OWN_TABLE) {
@@ -175,7 +176,7 @@ impl SettingsFiles {
     /// Ends a trial: the settings stay, and those before them are what a roll-back brings.
     ///
     /// # Errors
-    /// Where another revision is in place, or a file cannot be renamed.
+    /// Another revision is in place, or a file cannot be renamed.
     pub fn keep(&self, revision: &str) -> Result<(), String> {
         let now = self.revision().unwrap_or_default();
         if now != revision {
@@ -188,12 +189,11 @@ impl SettingsFiles {
         Ok(())
     }
 
-    /// Brings the settings back that were in place before: those before the trial, or those before
-    /// the last that were kept. `revision`: only where this one is in place; where it is not,
-    /// nothing is done. Says whether anything was.
+    /// Restores the earlier settings: those before the trial, or those before the last that were
+    /// kept. With a `revision`, only if it is in place. Returns true if anything was restored.
     ///
     /// # Errors
-    /// Where there are none before, or a file cannot be renamed.
+    /// No earlier settings exist, or a file cannot be renamed.
     pub fn take_back(&self, revision: Option<&str>) -> Result<bool, String> {
         if revision.is_some_and(|r| self.revision().as_deref() != Some(r)) {
             return Ok(false);
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(files.take_back(None), Ok(true));
         assert_eq!(read(files.path()).as_deref(), Some(OLD));
         assert!(files.take_back(None).is_err(), "nothing was before");
-        // Kept, then rolled back and forth.
+        // Kept, then rolled back and restored again.
         files.try_settings(NEW, 9).expect("on trial");
         assert!(files.keep("another").is_err());
         files.keep(&revision_of(NEW).expect("TOML")).expect("kept");
@@ -303,7 +303,7 @@ mod tests {
     #[test]
     fn a_cut_between_any_two_writes_leaves_the_old_settings_or_the_trial() {
         let (_folder, files) = files();
-        // The mark is there, the new file is not.
+        // The mark exists, the new file does not.
         let revision = revision_of(NEW).expect("TOML");
         files.write_mark(&TrialMark { revision, trial_s: 9, starts: 0 }).expect("written");
         assert!(!files.is_on_trial());

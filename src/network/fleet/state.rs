@@ -22,15 +22,15 @@ pub struct InstallationState {
     pub version: String,
     /// Names this run of the program: 16 hexadecimal digits, drawn at its start.
     pub run: String,
-    /// When the run began, seconds since 1970 (UTC) by the installation's clock.
+    /// Start of the run, in seconds since 1970 (UTC) by the installation's clock.
     pub started_s: u64,
     /// Counts the publications of this run, from 1.
     pub sequence: u64,
     /// Seconds since the run began.
     pub uptime_s: u64,
-    /// Whether somebody is there, and how many were.
+    /// Visitor state, and the number of visits.
     pub visit: VisitState,
-    /// What went wrong.
+    /// Errors and warnings of this run.
     pub errors: ErrorCounts,
     /// Bytes that are free where sculptures are kept; absent where that cannot be told.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -38,9 +38,9 @@ pub struct InstallationState {
     /// One line a device: what it is, how it stands, what is wrong.
     #[serde(default)]
     pub devices: Vec<DeviceLine>,
-    /// How long ticks of the loop take.
+    /// Durations of the loop's ticks.
     pub ticks: TickTimes,
-    /// How long it takes from a sample to the frame that shows it; absent without a window.
+    /// Latency from a sample to the frame that shows it; absent without a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<FrameTimes>,
     /// The settings file of the installation.
@@ -49,17 +49,17 @@ pub struct InstallationState {
     pub accepted: u64,
 }
 
-/// Whether somebody is there.
+/// Visitor state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VisitState {
-    /// What the installation does.
+    /// Stage of the visit.
     pub stage: VisitStage,
     /// Visits of this run that have ended.
     pub visits: u64,
 }
 
-/// What an installation does.
+/// Stage of a visit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -73,7 +73,7 @@ pub enum VisitStage {
     Countdown,
 }
 
-/// What went wrong in this run, as its log has it.
+/// Error counts of this run, from its log.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ErrorCounts {
@@ -90,11 +90,11 @@ pub struct ErrorCounts {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DeviceLine {
-    /// What kind of device it is.
+    /// Kind of the device.
     pub kind: DeviceKind,
-    /// What it is and how it stands, for a person.
+    /// Description and state of the device, for a person.
     pub text: String,
-    /// Whether samples can come from it now.
+    /// True while samples can come from it.
     pub connected: bool,
 }
 
@@ -112,7 +112,7 @@ pub enum DeviceKind {
     Tracker,
 }
 
-/// How long ticks of the loop took in this run.
+/// Durations of the loop's ticks in this run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TickTimes {
@@ -126,11 +126,11 @@ pub struct TickTimes {
     pub late: u64,
 }
 
-/// How long it took from a sample to the frame that showed it, in this run.
+/// Latencies from a sample to the frame that showed it, in this run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrameTimes {
-    /// Frames that were counted: those that showed a new sample.
+    /// Number of frames that showed a new sample.
     pub count: u64,
     /// The median, milliseconds.
     pub p50_ms: f64,
@@ -145,7 +145,7 @@ pub struct SettingsState {
     /// The first 16 hexadecimal digits of the SHA-256 of the file that this run began with; empty:
     /// the built-in settings.
     pub revision: String,
-    /// The file is on trial: it is taken back unless staff keep it.
+    /// True while the file is on trial: it is reverted unless staff keep it.
     pub trial: bool,
     /// The revision that a roll-back brings; absent: there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -153,8 +153,8 @@ pub struct SettingsState {
 }
 
 impl InstallationState {
-    /// Whether another state says the same, but for what changes by itself: counters of time and of
-    /// publications, and times of ticks and frames.
+    /// Returns true if another state says the same, ignoring counters of time and of publications,
+    /// and times of ticks and frames.
     pub fn says_the_same_as(&self, other: &InstallationState) -> bool {
         self.run == other.run
             && self.visit == other.visit

@@ -79,10 +79,11 @@ impl<'a> ByteReader<'a> {
         self.number().and_then(|n| if n <= most { Ok(n) } else { Err(BadBytes) })
     }
 
-    /// How many entries follow. Each takes a byte at least, so more than there are bytes are none.
+    /// Reads the number of entries that follow. Each takes at least a byte, so it cannot exceed the
+    /// bytes left.
     ///
     /// # Errors
-    /// [`BadBytes`] where more are told than there can be, or than `most`.
+    /// [`BadBytes`] if the number exceeds the bytes left, or `most`.
     pub fn count(&mut self, most: usize) -> Result<usize, BadBytes> {
         let most = most.min(self.left());
         self.at_most(most as u64).map(|n| n as usize)

@@ -1,7 +1,7 @@
 //! Frames: the ordered input. The host makes them, everybody steps them.
 //!
-//! A frame stands for all ticks after the one of the frame before it, up to and including its own;
-//! only its own tick has input. A frame without input says that time has passed.
+//! A frame covers all ticks after the previous frame's tick, up to and including its tick; only its
+//! tick has input. A frame without input records that time has passed.
 
 use super::bytes::{BadBytes, ByteReader, put_bytes};
 use sculptd_devices::Sample;
@@ -21,7 +21,7 @@ pub const MAX_TICKS: u64 = 1 << 22;
 /// Bytes of a person's name.
 pub const MAX_NAME: usize = 64;
 
-/// What one person gave in one tick of the own loop.
+/// Input of one person from one tick of their loop.
 #[derive(Debug, Clone, Default)]
 pub struct Batch {
     /// Whose it is.
@@ -34,7 +34,7 @@ pub struct Batch {
     pub commands: Vec<Command>,
 }
 
-/// What a replica does after the tick of a frame, besides stepping it.
+/// Task of a replica after the tick of a frame, besides stepping it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mark {
     /// Nothing.
@@ -42,12 +42,12 @@ pub enum Mark {
     None,
     /// It computes the hash of its world, for the comparison.
     Compare,
-    /// Every stroke ends and nothing can be taken back any more, so that a world made of a
-    /// checkpoint of this tick goes on as all others do.
+    /// Every stroke ends and no earlier step can be undone, so that a world restored from a
+    /// checkpoint of this tick goes on like all others.
     Checkpoint,
 }
 
-/// What a person may do.
+/// Permissions of a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
@@ -92,7 +92,7 @@ pub struct Arrival {
     pub person: PersonId,
     /// The person's name, at most [`MAX_NAME`] bytes.
     pub name: String,
-    /// What the person may do.
+    /// Permissions of the person.
     pub role: Role,
     /// The person is connected from now on; else no longer.
     pub here: bool,
@@ -120,16 +120,16 @@ pub struct Frame {
     pub index: u64,
     /// The tick of the input.
     pub tick: u64,
-    /// What is done after the tick.
+    /// Task after the tick.
     pub mark: Mark,
-    /// Who came, and who was found to be gone, before the tick.
+    /// People who came, and those found to be gone, before the tick.
     pub arrivals: Vec<Arrival>,
     /// In the order in which they are stepped.
     pub batches: Vec<Batch>,
 }
 
 impl Frame {
-    /// Whether anybody gave anything.
+    /// Returns true if the frame has input.
     pub fn has_input(&self) -> bool {
         !self.batches.is_empty()
     }

@@ -1,7 +1,7 @@
 //! Frames and batches as bytes, by a range coder ([`super::range_coder`]).
 //!
-//! Frames are told as differences to those before them that the other side is known to have: which
-//! those are, the message says. So a message that is lost makes no other one unreadable.
+//! Frames are encoded as differences to earlier frames that the receiver is known to have; the
+//! message names those. So a lost message makes no other one unreadable.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ const MAX_MESSAGE: usize = 32_768;
 /// Bytes of somebody's arrival.
 const MAX_ARRIVAL: usize = 128;
 
-/// What is usual of batches and frames.
+/// Probability models of batches and frames.
 #[derive(Debug)]
 struct FrameModels {
     other_person: BitModel,
@@ -333,7 +333,7 @@ mod tests {
         let cold = frames_to_bytes(&frames, &log, (140, 140));
         same(&frames_from_bytes(&cold, &reader).expect("whole").expect("known"), &frames);
         assert!(known.len() * 4 < cold.len() * 3, "{} and {}", known.len(), cold.len());
-        // Somebody whose frames do not reach so far says so, and reads nothing else instead.
+        // A reader without the earlier frames reports this, and reads nothing else instead.
         let mut late = ReplicaLog::at(110, 220, vec![], vec![]);
         (111..=134).for_each(|k| assert!(late.append(&frame(k, 8))));
         assert!(matches!(frames_from_bytes(&known, &late), Ok(None)));

@@ -1,5 +1,5 @@
-//! Hands on the wire: what gestures and tools use, in whole numbers, and the joints as well as a
-//! picture of a hand needs them. A hand takes about 20 bytes a frame in the place of 600.
+//! Hands on the wire: the data for gestures and tools, in whole numbers, and the joints as
+//! precisely as a picture of a hand needs them. A hand takes about 20 bytes a frame instead of 600.
 //!
 //! Palm and fingertips to 0.05 mm, the palm's turn to 1/2048, joints, wrist and elbow to 1 mm from
 //! the palm. Velocity, widths and directions of fingers, the tracker's own pinch and its clocks are
@@ -34,11 +34,11 @@ const NUMBERS: usize = JOINTS + 75;
 /// Bits of the shape, in their order.
 const SHAPE_BITS: u32 = 49;
 
-/// A hand in whole numbers. What is not there is 0.
+/// A hand in whole numbers. Missing values are 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct WholeHand {
     id: i32,
-    /// What is there.
+    /// Flags of the values present.
     shape: u64,
     numbers: [i32; NUMBERS],
 }
@@ -50,7 +50,7 @@ impl Default for WholeHand {
 }
 
 fn whole(value: f32, steps: f32) -> i32 {
-    // What is no number becomes 0.
+    // NaN becomes 0.
     (value * steps).round().clamp(-FAR, FAR) as i32
 }
 
@@ -187,7 +187,7 @@ struct LastHand {
     moved: [i32; 3],
 }
 
-/// What is usual of hands.
+/// Probability models of hands.
 #[derive(Debug)]
 struct HandModels {
     id: BitModel,
@@ -277,7 +277,7 @@ impl HandsCodec {
                 now.numbers[k] = value;
             }
             read.hands[place] = now.hand();
-            // What is not there is 0 again: a reader goes on from what a writer would see.
+            // Missing values are 0 again: a reader goes on from the values that a writer would see.
             self.follow_one(person, place, WholeHand::of(&read.hands[place]));
         }
         self.models = Some(models);

@@ -81,14 +81,14 @@ pub enum Greeting {
     },
 }
 
-/// Where a log ends that somebody already has: the turn of its last frame, and its index.
+/// End of a log that a station already has: the term of its last frame, and its index.
 pub type Reached = (Term, u64);
 
 /// A checkpoint that can be fetched, by the frame right after which it was taken. Its first chunks
 /// may be had while the last ones are still made.
 pub type Offer = u64;
 
-/// How somebody is let in.
+/// Terms of an admission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
     /// The number of the person that joins.
@@ -101,8 +101,8 @@ pub struct Entry {
     pub applied: u64,
     /// The checkpoint to begin with; `None`: the frames after what is there follow.
     pub offer: Option<Offer>,
-    /// Everybody with a number, and the last batch of each at the checkpoint, or at the end of what
-    /// is there.
+    /// Everybody with a number, and the last batch of each at the checkpoint, or at the end of the
+    /// existing log.
     pub people: Vec<(Arrival, u64)>,
     /// The turns of the log, and the first frame of each.
     pub turns: Vec<(Term, u64)>,
@@ -120,12 +120,12 @@ pub enum FromMember {
     Join {
         /// As the person wants to be called.
         name: String,
-        /// What the person wants to be.
+        /// Role that the person requests.
         role: Role,
-        /// What is there already.
+        /// End of the log that is already present.
         reached: Option<Reached>,
     },
-    /// Several times a second: what is there, and what is new.
+    /// Several times a second: the last received frame, and new input.
     Up {
         /// The frame up to which all are here.
         have: u64,
@@ -144,7 +144,7 @@ pub enum FromMember {
         index: u64,
         /// The first chunk.
         first: u32,
-        /// How many.
+        /// Number of chunks.
         count: u32,
     },
     /// The hash after a frame with the mark.
@@ -184,12 +184,12 @@ pub enum FromHost {
         index: u64,
         /// Which.
         number: u32,
-        /// Whether none follows.
+        /// True for the last part.
         last: bool,
         /// At most [`CHUNK`].
         bytes: Vec<u8>,
     },
-    /// The worlds differ after a frame: the member joins anew.
+    /// The worlds differ after a frame: the member must rejoin.
     Differs {
         /// The frame's index.
         index: u64,
@@ -201,7 +201,7 @@ pub enum FromHost {
 /// Among those who may take over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AmongHeirs {
-    /// The host is there.
+    /// The host is alive.
     Host {
         /// Its turn.
         term: Term,
@@ -210,7 +210,7 @@ pub enum AmongHeirs {
     Candidate {
         /// The highest number of a turn that the sender knows of.
         known: u32,
-        /// Where its log ends.
+        /// End of its log.
         reached: Reached,
         /// The sender.
         by: Address,

@@ -1,6 +1,6 @@
-//! What goes over the wire, as data and as bytes. Laws kept here:
+//! Messages on the wire, as data and as bytes. Laws kept here:
 //! * Reading never panics, whatever the bytes, and allocates no more than the bytes can hold.
-//! * Input is sent, never a mesh; the pages of a checkpoint go to who joins, and to nobody else.
+//! * Only input is sent, never a mesh; only a joining replica receives the pages of a checkpoint.
 
 pub mod bytes;
 pub mod frame;

@@ -1,6 +1,6 @@
-//! An adaptive binary range coder (Martin 1979, with the carry of LZMA by Pavlov): what is expected
-//! costs a fraction of a bit. What is coded is described once, for both directions: a function
-//! over [`Coder`] writes with an [`Encoder`] and reads with a [`Decoder`].
+//! An adaptive binary range coder (Martin 1979, with the carry of LZMA by Pavlov): an expected bit
+//! costs a fraction of a bit. One description serves both directions: a function over [`Coder`]
+//! writes with an [`Encoder`] and reads with a [`Decoder`].
 //!
 //! Probabilities learn quickly at first (each new bit weighs as much as all before it together
 //! would in an estimate by counting, Krichevsky and Trofimov 1981), as a message is short, and

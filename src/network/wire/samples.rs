@@ -1,11 +1,10 @@
 //! Samples on the wire: integers, and the change of the change from sample to sample.
 //!
-//! A shared sculpture is sculpted with what was sent, by the sender too. So a sample is rounded
-//! once, before it is ordered, and every replica steps the same bits: position to 5 µm, pressure
-//! to 1/1023, angles to 1/128 rad. A pen takes two to three bytes a sample
-//! ([`super::range_coder`]).
+//! A shared sculpture is sculpted with the sent samples, by the sender too. So a sample is rounded
+//! once, before it is ordered, and every replica steps the same bits: position to 5 µm, pressure to
+//! 1/1023, angles to 1/128 rad. A pen takes two to three bytes a sample ([`super::range_coder`]).
 //!
-//! What nobody but its own daemon uses is left out: device counts, the device's clock, and the
+//! Data that only the sender's daemon uses is left out: device counts, the device's clock, and the
 //! time, which becomes that of the tick.
 
 use glam::Vec2;
@@ -25,7 +24,7 @@ const PER_DISTANCE: f32 = 4.0;
 /// A pen in whole numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct WholePen {
-    /// Tool, range, tip, and which of the optional fields are there.
+    /// Tool, range, tip, and flags of the optional fields present.
     kind: u8,
     area: [i32; 2],
     buttons: u32,
@@ -118,7 +117,7 @@ pub fn rounded(sample: &Sample) -> Option<Sample> {
     Some(Sample { device: sample.device, t_us: 0, device_t_us: None, body })
 }
 
-/// The last that a message told of a pen, or the frames before it.
+/// Last state of a pen in a message, or in the frames before it.
 #[derive(Debug, Clone, Copy)]
 struct LastPen {
     person: PersonId,
@@ -137,7 +136,7 @@ impl LastPen {
     }
 }
 
-/// What is usual; learnt from one message alone, of all its people together.
+/// Probability models, learned from one message alone, of all its people together.
 #[derive(Debug)]
 struct SampleModels {
     hands: BitModel,
@@ -173,7 +172,7 @@ impl Default for SampleModels {
 #[derive(Debug, Default)]
 pub struct SampleCodec {
     models: Box<SampleModels>,
-    /// Who came last is last.
+    /// Pens in the order of their last samples, the newest last.
     pens: Vec<LastPen>,
     hands: HandsCodec,
 }

@@ -1,5 +1,5 @@
-//! The gallery of alphas: those that the program makes, the picture that is loaded, and the
-//! pictures in the folder of a person's own brushes, each as it is pressed into the clay.
+//! The gallery of alphas: the built-in ones, the loaded picture, and the pictures in the folder of
+//! the person's brushes, each drawn as it is pressed into the clay.
 
 use std::sync::{Arc, Weak};
 
@@ -29,7 +29,7 @@ const MADE: [(Alpha, &str); 8] = [
     (Alpha::Cracks, "alpha-cracks"),
 ];
 
-/// What a thumbnail shows.
+/// Content of a thumbnail.
 #[derive(Clone)]
 struct Thumbnail {
     alpha: Alpha,
@@ -95,7 +95,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, brush: &mut BrushSettings, out: &m
         }
     }
     let shown = brush.alpha == Alpha::Picture;
-    // What was loaded by other ways stands first.
+    // A picture loaded from elsewhere comes first.
     if let Some(loaded) = loaded.filter(|l| !pictures.iter().any(|(_, p)| ***p == ***l)) {
         pictures.insert(0, (tr!("alpha-picture"), loaded));
     }

@@ -76,7 +76,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     }
 }
 
-/// What a process is called.
+/// Returns the name of a process.
 fn process(preset: &Preset) -> String {
     text_of(&format!("process-{}", preset.name), &preset.title)
 }

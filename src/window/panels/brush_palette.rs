@@ -12,7 +12,7 @@ use sculptd_clay::brush::own_brush::check_name;
 use sculptd_clay::brush::{BrushKind, BrushSettings, OwnBrush};
 use sculptd_engine::command::Command;
 
-/// Those that are shown first; the others stand under "more".
+/// Brushes that are shown first; the others are under "more".
 const FIRST: [BrushKind; 12] = [
     BrushKind::Draw,
     BrushKind::Clay,
@@ -28,7 +28,7 @@ const FIRST: [BrushKind; 12] = [
     BrushKind::Gaussian,
 ];
 
-/// Which brush is in hand, whether it is a favourite, and all others: a click takes one in hand.
+/// Shows the active brush, its favourite mark, and all other brushes: a click activates one.
 pub fn ui(
     ui: &mut egui::Ui,
     view: &View<'_>,
@@ -113,7 +113,7 @@ fn button(ui: &mut egui::Ui, view: &View<'_>, brush: &mut BrushSettings, kind: B
     }
 }
 
-/// What a person has marked, the program's brushes first.
+/// Shows the favourites, the built-in brushes first.
 fn favourites(
     ui: &mut egui::Ui,
     view: &View<'_>,

@@ -37,7 +37,7 @@ fn unit_of_setting(view: &View<'_>) -> f32 {
     if one.is_finite() && one > 0.0 { one } else { 1.0 }
 }
 
-/// A radius as it is told, with its unit.
+/// Returns a radius as text, with its unit.
 pub fn told(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, setting: f32) -> String {
     let world = setting * unit_of_setting(view);
     let pixel = unit_a_pixel(ctx, view, ui_state);
@@ -47,7 +47,7 @@ pub fn told(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, settin
     }
 }
 
-/// The slider and its unit. While the radius is told in pixels, a zoom changes it on the object.
+/// Shows the slider and its unit. While the radius is in pixels, a zoom changes it on the object.
 pub fn radius(
     ui: &mut egui::Ui,
     view: &View<'_>,

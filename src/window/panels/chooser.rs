@@ -30,7 +30,7 @@ fn size(bytes: u64) -> String {
     }
 }
 
-/// What was done in the chooser in this frame.
+/// Action in the chooser in this frame.
 enum ChooserStep {
     Stay,
     GoTo(PathBuf),

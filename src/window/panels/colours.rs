@@ -11,7 +11,7 @@ use sculptd_clay::brush::BrushSettings;
 /// Side of a colour that was kept, points.
 const SIDE: f32 = 20.0;
 
-/// The colour in hand and those that were kept.
+/// Shows the active colour and the saved ones.
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, brush: &mut BrushSettings) {
     let likes = &mut ui_state.prefs.brushes;
     rows::flow(ui, |ui| {

@@ -1,4 +1,4 @@
-//! What is connected and what it says now.
+//! The connected devices and their current input.
 
 use super::state::{UiRequest, UiState, View};
 use super::{tablet_keys, theme};

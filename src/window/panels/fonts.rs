@@ -72,7 +72,7 @@ fn prepare(ctx: &egui::Context, translation: &Translation) -> bool {
     true
 }
 
-/// Whether the fonts in use have every letter of a text.
+/// Returns true if the fonts in use have every letter of a text.
 pub fn can_draw(ctx: &egui::Context, text: &str) -> bool {
     ctx.fonts_mut(|f| f.has_glyphs(&FontId::proportional(14.0), text))
 }

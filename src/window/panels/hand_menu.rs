@@ -35,7 +35,7 @@ pub fn menu_balls(state: &Published) -> Vec<MenuBall> {
     Menu::choices(state.thing.is_some() || state.picking).iter().enumerate().map(one).collect()
 }
 
-/// What an item is called.
+/// Returns the name of an item.
 pub fn title(item: MenuItem) -> String {
     tr!(match item {
         MenuItem::Add => "menu-add",
@@ -63,7 +63,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, free: Rect) {
             continue;
         };
         let reach = (side - at).length().max((above - at).length());
-        // The label of an item beside the view stands at the side where the item is.
+        // The label of an item outside the view is at the border nearest to it.
         if !free.y_range().contains(at.y) {
             continue;
         }

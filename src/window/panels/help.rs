@@ -102,7 +102,7 @@ fn actions(ui: &mut egui::Ui, view: &View<'_>) {
     }
 }
 
-/// What is done at the left, what comes of it at the right.
+/// Shows an action at the left and its effect at the right.
 fn line(ui: &mut egui::Ui, done: &str, comes: &str) {
     let width = ui.available_width();
     ui.horizontal_top(|ui| {

@@ -50,7 +50,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: Re
     }
 }
 
-/// What a stroke that is being made shows: the window's keys have changed its brush by then.
+/// Follows a stroke under way, because the window's keys have changed its brush by then.
 fn follow(view: &View<'_>, hints: &mut HintsFollowed) {
     let presses = view.state.pens.iter().flatten().any(|(_, p)| p.pressure > 0.0);
     if !presses || view.demo_runs {
@@ -117,7 +117,7 @@ fn show(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, hint: Hint
     let hand =
         Hand { painter: &painter, seen, pressed, accent: theme::accent_of(!ui_state.prefs.light) };
     match hint {
-        // What was drawn goes again.
+        // The drawn path disappears again.
         Hint::Undo => {
             hand.trace(&path, 1.0 - way);
             hand.chip(at(0.0, -0.12), &keys);

@@ -56,7 +56,7 @@ pub fn ui(ui: &mut egui::Ui, versions: &mut HistoryVersions, out: &mut Vec<UiReq
             if response.clicked() {
                 go = Some(versions.rows[i].node);
             }
-            // A drag that began on a row goes through those that it comes over.
+            // A drag that began on a row visits the rows that it passes over.
             if response.dragged() {
                 dragged = true;
                 let y = response.interact_pointer_pos().map_or(0.0, |p| p.y - all.top());
@@ -201,8 +201,8 @@ mod tests {
         let mut versions = HistoryVersions { rate_hz: 120, ..HistoryVersions::default() };
         versions.set(&tree);
         let lanes: Vec<usize> = versions.rows.iter().map(|r| r.lane).collect();
-        // What redo leads to (7) is on the line; 2 and 4 are branches of which the first had ended
-        // when the second began.
+        // The version that redo leads to (7) is on the line; 2 and 4 are branches, and the first
+        // ended before the second began.
         assert_eq!(lanes, [0, 0, 1, 0, 1, 0, 0, 0]);
         assert_eq!(versions.rows[4].parent, Some(3));
         assert_eq!(

@@ -107,7 +107,7 @@ fn row(ui: &mut egui::Ui, keys: &KeyMap, action: Action, ui_state: &mut UiState)
         let wrong = theme::alarm(ui);
         let text = egui::RichText::new(&name);
         let text = if others.is_empty() { text } else { text.color(wrong) };
-        // The keys, and the button that takes a change back, stand at the right.
+        // The keys, and the button that resets a change, are at the right.
         let room = KEYS + if binding.own { RESET } else { 0.0 };
         ui.scope(|ui| {
             ui.set_max_width((ui.available_width() - room).max(40.0));

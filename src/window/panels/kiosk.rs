@@ -1,5 +1,5 @@
-//! The screen of an installation, in the place of the panels: few words, large targets, and a
-//! number that lets staff out.
+//! The screen of an installation, which replaces the panels: few words, large targets, and a PIN
+//! with which staff leave it.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -82,7 +82,7 @@ pub fn ui(
 
 /// The buttons of one frame, each lit in turn for people who press one switch.
 struct Scan {
-    /// The button that is lit, of those that came with the last frame; `None`: none is.
+    /// Index of the highlighted button among those of the last frame; `None`: none is highlighted.
     lit: Option<usize>,
     /// The switch was pressed in this frame.
     pressed: bool,
@@ -185,7 +185,7 @@ fn kept(
     });
 }
 
-/// What the staff of the fleet tell those on the spot, until somebody presses it away.
+/// Shows a message of the fleet's staff to people on site, until somebody dismisses it.
 fn told_staff(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut Scan) {
     let Ok(mut message) = screen.desk.message.lock() else { return };
     let Some(text) = message.clone() else { return };
@@ -202,7 +202,7 @@ fn told_staff(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut
     }
 }
 
-/// The languages, each by its own name.
+/// Shows the languages, each by its native name.
 fn languages(
     ctx: &egui::Context,
     free: egui::Rect,
@@ -303,7 +303,7 @@ fn door(
     let name = if pad.typed.is_some() { "keypad" } else { "door" };
     place(ctx, name, free, Align2::RIGHT_TOP, |ui| {
         let Some(typed) = &mut pad.typed else {
-            // In a row, for in a column its word stands at the left.
+            // In a row, because in a column its text would be left-aligned.
             if ui.horizontal(|ui| scan.button(ui, true, large(&words.staff, 16.0, 90.0))).inner {
                 pad.typed = Some(String::new());
             }

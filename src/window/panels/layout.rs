@@ -58,7 +58,7 @@ pub fn all(
         }
     }
     let free = ui.available_rect_before_wrap();
-    // What lies over the clay belongs to the view in which is worked.
+    // Everything drawn over the clay belongs to the active view.
     let worked_in = views::part(&ctx, view.views, view.views.active(), free);
     ui_state.brush_panel.free = Some(worked_in);
     views::ui(&ctx, view, free, out);

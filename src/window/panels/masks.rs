@@ -44,7 +44,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     });
 }
 
-/// What is thin, and what is sheltered from light.
+/// Shows the masks by thickness and by ambient occlusion.
 fn measured(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let (lo, hi) = view.state.mesh.bounds();
     let below = ui_state.mask.thin * (hi - lo).max_element().max(0.0);

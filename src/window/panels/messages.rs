@@ -26,7 +26,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &UiState) {
     }
 }
 
-/// What is being loaded, and how far it is.
+/// Shows the file being loaded, and its progress.
 pub fn loading(ctx: &egui::Context, ui_state: &UiState, free: egui::Rect) {
     let Some((name, done)) = &ui_state.loading else { return };
     let place = egui::Area::new(egui::Id::unique("loading"))

@@ -59,7 +59,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let busy = ui_state.joining;
     let mut group = "";
     for (i, object) in scene.objects.iter().enumerate() {
-        // Where objects of one group follow each other, its name stands above them.
+        // Consecutive objects of one group have its name above them.
         if object.settings.group != group {
             group = &object.settings.group;
             if !group.is_empty() {
@@ -114,7 +114,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     ui.separator();
 }
 
-/// Where the active object is listed, its mirrored twin, and the Boolean that it follows.
+/// Arranges the active object: its place in the list, its mirrored duplicate, and its live Boolean.
 fn arrange(
     ui: &mut egui::Ui,
     view: &View<'_>,
@@ -235,7 +235,7 @@ fn plain_number(value: f64, decimals: std::ops::RangeInclusive<usize>) -> String
     if zero { text.trim_start_matches(['-', '\u{2212}']).into() } else { text }
 }
 
-/// Where the active object stands.
+/// Shows the transform of the active object.
 fn place(
     ui: &mut egui::Ui,
     object: &ObjectView,
@@ -290,7 +290,7 @@ fn place(
     }
 }
 
-/// What a shape is called.
+/// Returns the name of a shape.
 fn shape_title(shape: &PrimitiveShape) -> String {
     tr!(match shape {
         PrimitiveShape::Box(_) => "shape-box",

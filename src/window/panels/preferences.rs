@@ -57,7 +57,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     }
 }
 
-/// The language of the window; each is called by its own name, where there are letters for it.
+/// Shows the language of the window; each language has its native name if the fonts can draw it.
 fn language(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     let now = view.translations.choose(&ui_state.prefs.language);
     let name = |ui: &egui::Ui, one: &Translation| {

@@ -19,7 +19,7 @@ const RING: [(Action, &str); 8] = [
 const INNER: f32 = 26.0;
 const OUTER: f32 = 92.0;
 
-/// Which item the pointer is over.
+/// Returns the index of the item under the pointer.
 fn over(centre: Pos2, at: Pos2) -> Option<usize> {
     let d = at - centre;
     if d.length() < INNER {

@@ -1,5 +1,6 @@
 //! Regions drawn over the view with the pointer: by a lasso, a box, a line, or corner by corner.
-//! What is seen in one is masked, freed, hidden, made a face set or cut off, all the way through.
+//! The faces seen in one are masked, unmasked, hidden, made a face set or cut off, all the way
+//! through.
 //!
 //! While a region can be drawn, the left button draws; the other buttons and the wheel move the
 //! view as ever, and pens of tablets may begin no stroke.
@@ -48,7 +49,7 @@ const PURPOSES: [(RegionPurpose, &str); 6] = [
     (RegionPurpose::Remesh, "region-remesh"),
 ];
 
-/// The layer in which the pointer draws. It lies under everything that floats over the view.
+/// Returns the layer in which the pointer draws, below everything that floats over the view.
 pub fn layer() -> LayerId {
     LayerId::new(Order::Background, Id::unique("region"))
 }
@@ -98,7 +99,7 @@ pub fn drawn(drawing: &RegionDrawing, free: Rect, to: Pos2) -> Option<ViewRegion
     }
 }
 
-/// What is asked for with a region.
+/// Builds the request for a drawn region.
 pub fn request(purpose: RegionPurpose, region: ViewRegion, tool: &RegionTool) -> UiRequest {
     let front_faces = tool.front_faces;
     let sets = |region, edit| {
@@ -142,7 +143,7 @@ pub fn ui(
     let typing = ctx.text_edit_focused() || ui_state.search.is_some();
     let pressed = |key| !typing && ctx.input(|i| i.key_pressed(key));
     if pressed(Key::Escape) {
-        // The first takes back what was drawn, the next one ends it.
+        // The first press discards the drawing, the next one leaves the tool.
         if !drawing.points.is_empty() {
             drawing.points.clear();
             tool.drawing = Some(drawing);
@@ -166,7 +167,7 @@ pub fn ui(
                 for event in &i.events {
                     match event {
                         Event::PointerMoved(to) => moves.push(clamp(*to)),
-                        // What was before the press belongs to nothing.
+                        // Moves before the press are ignored.
                         Event::PointerButton {
                             button: PointerButton::Primary,
                             pressed,
@@ -231,7 +232,7 @@ fn follow(
     if down {
         *points = vec![response.interact_pointer_pos().unwrap_or(at)];
     }
-    // Escape has taken back what was drawn: the rest of the drag means nothing.
+    // Escape has discarded the drawing: the rest of the drag is ignored.
     if points.is_empty() {
         return false;
     }
@@ -293,7 +294,7 @@ fn outline(painter: &Painter, drawing: &RegionDrawing, to: Pos2) {
     }
 }
 
-/// What is done with the region, and how it is drawn. Whether drawing ends.
+/// Shows the purpose and the shape of the region. Returns true if drawing ends.
 fn bar(
     ctx: &egui::Context,
     drawing: &mut RegionDrawing,

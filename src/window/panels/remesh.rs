@@ -10,7 +10,7 @@ use crate::language::tr;
 use sculptd_daemon::remesh_job::SIDE;
 use sculptd_engine::local_remesh::{LocalRemesh, WantedEdge};
 
-/// What a first voxel is when a person wants one of their own: so many along the longest side.
+/// First custom voxel size, as the number of voxels along the longest side.
 const FIRST: f32 = 200.0;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {

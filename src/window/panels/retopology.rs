@@ -8,7 +8,7 @@ use crate::language::tr;
 use sculptd_daemon::decimate_job::{DecimateWanted, LEAST};
 use sculptd_daemon::quad_job::{MOST_LEVELS, QuadsWanted};
 
-/// How often a bar moves, while there is one.
+/// Interval at which a progress bar is redrawn, while there is one.
 const LOOK: Duration = Duration::from_millis(100);
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {

@@ -1,5 +1,5 @@
-//! What is offered at the start: to go on with an earlier sculpture. The first press on the clay is
-//! an answer too.
+//! The offer at the start to continue an earlier sculpture. The first press on the clay is an
+//! answer too.
 
 use std::path::Path;
 

@@ -10,7 +10,7 @@ use super::state::{UiRequest, UiState, View};
 use super::{rows, theme};
 use crate::language::tr;
 
-/// What a control is called: `key-3` is `Key 3`.
+/// Returns the name of a control: `key-3` is `Key 3`.
 fn title(control: Control) -> String {
     match control {
         Control::Key(n) => tr!("control-key", number = n),
@@ -22,7 +22,7 @@ fn title(control: Control) -> String {
     }
 }
 
-/// What a binding does: in words where it is one of the choices, else as a file has it.
+/// Returns the text of a binding: in words if it is one of the choices, else as a file has it.
 fn words(control: Control, binding: Option<&Binding>) -> String {
     let turns = matches!(control, Control::Wheel(_) | Control::Ring(_) | Control::Strip(_));
     let brush = |name: &str| {

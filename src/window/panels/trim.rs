@@ -1,5 +1,5 @@
-//! Trimming: a box or a line drawn over the view ([`super::region`]), and what lies in it or to its
-//! left is cut off, all the way through. And the levels of detail.
+//! Trimming: a box or a line drawn over the view ([`super::region`]) cuts off the part in it or to
+//! its left, all the way through. And the levels of detail.
 
 use super::rows;
 use super::state::region::{RegionPurpose, RegionShape};

@@ -16,7 +16,7 @@ fn name_area(kind: ViewKind) -> Id {
     Id::unique("view").with(kind)
 }
 
-/// Whether an area is the name of a view: the least of what lies over the clay.
+/// Returns true if an area is the name of a view: the least important area over the clay.
 pub fn is_name(area: Id) -> bool {
     ViewKind::ALL.into_iter().any(|kind| name_area(kind) == area)
 }

@@ -17,19 +17,20 @@ pub const PEAK: f32 = 0.1;
 pub const GLIDE_S: f32 = 0.02;
 /// Seconds in which a touch or a dab dies away to a third.
 const KNOCK_S: f32 = 0.03;
-/// How loud a stroke and the touches on it are at most, of [`PEAK`]: together not more than all.
+/// Greatest loudness of a stroke and of the touches on it, as shares of [`PEAK`]; together at most
+/// 1.
 const SHARES: (f32, f32) = (0.6, 0.4);
-/// Of a touch: how loud a lift and a dab are.
+/// Loudness of a lift and of a dab, relative to a touch.
 const LIFT: f32 = 0.4;
 const DAB: f32 = 0.25;
 /// View heights a second at which a stroke is half as loud, and as bright, as it can be.
 const BRISK: f32 = 0.8;
 /// A stroke that rests is so loud, of one that moves.
 const RESTING: f32 = 0.3;
-/// What is below this share of the loudest is silence: 80 dB below it.
+/// Share of the loudest below which the sound is silence: 80 dB.
 const SILENT: f32 = 1e-4;
 
-/// What is done to the clay at an instant.
+/// Contact with the clay at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touch {
     pub brush: BrushKind,
@@ -71,16 +72,16 @@ fn colour(touch: &Touch) -> Colour {
     Colour { pitch, noise, bright }
 }
 
-/// What is heard, from one sample to the next.
+/// State of the sound, from one sample to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Voice {
-    /// Of the stroke's sine and of the knock's, turns.
+    /// Phases of the stroke's sine and of the knock's, in turns.
     phases: [f32; 2],
-    /// How loud the stroke and the knock are, 0 to 1.
+    /// Loudness of the stroke and of the knock, 0 to 1.
     levels: [f32; 2],
     /// The knock's pitch, hertz.
     knock: f32,
-    /// What the low-pass filter holds.
+    /// State of the low-pass filter.
     filtered: f32,
     /// The state of the noise; never 0.
     noise: u32,
@@ -154,7 +155,7 @@ pub fn sound(mut voice: Voice, touch: &Touch, rate: f32, out: &mut [f32]) -> Voi
 }
 
 impl Voice {
-    /// Whether nothing is heard any more.
+    /// Returns true if the sound has faded out.
     pub fn is_silent(&self) -> bool {
         !self.touching && self.levels == [0.0; 2]
     }

@@ -1,4 +1,4 @@
-//! What is done to the clay, from what was published: pens by their pressure, hands by their dabs.
+//! Derives contacts with the clay from the published state: pens by pressure, hands by their dabs.
 
 use glam::Vec2;
 
@@ -6,11 +6,11 @@ use super::contact::Touch;
 use sculptd_daemon::Published;
 use sculptd_devices::DeviceId;
 
-/// A hand that touches has no pressure of its own.
+/// Pressure assumed for a touching hand, which reports none.
 const HAND_PRESSURE: f32 = 0.5;
 /// Millimetres of the room that count as one height of the view, for hands.
 const HAND_VIEW_MM: f32 = 300.0;
-/// A hand that has made no dab for so long touches no more, microseconds.
+/// Time without a dab after which a hand no longer touches, in microseconds.
 const HAND_LASTS_US: u64 = 80_000;
 /// Speed is smoothed over this time, microseconds.
 const SMOOTH_US: f32 = 60_000.0;
@@ -20,23 +20,23 @@ const RESTS_US: u64 = 2_000_000;
 /// A pen or a hand, and where it is: shares of the view's height, or a hand's room in those.
 type Toucher = (DeviceId, Vec2);
 
-/// What was heard last.
+/// State of the last published update.
 #[derive(Debug, Clone, Default)]
 pub struct Heard {
-    /// When the clay was looked at last, microseconds.
+    /// Time of the last update, in microseconds.
     t_us: u64,
     at: Option<Toucher>,
     speed: f32,
     dabs: u64,
-    /// When a hand made its last dab.
+    /// Time of a hand's last dab.
     dab_us: u64,
-    /// What was near when something moved last, and when.
+    /// Toucher that was near at the last movement, and its time.
     near: (Option<Toucher>, u64),
 }
 
 impl Heard {
-    /// What is done at `now_us`, microseconds on any clock that does not go back; and whether
-    /// something may be heard soon, so that a device is to run.
+    /// Returns the contact at `now_us`, in microseconds on any monotonic clock. The flag is true if
+    /// a sound may follow soon, so that a device must run.
     pub fn touch(&mut self, state: &Published, now_us: u64) -> (Touch, bool) {
         let flat = |view: Vec2| view * Vec2::new(state.camera.aspect, 1.0);
         let pens = || state.pens.iter().flatten();

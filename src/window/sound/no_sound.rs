@@ -5,6 +5,6 @@
 pub enum NoSound {
     /// The program was built without sound.
     NotBuilt,
-    /// What the sound system said.
+    /// The error of the sound system.
     Failed(String),
 }

@@ -1,8 +1,8 @@
 //! Plays the sound of a contact on the usual device, by cpal.
 //!
-//! The device is opened, started and stopped by a thread of its own, for a sound server may take
-//! its time. What is to be heard goes to the sound system's thread by atomics: nobody waits for
-//! another, and nothing is allocated once a stream is there.
+//! A separate thread opens, starts and stops the device, because a sound server may be slow.
+//! Atomics pass the contact to the sound system's thread: neither thread waits for the other, and
+//! nothing is allocated once a stream exists.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -54,7 +54,7 @@ impl SharedTouch {
 #[derive(Debug)]
 pub struct Player {
     shared: Arc<SharedTouch>,
-    /// Whether the stream runs; its end closes the device.
+    /// Sends whether the stream runs; dropping it closes the device.
     runs: Sender<bool>,
     running: bool,
     failed: Receiver<NoSound>,
@@ -64,8 +64,8 @@ impl Player {
     /// Begins to open the usual device; it is silent until [`Player::play`].
     ///
     /// # Errors
-    /// [`NoSound::Failed`] where there can be no thread for it. What is wrong with the device is
-    /// said later, by [`Player::play`].
+    /// [`NoSound::Failed`] if its thread cannot be started. A fault of the device is reported
+    /// later, by [`Player::play`].
     pub fn open() -> Result<Player, NoSound> {
         let shared = Arc::new(SharedTouch::default());
         let (runs, wanted) = unbounded();

@@ -1,8 +1,8 @@
-//! The clay of one frame: each view into a picture of its own size, which is then copied to its
-//! place. A view of which nothing has changed is only copied.
+//! The clay of one frame: each view is drawn into a picture of its size, which is then copied to
+//! its place. An unchanged view is only copied.
 //!
-//! All views are drawn from the same pages on the card, one after another: the numbers of a frame
-//! lie in one buffer, so each is handed over before the next one's numbers are written.
+//! All views are drawn one after another from the same pages on the card. The numbers of a frame
+//! share one buffer, so each view is submitted before the next one's numbers are written.
 
 use glam::Vec3;
 
@@ -17,13 +17,13 @@ use crate::panels::state::{UiState, ViewKind};
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
 
-/// What lies over the clay of one view.
+/// Content drawn over the clay of one view.
 #[derive(Debug, Default)]
 pub(super) struct OverClay {
     pub(super) lines: Vec<LineEnd>,
     /// The brush's place and radius.
     pub(super) brush: Option<(Vec3, f32)>,
-    /// What a pen will have raised when the frame is seen.
+    /// Dabs that a pen will have raised when the frame is seen.
     pub(super) led: ProvisionalDabs,
 }
 
@@ -89,7 +89,7 @@ impl WindowState {
         let lines = if first.is_some() { Vec::new() } else { over.lines };
         let brush = over.brush.filter(|_| first.is_none());
         let backdrop = match first {
-            // What is seen behind the clay is of one camera.
+            // The backdrop belongs to one camera.
             None if kind == ViewKind::Free || !self.views.are_four() => self.backdrop(),
             _ => 0.0,
         };
@@ -138,7 +138,7 @@ impl WindowState {
         self.clay_pictures[kind as usize].key = (part && !waits).then_some(key);
     }
 
-    /// All views are to be drawn anew.
+    /// Marks all views to be redrawn.
     pub(super) fn forget_clay(&mut self) {
         for picture in &mut self.clay_pictures {
             picture.key = None;

@@ -1,5 +1,5 @@
-//! The pictures of the clay between the panels, one a view: drawn anew where something of it has
-//! changed, else copied. A tooltip, a message or a picture in the history costs no clay.
+//! The pictures of the clay between the panels, one per view: redrawn after a change, else copied.
+//! A tooltip, a message or a picture in the history does not redraw the clay.
 
 use std::sync::Arc;
 
@@ -18,14 +18,14 @@ use sculptd_engine::scene::SceneView;
 pub(super) struct ClayPictureKey {
     /// The object and its revision.
     pub(super) object: (u32, u64),
-    /// All objects, kept so that no other list comes to lie at its address.
+    /// All objects, kept so that no other list gets its address.
     pub(super) scene: Arc<SceneView>,
     pub(super) camera: Camera,
     pub(super) look: Look,
     pub(super) brush: Option<(Vec3, f32)>,
     pub(super) lines: Vec<LineEnd>,
     pub(super) led: ProvisionalDabs,
-    /// The mesh in the place of the clay, kept so that no other comes to lie at its address.
+    /// The mesh shown instead of the clay, kept so that no other gets its address.
     pub(super) preview: Option<Arc<Preview>>,
     /// Counts the changes of the mesh over the clay.
     pub(super) overlay: u64,
@@ -39,7 +39,7 @@ pub(super) struct ClayPictureKey {
 #[derive(Debug, Default)]
 pub(super) struct ClayPicture {
     texture: Option<wgpu::Texture>,
-    /// `None`: it is to be drawn anew.
+    /// `None`: it must be redrawn.
     pub(super) key: Option<ClayPictureKey>,
 }
 

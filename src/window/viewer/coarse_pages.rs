@@ -27,7 +27,7 @@ pub struct CoarsePages {
     buffer: wgpu::Buffer,
     /// Of each page that is done, where one is worth it.
     ranges: Vec<Option<Range<u32>>>,
-    /// Where the next page's begin: they lie one after the other, so that neighbours are one call.
+    /// Start of the next page's range: ranges are contiguous, so that neighbours are one call.
     next: u32,
     indices: Vec<u32>,
 }
@@ -49,7 +49,7 @@ impl CoarsePages {
         &self.buffer
     }
 
-    /// How many pages are not looked at yet.
+    /// Returns the number of pages not examined yet.
     pub fn waiting(&self, mesh: &Snapshot) -> usize {
         mesh.page_count() - self.ranges.len().min(mesh.page_count())
     }
@@ -87,9 +87,9 @@ impl CoarsePages {
     }
 }
 
-/// Whether a page is far: `matrix` leads from the page's space to the screen of that height.
+/// Returns true if a page is far: `matrix` maps the page's space to a screen of that height.
 pub fn is_far(matrix: &Mat4, height: u32, page: &Page) -> bool {
-    // What is hidden is hidden triangle by triangle.
+    // Hiding works triangle by triangle.
     if page.sets().is_some() {
         return false;
     }

@@ -3,11 +3,11 @@
 use crate::sound::Player;
 use crate::sound::heard::Heard;
 
-/// What is heard, and what plays it.
+/// State of the contact sound, and its player.
 #[derive(Debug, Default)]
 pub(super) struct ContactSound {
     pub(super) heard: Heard,
     pub(super) player: Option<Player>,
-    /// It was told why nothing plays; asked for anew, it is tried anew.
+    /// True after its failure was reported; switching the sound on again retries.
     pub(super) failed: bool,
 }

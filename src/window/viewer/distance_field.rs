@@ -17,7 +17,7 @@ use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
 use sculptd_geometry::projection::{ProjectionPlane, area, outline};
 
-/// What distances are measured to.
+/// Reference of distance measurements.
 #[derive(Debug, Clone)]
 pub enum DistanceReference {
     Before(Snapshot),
@@ -49,7 +49,7 @@ impl DistanceReference {
 #[derive(Debug, Clone)]
 pub struct DistanceRequest {
     pub mesh: Snapshot,
-    /// From the clay to the world, in whose unit distances are told.
+    /// Transform from the clay to the world, in whose unit distances are given.
     pub transform: ObjectTransform,
     pub to: DistanceReference,
 }
@@ -100,7 +100,7 @@ impl DistanceField {
             self.pages.clear();
             self.place = Some((place, transform));
         }
-        // The object as it was lies in the clay's own frame, what a hand holds in the world.
+        // The earlier object is in the clay's frame, the held object in the world.
         let (stand, unit) = match to {
             DistanceReference::Before(_) => (ObjectTransform::NONE, transform.scale),
             DistanceReference::HeldObject(_) => (transform, f64::from(place.scale)),
@@ -158,7 +158,7 @@ impl DistanceField {
     }
 }
 
-/// What is asked of the measures: the clay, where it stands, and what the shadow is looked along.
+/// Request for measures: the clay, its transform, and the direction of the shadow.
 pub type SizesRequest = (Snapshot, ObjectTransform, DVec3);
 
 /// Measures of the object and its shadow along a direction, in the world's unit.

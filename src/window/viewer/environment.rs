@@ -15,7 +15,7 @@ const LEVELS: usize = 6;
 /// Width of the picture that diffuse light is summed up from, and of the result.
 const COARSE: usize = 64;
 const DIFFUSE: usize = 32;
-/// What a white surface that looks everywhere sees in the mean: files tell nothing of exposure.
+/// Mean radiance after scaling, because files define no exposure.
 const MEAN: f32 = 0.55;
 
 /// Light of every direction, red, green and blue, linear. Row 0 is overhead.
@@ -65,7 +65,7 @@ impl Panorama {
         step * step * down.sin()
     }
 
-    /// What a white surface sees that turns to `normal`: the light's mean by the cosine.
+    /// Returns the light on a white surface with this `normal`: the cosine-weighted mean.
     fn seen(&self, normal: Vec3) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for y in 0..self.width / 2 {
@@ -108,7 +108,7 @@ impl Environment {
             return None;
         }
         let sound = |v: f32| if v.is_finite() { v.max(0.0) } else { 0.0 };
-        // Each pixel is the mean of those that it covers; one at least.
+        // Each pixel is the mean of the pixels that it covers; at least one.
         let span = |i: usize, parts: usize, whole: usize| {
             let from = i * whole / parts;
             from..((i + 1) * whole / parts).max(from + 1)

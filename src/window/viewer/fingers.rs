@@ -21,13 +21,13 @@ const AFTER_PEN_US: u64 = 500_000;
 const TAP_US: u64 = 350_000;
 /// Fingers of a gesture move the view only after so many points, so that a tap moves nothing.
 const SLOP: f32 = 8.0;
-/// Where a pen is used, a finger must go so many points to sculpt. A palm that lies down creeps by
+/// Distance in points that a finger must move to sculpt if a pen is used. A resting palm creeps by
 /// less.
 const FAR: f32 = 16.0;
-/// Touches that are known at once.
+/// Greatest number of touches tracked at once.
 const MOST: usize = 16;
 
-/// What a touch does.
+/// Phase of a touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TouchStep {
     Down,
@@ -37,7 +37,7 @@ pub enum TouchStep {
     Cancelled,
 }
 
-/// A touch at a time: microseconds, pixels, and 0 to 1 where the screen tells how hard.
+/// A touch at a time: microseconds, pixels, and the force 0 to 1 if the screen reports it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     pub id: u64,
@@ -46,10 +46,10 @@ pub struct Contact {
     pub force: Option<f32>,
 }
 
-/// What is to be done about the fingers.
+/// Action caused by the fingers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FingerAction {
-    /// A finger is a pointer that is pressed, moves, is lifted. Times may lie [`HOLD_US`] back.
+    /// A finger acts as a pointer: pressed, moved, lifted. Times may be [`HOLD_US`] in the past.
     Press(Contact),
     Drag(Contact),
     Lift(Contact),
@@ -85,7 +85,7 @@ enum State {
     /// Several turn the view: the middle and the spread that the view was last moved by, once the
     /// fingers have left the place where a tap ends.
     Gesture { most: usize, began_us: u64, moved: bool, last: Option<(usize, Vec2, f32)> },
-    /// What was done is over, and some fingers are still down.
+    /// The action has ended, and some fingers are still down.
     Spent,
 }
 
@@ -94,10 +94,10 @@ enum State {
 pub struct Fingers {
     down: Vec<Finger>,
     state: State,
-    /// What the first finger did while it waited.
+    /// Contacts of the first finger while it waited.
     held: Vec<Contact>,
     pen_near: bool,
-    /// When a pen was last near; `None`: there is no pen here.
+    /// Time at which a pen was last near; `None`: no pen was seen.
     pen_us: Option<u64>,
     actions: Vec<FingerAction>,
     /// Pixels in a point.
@@ -106,17 +106,17 @@ pub struct Fingers {
 }
 
 impl Fingers {
-    /// How the screen and the person want it.
+    /// Sets the scale of the screen and the person's choice for two fingers.
     pub fn set_up(&mut self, scale: f32, two: TwoFingers) {
         (self.scale, self.two) = (scale, two);
     }
 
-    /// Whether a finger is down whose meaning is open: [`Fingers::tick`] is to be called.
+    /// Returns true while a finger is down without a decided action: call [`Fingers::tick`] then.
     pub fn is_waiting(&self) -> bool {
         self.state == State::Waiting
     }
 
-    /// What is to be done since the last call.
+    /// Takes the actions since the last call.
     pub fn take_actions(&mut self) -> Vec<FingerAction> {
         std::mem::take(&mut self.actions)
     }
@@ -166,7 +166,7 @@ impl Fingers {
         self.held.iter().any(|c| c.at.distance(finger.began.at) >= far)
     }
 
-    /// Whether what begins now is the palm of a hand with a pen.
+    /// Returns true if a touch that begins now is the palm of a hand with a pen.
     fn is_palm(&self, t_us: u64) -> bool {
         self.pen_near || self.pen_us.is_some_and(|at| t_us.saturating_sub(at) < AFTER_PEN_US)
     }
@@ -277,7 +277,7 @@ impl Fingers {
         }
     }
 
-    /// How the fingers of a gesture have moved since the view was last moved.
+    /// Moves the view by the motion of the fingers since the last move.
     fn gesture(&mut self) {
         let places: Vec<Vec2> = self.used().map(|f| f.now.at).collect();
         let begins: Vec<Vec2> = self.used().map(|f| f.began.at).collect();

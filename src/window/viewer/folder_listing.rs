@@ -7,7 +7,7 @@ use crate::panels::state::{FolderEntry, FolderListing, MESH_ENDINGS};
 /// Reads a folder: its folders and its mesh files, without those whose names begin with a dot.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the system.
 pub fn list_folder(folder: &Path) -> FolderListing {
     let found = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mesh = |name: &str| {

@@ -131,7 +131,7 @@ impl WindowState {
         }
     }
 
-    /// What is seen through: the held object, the items of their menu.
+    /// Updates the transparent meshes: the held object and the items of its menu.
     pub(super) fn update_overlay_mesh(&mut self, state: &Published) {
         let balls = hand_menu::menu_balls(state);
         let thing =
@@ -143,7 +143,7 @@ impl WindowState {
         }
         self.overlay_mesh.clear();
         if let Some(thing) = &state.thing {
-            // Where its cut is shown, the held object is fainter.
+            // While its cut is previewed, the held object is fainter.
             let colour = if trial.is_some() { [255, 214, 140, 26] } else { [255, 214, 140, 90] };
             self.overlay_mesh.held_object(thing, colour);
         }

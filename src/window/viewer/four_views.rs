@@ -29,7 +29,7 @@ impl WindowState {
         self.part_of(self.views.active())
     }
 
-    /// Whether a place in the window, pixels, lies in the view in which is worked.
+    /// Returns true if a place in the window, in pixels, is in the active view.
     pub(super) fn is_in_view(&self, at: Vec2) -> bool {
         let (corner, size) = self.view_rect();
         at.cmpge(corner).all() && at.cmplt(corner + size).all()
@@ -51,7 +51,7 @@ impl WindowState {
         self.send_camera(wiring);
     }
 
-    /// Whether something is under way that belongs to the view where it was begun.
+    /// Returns true while an action that belongs to one view is under way.
     fn is_at_work(&self, state: &Published) -> bool {
         let ui = &self.ui_state;
         let drawing = ui.region.drawing.as_ref().is_some_and(|d| !d.points.is_empty());
@@ -121,8 +121,8 @@ impl WindowState {
         shows
     }
 
-    /// What a drag of this button does in the view in which is worked: one along an axis slides
-    /// instead of turning.
+    /// Returns the effect of a drag with this button in the active view: a view along an axis pans
+    /// instead of orbiting.
     pub(super) fn held_drag(&self, drag: Drag) -> Drag {
         if drag == Drag::Orbit && self.views.is_held() { Drag::Pan } else { drag }
     }
@@ -132,7 +132,7 @@ impl WindowState {
         self.camera = self.views.take(asked, &self.camera);
     }
 
-    /// What turns the camera by itself turns the free view.
+    /// Switches to the free view before the camera is turned.
     pub(super) fn turn_freely(&mut self) {
         self.leave_animation();
         if self.views.is_held() {

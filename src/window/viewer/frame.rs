@@ -111,7 +111,7 @@ impl WindowState {
     ) -> Vec<UiRequest> {
         let mut requests = Vec::new();
         let input = self.egui.take_egui_input(&self.window);
-        // What a click or a key has set is seen in the frame after: the clay of this one is drawn.
+        // The effect of a click or a key shows in the frame after: the clay of this one is drawn.
         let moved = |e: &egui::Event| matches!(e, egui::Event::PointerMoved(_));
         if !input.events.iter().all(moved) {
             self.pacing.want();
@@ -198,9 +198,9 @@ impl WindowState {
     }
 }
 
-/// The events of a frame, cut after each press and each release. What is under the pointer is
-/// looked up once a pass, at the last place of that pass: a press, and a pointer that is elsewhere
-/// before the frame is drawn, would go to the second place.
+/// Splits the events of a frame after each press and each release. egui looks up the widget under
+/// the pointer once per pass, at the last position of that pass. Without the split, a press
+/// followed by a move within one frame would go to the second position.
 fn by_press(mut input: egui::RawInput) -> Vec<egui::RawInput> {
     let pressed = |e: &egui::Event| matches!(e, egui::Event::PointerButton { .. });
     let mut events = std::mem::take(&mut input.events);
@@ -208,7 +208,7 @@ fn by_press(mut input: egui::RawInput) -> Vec<egui::RawInput> {
     while let Some(end) = events.iter().position(pressed).filter(|i| i + 1 < events.len()) {
         let rest = events.split_off(end + 1);
         passes.push(egui::RawInput { events, ..input.clone() });
-        // What was dropped is dropped once.
+        // Dropped files belong to one pass only.
         input.dropped_files.clear();
         events = rest;
     }

@@ -29,7 +29,7 @@ pub(super) struct Frame {
     pub(super) led: ProvisionalDabs,
 }
 
-/// Whether a page's box may be seen: not wholly beyond one plane of the view.
+/// Returns true if a page's box may be visible: not wholly beyond one plane of the view.
 pub(super) fn in_view(matrix: &Mat4, page: &Page) -> bool {
     let (lo, hi) = page.bounds();
     let mut beyond = [0u8; 5];

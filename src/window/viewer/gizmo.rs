@@ -12,7 +12,7 @@ use sculptd_clay::Ray;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::scene::{ObjectTransform, ObjectView};
 
-/// What of the gizmo is dragged. Axes: 0 x, 1 y, 2 z of the world.
+/// Part of the gizmo that is dragged. Axes: 0 x, 1 y, 2 z of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GizmoHandle {
     /// Along an axis.
@@ -51,13 +51,13 @@ pub struct GizmoDrag {
     pub handle: GizmoHandle,
     /// The ray of the press.
     pub from: Ray,
-    /// What the object was then.
+    /// Transform of the object at the start.
     pub before: ObjectTransform,
-    /// Where it would stand if the button were released now.
+    /// Transform of the object if the button were released now.
     pub now: ObjectTransform,
 }
 
-/// Where the gizmo stands, and how large.
+/// Position and size of the gizmo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gizmo {
     /// The middle of the object, in the world.
@@ -75,14 +75,14 @@ const SHARE: f64 = 0.16;
 /// The radius of the circles, and where the corner for scaling is, in lengths of an axis.
 const RING: f64 = 0.75;
 const CORNER: f64 = 0.45;
-/// How near the pointer must be, view heights.
+/// Distance at which the pointer hits a handle, in view heights.
 const REACH: f32 = 0.018;
 const CORNERS: usize = 48;
-/// What lies before the gizmo dims it to this share: also inside of a larger object it can be held.
+/// Opacity of the gizmo behind other surfaces, so that it can be used inside a larger object.
 const THROUGH: f32 = 0.55;
 
 impl Gizmo {
-    /// That of an object that stands at `transform`.
+    /// Returns the gizmo of an object with this `transform`.
     pub fn of(object: &ObjectView, transform: &ObjectTransform, camera: &Camera) -> Gizmo {
         let centre = transform.apply(object.middle.as_dvec3());
         let depth = (camera.eye() - centre.as_vec3()).dot(camera.backward());
@@ -170,8 +170,8 @@ impl Gizmo {
         best.map(|(_, handle)| handle)
     }
 
-    /// Where the object stands after a drag from one ray to another. `None`: seen so flat that
-    /// nothing can be told.
+    /// Returns the transform of the object after a drag from one ray to another. Returns `None` if
+    /// the handle is seen too flat to decide.
     pub fn drag(
         &self,
         handle: GizmoHandle,
@@ -215,7 +215,7 @@ impl Gizmo {
         moved.is_sane().then_some(moved)
     }
 
-    /// How far along an axis through the middle a ray comes nearest to it.
+    /// Returns the position along an axis through the middle that is nearest to a ray.
     fn along(&self, axis: usize, ray: Ray) -> Option<f64> {
         let (axis, dir) = (AXES[axis], ray.dir.as_dvec3().normalize());
         let between = ray.origin.as_dvec3() - self.centre;
@@ -224,7 +224,7 @@ impl Gizmo {
         (steep > 1e-6).then(|| (between.dot(axis) - between.dot(dir) * lean) / steep)
     }
 
-    /// Where a ray meets the plane through the middle.
+    /// Returns the point where a ray meets the plane through the middle.
     fn intersect(&self, normal: DVec3, ray: Ray) -> Option<DVec3> {
         let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
         let fall = dir.dot(normal);
@@ -298,7 +298,7 @@ mod tests {
             let by = |t: ObjectTransform| t.turn.angle_between(before.turn);
             assert!((by(turned(0.6, None)) - 0.6).abs() < 1e-4);
             assert!((by(turned(0.6, Some(steps))) - 30f64.to_radians()).abs() < 1e-9);
-            // What is turned stays as far from the middle.
+            // A rotated object keeps its distance from the middle.
             let far = |t: ObjectTransform| t.shift.distance(g.centre);
             assert!((far(turned(0.6, None)) - far(before)).abs() < 1e-12);
         }

@@ -18,7 +18,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::stroke::CurveAction;
 
-/// Whether a layer of egui takes presses that would else be for the clay.
+/// Returns true if a layer of egui takes presses that would otherwise go to the clay.
 pub(super) fn takes_presses(layer: egui::LayerId) -> bool {
     layer.order != egui::Order::Background || layer == region::layer()
 }
@@ -88,9 +88,9 @@ impl WindowState {
         }
     }
 
-    /// Whether a place in the window, pixels, lies on a panel or on another surface of egui that
-    /// takes presses. The panels are where the last frame has laid them out, and they do not move
-    /// under a pointer.
+    /// Returns true if a place in the window, in pixels, is on a panel or on another surface of
+    /// egui that takes presses. The panels are as the last frame laid them out, and they do not
+    /// move under a pointer.
     pub(super) fn over_panel(&self, at: Vec2) -> bool {
         let context = self.egui.egui_ctx();
         let at = at / context.pixels_per_point();
@@ -99,8 +99,8 @@ impl WindowState {
             || context.layer_id_at(at).is_some_and(takes_presses)
     }
 
-    /// Whether a place in the window, pixels, lies where the pointer draws a region. Only the left
-    /// button does.
+    /// Returns true if a place in the window, in pixels, is where the pointer draws a region. Only
+    /// the left button draws.
     pub(super) fn over_region(&self, at: Vec2) -> bool {
         let context = self.egui.egui_ctx();
         let at = at / context.pixels_per_point();
@@ -171,7 +171,7 @@ impl WindowState {
         let state = wiring.published.load();
         let view = self.view_point(self.pointer.at);
         let ray = self.camera.ray(view);
-        // The handle of a curve may lie beside the clay.
+        // The handle of a curve may be beside the clay.
         let draft = &state.draft;
         let handle = draft.handle_at(view, self.camera.aspect);
         // Alt and a press on another object make it active: that is no stroke.

@@ -14,12 +14,12 @@ pub(super) type Request<W> = (W, Arc<Job>);
 pub struct LatestWins<W> {
     slot: (cc::Sender<Request<W>>, cc::Receiver<Request<W>>),
     under_way: Arc<Job>,
-    /// Whether a new request cancels the one under way.
+    /// True if a new request cancels the one under way.
     cancels: bool,
 }
 
 impl<W: Send + 'static> LatestWins<W> {
-    /// Calls `each` with one request after another on a thread of its own. The thread ends when
+    /// Calls `each` with one request after another on a separate thread. The thread ends when
     /// `each` returns `false` or when this worker is dropped.
     pub fn start(
         name: &str,
@@ -83,7 +83,7 @@ mod tests {
         let (begun, begins) = cc::unbounded();
         let mut worker = LatestWins::start("test", move |request: u32, job| {
             let _ = begun.send(request);
-            // The first runs until it is told to stop.
+            // The first runs until it is cancelled.
             while request == 1 && !job.cancelled() {
                 std::thread::yield_now();
             }
@@ -95,7 +95,7 @@ mod tests {
         worker.request(3);
         assert_eq!(said.recv(), Ok((1, true)));
         let second = said.recv().expect("another");
-        // The second may have been taken before the third came, but then it was told to stop.
+        // The second may have started before the third came, but then it was cancelled.
         if second != (3, false) {
             assert_eq!(second.0, 2);
             assert_eq!(said.recv(), Ok((3, false)));

@@ -1,12 +1,12 @@
-//! What was chosen for the look of the clay, as the viewer has it.
+//! The viewer's state of the chosen look of the clay.
 
 use super::look_files::LookFilesWanted;
 use crate::look::Light;
 
-/// What was chosen when the pictures were asked for last.
+/// Choices at the last request for pictures.
 #[derive(Debug, Default)]
 pub(super) struct LookChoice {
     pub(super) asked: LookFilesWanted,
-    /// What lights the clay, and how dense the reference is behind it.
+    /// Light of the clay, and the opacity of the reference behind it.
     pub(super) shown: (Light, u32),
 }

@@ -1,5 +1,5 @@
-//! Pictures of lit balls (matcaps) and environments that a person keeps as files, read on a thread
-//! of its own.
+//! Pictures of lit balls (matcaps) and environments that a person keeps as files, read on a
+//! separate thread.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ const MOST: usize = 64;
 const BALL_ENDINGS: [&str; 4] = ["png", "jpg", "jpeg", "webp"];
 const AROUND_ENDINGS: [&str; 2] = ["hdr", "exr"];
 
-/// What is to be read.
+/// Files to be read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LookFilesWanted {
     /// The matcap and the environment that are shown, by their files' names; empty: none.
@@ -59,8 +59,8 @@ impl LookFolders {
         }
     }
 
-    /// Where a picture of this name belongs: `None` if it is none. One as wide as high is taken for
-    /// a lit ball.
+    /// Returns the folder for a picture of this name; `None` if it is no picture. A square one
+    /// counts as a lit ball.
     fn folder_for(&self, path: &Path) -> Option<&Path> {
         let ending = path.extension()?.to_string_lossy().to_lowercase();
         if AROUND_ENDINGS.contains(&ending.as_str()) {
@@ -73,7 +73,7 @@ impl LookFolders {
         Some(if square { &self.matcaps } else { &self.references })
     }
 
-    /// Whether this is a picture that a person may drop on the window.
+    /// Returns true if this is a picture that a person may drop on the window.
     pub fn takes(path: &Path) -> bool {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         let all = || BALL_ENDINGS.iter().chain(&AROUND_ENDINGS);
@@ -98,7 +98,7 @@ impl LookFolders {
     }
 }
 
-/// What was found.
+/// Files that were read.
 #[derive(Debug, Default)]
 pub struct LookFiles {
     /// Names and small pictures of the matcaps, where they were asked for.
@@ -110,7 +110,7 @@ pub struct LookFiles {
     pub matcap: Option<Arc<RgbaImage>>,
     pub environment: Option<Arc<Environment>>,
     pub reference: Option<Arc<RgbaImage>>,
-    /// What could not be read, and why.
+    /// Files that could not be read, with the reasons.
     pub wrong: Vec<String>,
 }
 
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(found.matcap.expect("read").dimensions(), (40, 40));
         assert_eq!(found.reference.expect("read").width(), REFERENCE);
         assert!(found.environment.is_some() && found.wrong.is_empty(), "{:?}", found.wrong);
-        // Both are gone, and told by their names.
+        // Both are gone, and the errors give their names.
         (wanted.matcap, wanted.environment) = ("gone.png".into(), "none.hdr".into());
         let found = LookFiles::read(&wanted, &folders);
         assert_eq!(found.wrong.len(), 2);

@@ -8,7 +8,7 @@ use crate::look::Light;
 use crate::panels::state::Tab;
 
 impl WindowState {
-    /// How dense the reference picture is behind the clay.
+    /// Returns the opacity of the reference picture behind the clay.
     pub(super) fn backdrop(&self) -> f32 {
         let reference = &self.ui_state.prefs.reference;
         let behind = reference.behind && !reference.file.is_empty();

@@ -1,5 +1,5 @@
-//! Which map and which delay bring the places of a pen onto those of a pointer, and whether the
-//! motion says so without doubt.
+//! Finds the map and the delay that bring a pen's positions onto those of a pointer, and whether
+//! the motion decides them without doubt.
 //!
 //! A delay can be taken for a map: on a circle at constant speed it is a turn, on a line at
 //! constant speed a shift. So a fit is believed only where every other delay and every other kind
@@ -15,7 +15,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// From shares of a tablet's area to pixels of the whole desktop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScreenMap {
-    /// Where the area's top left corner lies.
+    /// Position of the area's top left corner, in pixels.
     pub origin: DVec2,
     /// The area's upper edge, from left to right.
     pub across: DVec2,
@@ -24,7 +24,7 @@ pub struct ScreenMap {
 }
 
 impl ScreenMap {
-    /// Where a share of the area lies, pixels.
+    /// Maps a share of the area to pixels.
     pub fn at(&self, share: DVec2) -> DVec2 {
         self.origin + self.across * share.x + self.down * share.y
     }
@@ -54,7 +54,7 @@ const LIKELY: f64 = 12.0;
 const SAME: f64 = 0.6;
 /// The same where the map that was known is contradicted.
 const SAME_BETTER: f64 = 1.0;
-/// What three standard deviations may leave to a corner, pixels.
+/// Greatest uncertainty of a corner, three standard deviations, in pixels.
 const LEFT_TO_CHANCE: f64 = 1.6;
 /// The same where the map that was known is contradicted: any better one is taken.
 const LEFT_TO_BETTER: f64 = 4.0;
@@ -63,9 +63,8 @@ const FITS: f64 = 16.0;
 /// A map is asked for over so many times the extent of the places that the pen was at: beyond, the
 /// next pairs say more.
 const EXTENT: f64 = 3.9;
-/// How far the pairs must lie apart, in shares of the tablet: their standard deviation in the
-/// direction in which it is least. Over less, or along a line, the map beside them would be
-/// guessed.
+/// Least spread of the pairs, in shares of the tablet: their standard deviation in its least
+/// direction. With less spread, or along a line, the map beside them would be a guess.
 const LEAST_SPREAD: f64 = 6e-3;
 
 /// A map, and how well it explains the pairs.
@@ -82,7 +81,7 @@ pub(super) struct MapFit {
     pub alone: bool,
 }
 
-/// What an affine map may be.
+/// Kinds of affine map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// Across stays across.
@@ -100,7 +99,7 @@ struct Trial {
     off: f64,
     /// Mean square distance of the pairs, pixels², each at most as the cap allows.
     square: f64,
-    /// How many equal pairs say as much.
+    /// Number of equal pairs with the same total weight.
     count: f64,
     /// Greatest standard deviation of a corner, pixels.
     corner: f64,
@@ -108,8 +107,8 @@ struct Trial {
 
 /// The best map of these pairs; `samples` gives them for a delay in microseconds.
 ///
-/// Where the delay is the same for all pairs, those of a quick pen say as much as the others: then
-/// pairs of equal worth may be certain sooner.
+/// If the delay is the same for all pairs, those of a quick pen are as reliable as the others: then
+/// pairs of equal weight may be certain sooner.
 pub(super) fn best_fit(samples: &dyn Fn(u64) -> Vec<PlacePair>) -> Option<MapFit> {
     let by_worth = fit(samples);
     if by_worth.is_some_and(|f| f.certain) {
@@ -239,7 +238,7 @@ fn asked_for(pairs: &[PlacePair]) -> [DVec2; 4] {
     [least, DVec2::new(most.x, least.y), DVec2::new(least.x, most.y), most]
 }
 
-/// How far these corners are apart under two maps, pixels.
+/// Returns the greatest distance of these corners under two maps, in pixels.
 fn apart(corners: &[DVec2; 4], a: &ScreenMap, b: &ScreenMap) -> f64 {
     corners.iter().map(|c| a.at(*c).distance(b.at(*c))).fold(0.0, f64::max)
 }
@@ -272,7 +271,7 @@ fn corner_deviation(kind: Kind, pairs: &[PlacePair], variance: f64, count: f64) 
     asked_for(pairs).into_iter().map(of_corner).fold(0.0, f64::max)
 }
 
-/// How far each pair lies from the map, pixels, and what the pair is worth.
+/// Returns each pair's distance from the map, in pixels, and its weight.
 pub(super) fn distances(map: &ScreenMap, pairs: &[PlacePair]) -> Vec<(f64, f64)> {
     pairs
         .iter()
@@ -329,10 +328,10 @@ fn least_squares(kind: Kind, all: &[PlacePair]) -> Option<ScreenMap> {
     Some(ScreenMap { origin: DVec2::new(x, y), across, down })
 }
 
-/// Whether the places of the pen lie apart in every direction.
+/// Returns true if the positions of the pen spread in every direction.
 fn spans_enough(all: &[PlacePair]) -> bool {
     let middle = all.iter().map(|s| s.0).sum::<DVec2>() / all.len() as f64;
-    // A few that lie far from the others say nothing of how far they lie apart.
+    // A few that are far from the others do not determine the spread.
     let mut off: Vec<DVec2> = all.iter().map(|s| s.0 - middle).collect();
     off.sort_unstable_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
     off.truncate(all.len() - all.len() / 6);

@@ -1,8 +1,8 @@
-//! The objects that are not active, on the card, and where each object stands.
+//! The inactive objects on the card, and the transform of each object.
 //!
-//! Every object is drawn in its own frame: its matrix, the view's axes and the brush are carried
-//! into it, so that a transform sends no vertex again. What is sent of the others is sent once; a
-//! hidden object has nothing on the card.
+//! Every object is drawn in its frame: its matrix, the view's axes and the brush are transformed
+//! into it, so that a transform resends no vertex. The other objects are sent once; a hidden object
+//! uses no memory on the card.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use sculptd_clay::{Ray, Snapshot};
 use sculptd_daemon::Published;
 use sculptd_engine::scene::{ObjectId, ObjectTransform};
 
-/// How the active object stands.
+/// Transform of the active object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
     /// Its id.
@@ -178,8 +178,8 @@ impl ObjectBuffers {
         gpu.queue.write_buffer(&self.frames[slot].buffer, 0, bytemuck::bytes_of(frame));
     }
 
-    /// Sends what is not on the card yet: the frame of the active object and of each other one, and
-    /// the pages of those that came or changed. `frame`: that of the world.
+    /// Sends missing data to the card: the frame of the active object and of each other one, and
+    /// the pages that are new or changed. `frame`: that of the world.
     pub(super) fn send(
         &mut self,
         gpu: &Gpu,
@@ -207,7 +207,7 @@ impl ObjectBuffers {
         }
     }
 
-    /// What the active object is drawn with.
+    /// Returns the bind group of the active object.
     pub fn active_group(&self) -> Option<&wgpu::BindGroup> {
         self.frames.first().map(|f| &f.group)
     }

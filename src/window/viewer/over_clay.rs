@@ -1,4 +1,4 @@
-//! What is drawn over the clay as lines: rings of pens, the gizmo, hands, what they hold.
+//! Lines drawn over the clay: rings of pens, the gizmo, hands, the held object.
 
 use glam::Vec2;
 
@@ -33,7 +33,7 @@ impl WindowState {
                 }
                 brush.get_or_insert((hit.position, radius));
             }
-            // Mirrors stand in the object's own frame.
+            // Mirrors are in the object's frame.
             let to_world = state.transform();
             let own = to_world.inverse();
             let (middle, ray) = (own.point(state.middle), own.ray(ray));

@@ -24,7 +24,7 @@ fn segment(out: &mut Vec<LineEnd>, a: Vec3, b: Vec3, colour: [u8; 4]) {
     out.push(LineEnd::new(b, colour));
 }
 
-/// How a ring is drawn.
+/// Appearance of a ring.
 #[derive(Debug, Clone, Copy)]
 pub struct Ring {
     /// Mesh units.
@@ -34,7 +34,7 @@ pub struct Ring {
     pub mirrored: bool,
     /// The pen touches; before contact the ring is fainter.
     pub down: bool,
-    /// The colour of another person, whose ring it is; `None`: it is the own.
+    /// Colour of another person, if the ring is theirs; `None`: it is the local person's.
     pub of: Option<[u8; 3]>,
 }
 
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn a_ring_bridges_a_gap_evenly_and_lies_flat_over_nothing() {
         assert_eq!(even_heights(&[None; CORNERS]), [0.0; CORNERS]);
-        // Half of the ring lies on a slope, the other half hangs over an edge.
+        // Half of the ring is over a slope, the other half hangs over an edge.
         let found = std::array::from_fn(|i| (i < CORNERS / 2).then_some(0.01 * i as f32));
         let heights = even_heights(&found);
         let steps = (0..CORNERS).map(|i| (heights[(i + 1) % CORNERS] - heights[i]).abs());

@@ -24,7 +24,7 @@ pub(super) struct Pacing {
     frame_us: u64,
     next_poll_us: u64,
     poll_us: u64,
-    /// When egui wants the next frame; `u64::MAX`: not by itself.
+    /// Time of the next frame that egui requested; `u64::MAX`: none.
     egui_us: Arc<AtomicU64>,
     /// Beginnings of the frames of the last second.
     frames: VecDeque<u64>,
@@ -67,7 +67,7 @@ impl Pacing {
         self.wanted = true;
     }
 
-    /// Whether it is time to look at the published state.
+    /// Returns true if it is time to read the published state.
     pub(super) fn poll_is_due(&mut self, now_us: u64) -> bool {
         let due = now_us >= self.next_poll_us;
         if due {
@@ -76,7 +76,7 @@ impl Pacing {
         due
     }
 
-    /// Whether a frame is to be requested now; the request counts as made.
+    /// Returns true if a frame must be requested now; the request counts as made.
     pub(super) fn frame_is_due(&mut self, now_us: u64) -> bool {
         self.wanted |= self.egui_us.load(Relaxed) <= now_us;
         let due = self.wanted && now_us >= self.last_frame_us + self.frame_us;
@@ -126,7 +126,7 @@ impl FrameSum {
         self.worst_ms = self.worst_ms.max(own_ms);
     }
 
-    /// Tells the log of what was drawn, and begins anew. Nothing is told where nothing was drawn.
+    /// Logs the sums of the drawn frames and resets them. Logs nothing if nothing was drawn.
     pub(super) fn tell(&mut self, (in_view, pages): (usize, usize)) {
         let FrameSum { frames, total_ms, worst_ms } = std::mem::take(self);
         if frames > 0 {

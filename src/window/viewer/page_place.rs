@@ -2,8 +2,8 @@
 
 use sculptd_clay::Page;
 
-/// Where a page's vertex lies on the card. A halo vertex is drawn from its home's slot: every
-/// vertex is there once.
+/// Returns the index of a page's vertex on the card. A halo vertex is drawn from its home's slot,
+/// so that every vertex is stored once.
 pub fn place(page: &Page, p: usize, slot: usize, v: impl Into<u64>) -> u32 {
     let v = v.into() as usize;
     let (home, local) = match v.checked_sub(page.own()) {

@@ -38,7 +38,7 @@ pub const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferL
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Unorm8x4],
 };
 
-/// A value a vertex, in a buffer of its own: maps come and go while the clay stays.
+/// One value per vertex, in a separate buffer: maps change while the clay stays.
 pub const VALUE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<f32>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
@@ -60,7 +60,7 @@ const BUDGET: u64 = 24 << 20;
 /// bytes.
 const GAP: usize = 8;
 
-/// Which rows of each page are not on the card yet, a bit a row.
+/// Rows of each page that are not on the card yet, one bit per row.
 #[derive(Debug)]
 struct Rows {
     bits: Vec<u64>,
@@ -188,7 +188,7 @@ impl Pages {
         }
     }
 
-    /// Whether this snapshot has the topology that the buffers were made for.
+    /// Returns true if this snapshot has the topology that the buffers were built for.
     pub fn fits(&self, mesh: &Snapshot) -> bool {
         let Some(seen) = &self.seen else { return self.ranges.len() == mesh.page_count() };
         let mut same = seen.page_count() == mesh.page_count();

@@ -25,7 +25,7 @@ impl Painter {
         Ok(Painter { gpu, renderer })
     }
 
-    /// What draws here.
+    /// Returns the name of the graphics adapter.
     pub fn adapter(&self) -> String {
         self.gpu.name()
     }
@@ -34,17 +34,17 @@ impl Painter {
         &self.gpu
     }
 
-    /// Lights the clay by a picture of a lit ball, where the look says so.
+    /// Lights the clay with a picture of a lit ball, if the look requests one.
     pub fn set_matcap(&mut self, picture: &RgbaImage) {
         self.renderer.surroundings.set_matcap(&self.gpu, picture);
     }
 
-    /// Shows a picture behind the clay, where the scene says so.
+    /// Shows a picture behind the clay, if the scene requests one.
     pub fn set_reference(&mut self, picture: &RgbaImage) {
         self.renderer.surroundings.set_reference(&self.gpu, picture);
     }
 
-    /// Lights the clay from all around, where the look says so.
+    /// Lights the clay from all around, if the look requests it.
     pub fn set_environment(&mut self, environment: &Environment) {
         self.renderer.surroundings.set_environment(&self.gpu, environment);
     }

@@ -6,7 +6,7 @@ use winit::keyboard::ModifiersState;
 use super::gizmo::GizmoDrag;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 
-/// What a pressed button drags.
+/// Action of a pressed button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Drag {
     #[default]
@@ -24,14 +24,14 @@ pub struct Pointer {
     pub at: Vec2,
     pub inside: bool,
     pub drag: Drag,
-    /// How hard, where the window system tells.
+    /// Force of the press, if the window system reports it.
     pub force: Option<f32>,
-    /// When what is told of it happened, microseconds; `None`: now.
+    /// Time of the current event, in microseconds; `None`: now.
     pub(super) t_us: Option<u64>,
-    /// The brush as it was before Shift or Ctrl changed it for one stroke.
+    /// Settings of the brush before Shift or Ctrl changed it for one stroke.
     pub(super) lent: Option<BrushSettings>,
     pub(super) speed: Speed,
-    /// When and where the last press beside the clay was, microseconds and pixels.
+    /// Time and position of the last press beside the clay, in microseconds and pixels.
     pub(super) beside: Option<(u64, Vec2)>,
     /// The handle of the gizmo that is dragged.
     pub(super) gizmo: Option<GizmoDrag>,
@@ -91,9 +91,9 @@ pub(super) fn lent(
     now
 }
 
-/// The brushes to be told to the world, in this order, when `brush` comes back after the one of the
-/// key `lent` had its place: first the lent one as it was before, not turned round as the keys had
-/// it, because the world remembers what it puts away.
+/// Returns the brushes to send to the world, in this order, when `brush` comes back after a
+/// temporary brush with the key `lent`. The temporary one comes first, as it was before the keys
+/// inverted it, because the world stores the settings of the brush that it replaces.
 pub(super) fn give_back(
     lent: (BrushKind, u32),
     brush: BrushSettings,

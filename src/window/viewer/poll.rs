@@ -1,5 +1,5 @@
-//! What the window looks at between frames, at a pace of its own: the published state, background
-//! tasks, the session's history, the devices. A frame follows only where something changed.
+//! Polling of the window between frames, at a separate pace: the published state, background tasks,
+//! the session's history, the devices. A frame follows only after a change.
 
 use super::state::WindowState;
 use super::tasks::TaskReport;
@@ -10,11 +10,11 @@ use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
 use sculptd_daemon::Published;
 use sculptd_engine::hand::HeldObject;
 
-/// How often the devices are listed, the preferences kept and the Loop page refreshed.
+/// Interval at which devices are listed, preferences saved and the Loop page refreshed.
 const SECOND_US: u64 = 1_000_000;
 
-/// Whether two states look the same: everything that the window shows of them, but for the figures
-/// of the Loop page.
+/// Returns true if two states look the same: everything that the window shows of them, except the
+/// figures of the Loop page.
 fn looks_the_same(a: &Published, b: &Published) -> bool {
     let held = |t: &Option<HeldObject>| {
         t.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place))
@@ -116,7 +116,7 @@ impl WindowState {
         }
     }
 
-    /// Where a file chooser begins: beside the file that was used last, or among the documents.
+    /// Returns the first folder of a file chooser: beside the last used file, or the documents.
     fn usual_folder(&self) -> std::path::PathBuf {
         let recent = self.ui_state.prefs.recent.first().and_then(|p| p.parent());
         let dirs = directories::UserDirs::new();

@@ -1,6 +1,5 @@
-//! The file that keeps the preferences between runs. It is written when something changed. A
-//! failure to write is told once, and a file that cannot be read is set aside before it is written
-//! over.
+//! The file that keeps the preferences between runs. It is written after a change. A failed write
+//! is reported once, and an unreadable file is moved aside before it is overwritten.
 
 use std::path::{Path, PathBuf};
 
@@ -8,14 +7,14 @@ use crate::language::tr;
 use crate::panels::state::{Preferences, UiState};
 use sculptd_geometry::io::write_beside;
 
-/// Where the preferences are kept, and what was last kept there.
+/// Path of the preferences, and the values last saved there.
 #[derive(Debug)]
 pub struct PreferencesFile {
     path: Option<PathBuf>,
     kept: Preferences,
-    /// What is wrong with the file, until it was told.
+    /// Fault of the file, until it is reported.
     wrong: Option<PreferencesFault>,
-    /// The last write failed, and that was told.
+    /// True if the last write failed, and that was reported.
     failing: bool,
 }
 

@@ -14,7 +14,7 @@ use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, TriMesh};
 
-/// What is asked for.
+/// Request for a preview.
 #[derive(Debug, Clone)]
 pub struct PreviewRequest {
     pub mesh: Snapshot,
@@ -26,7 +26,7 @@ pub struct PreviewRequest {
 const TINT: [u8; 4] = [255, 196, 96, 255];
 const PLAIN: [u8; 4] = [255; 4];
 
-/// Triangles that stand in the place of pages of the object.
+/// Triangles that replace pages of the object.
 #[derive(Debug, Clone)]
 pub struct Preview {
     /// Of the object that it was computed from.
@@ -95,9 +95,9 @@ impl TriangleGatherer {
 /// Cells along the longest side of a mesh that is shown before there is clay of it.
 const CELLS: f32 = 192.0;
 
-/// A mesh that was read, in the place of the whole object of `pages` pages: what is shown while the
-/// clay is still made of it. It is coarse, so that it is there at once: the vertices of each cell
-/// of a grid are one (Rossignac and Borrel, Multi-resolution 3D approximations, 1993).
+/// Builds a coarse preview of a loaded mesh, shown instead of all `pages` pages while its clay is
+/// being built. It is coarse, so that it appears at once: the vertices of each cell of a grid are
+/// merged (Rossignac and Borrel, Multi-resolution 3D approximations, 1993).
 pub fn of_mesh(mesh: &TriMesh, pages: usize) -> Preview {
     let (lo, hi) = mesh.bounds();
     let scale = CELLS / (hi - lo).max_element().max(1e-12);

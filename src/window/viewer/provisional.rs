@@ -35,7 +35,7 @@ pub struct LedDab {
     radius: f32,
     to: [f32; 3],
     unused: f32,
-    /// What it adds in its middle: along the normal, mesh units.
+    /// Displacement in its middle: along the normal, in mesh units.
     by: [f32; 3],
     /// -1 where that leads into the clay, else 1.
     sign: f32,
@@ -94,7 +94,7 @@ impl ProvisionalDabs {
         let sign = if brush.negative != pen.inverted { -1.0 } else { 1.0 };
         let mut add = |from: Ray, to: Ray, last: Vec3, normal: Vec3| {
             let (Some(a), Some(b)) = (state.pick(from), state.pick(to)) else { return };
-            // Along the surface that the stroke found: what it has raised since stands in the way.
+            // Along the surface that the stroke found: its later relief would distort the path.
             let way = b.position - a.position;
             let way = way - normal * way.dot(normal);
             let length = way.length();
@@ -115,7 +115,7 @@ impl ProvisionalDabs {
         };
         let (from, to) = (camera.ray(pen.view), camera.ray(ahead));
         add(from, to, *last, *normal);
-        // Mirrors stand in the object's own frame.
+        // Mirrors are in the object's frame.
         let to_world = state.transform();
         let own = to_world.inverse();
         let middle = own.point(state.middle);
@@ -128,7 +128,7 @@ impl ProvisionalDabs {
         all
     }
 
-    /// Whether anything is led.
+    /// Returns true if there are no provisional dabs.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -140,11 +140,11 @@ impl ProvisionalDabs {
     }
 }
 
-/// Whether dabs of this brush add up along the way by their falloff alone.
+/// Returns true if dabs of this brush add up along the path by their falloff alone.
 fn is_known(brush: &BrushSettings) -> bool {
     use BrushKind::{Draw, Inflate};
     let path = &brush.path;
-    // Measured on what it has raised so far, the next dab's normal is not known.
+    // The next dab's normal is unknown if it is measured on the relief raised so far.
     matches!(brush.kind, Draw | Inflate)
         && !brush.accumulate
         && brush.topology.by == Measure::Off

@@ -25,12 +25,12 @@ use sculptd_engine::camera::Camera;
 pub struct LineEnd {
     pub place: [f32; 3],
     pub colour: [u8; 4],
-    /// The share of the colour that is seen through what lies before it, 0 to 1.
+    /// Opacity of the colour behind other surfaces, 0 to 1.
     pub through: f32,
 }
 
 impl LineEnd {
-    /// One that is hidden by what lies before it.
+    /// Creates an end that surfaces before it hide.
     pub fn new(place: Vec3, colour: [u8; 4]) -> LineEnd {
         LineEnd { place: place.to_array(), colour, through: 0.0 }
     }
@@ -39,7 +39,7 @@ impl LineEnd {
 /// Ends of lines a frame at most: a dozen rings, four hands and a held object.
 const MAX_LINE_ENDS: usize = 16_384;
 
-/// What is drawn.
+/// Content of a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     pub mesh: &'a Snapshot,
@@ -53,20 +53,20 @@ pub struct Scene<'a> {
     pub beside: Beside<'a>,
 }
 
-/// What is drawn beside the clay.
+/// Content drawn beside the clay.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Beside<'a> {
-    /// In the place of the pages that it hides.
+    /// Replaces the pages that it hides.
     pub preview: Option<&'a Arc<Preview>>,
     /// Over the clay, seen through.
     pub overlay: Option<&'a Triangles>,
-    /// How the object stands that the clay is of.
+    /// Transform of the object to which the clay belongs.
     pub stance: Stance,
     /// The other objects.
     pub others: &'a [OtherObject<'a>],
-    /// How dense the reference picture is behind the clay, 0 none to 1.
+    /// Opacity of the reference picture behind the clay, 0 none to 1.
     pub backdrop: f32,
-    /// What the pens will have raised when the frame is seen.
+    /// Dabs that the pens will have raised when the frame is seen.
     pub led: Option<&'a ProvisionalDabs>,
 }
 
@@ -88,7 +88,7 @@ pub struct Renderer {
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     objects: ObjectBuffers,
-    /// What the clay is lit by beside the studio's own lights.
+    /// Lighting of the clay other than the studio's lights.
     pub(super) surroundings: Surroundings,
     samples: u32,
     format: wgpu::TextureFormat,
@@ -99,7 +99,7 @@ pub struct Renderer {
     previewed: Option<Arc<Preview>>,
     preview: OverlayMesh,
     overlay_mesh: OverlayMesh,
-    /// Whether the depth can be read here.
+    /// True if the depth can be read here.
     shades: bool,
     /// Made when it is first asked for.
     shade: Option<Ssao>,
@@ -110,7 +110,7 @@ pub struct Renderer {
     pub waiting: usize,
     /// Pages that were in view, of all.
     pub drawn: (usize, usize),
-    /// Of the active object's, those that were so small that fewer triangles did.
+    /// Number of the active object's pages drawn with fewer triangles, because they are small.
     pub coarse: usize,
     /// Far pages of a large object may be drawn with fewer triangles: in a window, not in a picture
     /// that is kept.
@@ -190,7 +190,7 @@ impl Renderer {
                     } else {
                         wgpu::PrimitiveTopology::TriangleList
                     },
-                    // What is seen through shows its near side alone.
+                    // The transparent overlay shows only its near side.
                     cull_mode: overlay.then_some(wgpu::Face::Back),
                     ..Default::default()
                 },
@@ -394,7 +394,7 @@ impl Renderer {
         let shade = scene.look.shade.clamp(0.0, 2.0) * if kind > 0.0 { 0.5 } else { 1.0 };
         let shaded = self.shades && shade > 0.0 && lo.cmple(hi).all();
         {
-            // What is shaded is not finished yet: lines and the mean of its samples come after.
+            // A shaded picture is not finished yet: lines and the mean of its samples come after.
             let resolve = if shaded { None } else { resolve };
             let mut pass = begin(encoder, view, resolve, depth, (true, shaded));
             pass.set_bind_group(0, &self.group, &[]);
@@ -484,7 +484,7 @@ impl Renderer {
         preview
     }
 
-    /// What lies over the clay.
+    /// Draws the content over the clay.
     fn over(&self, scene: &Scene<'_>, pass: &mut wgpu::RenderPass<'_>, ends: u32) {
         if scene.beside.overlay.is_some() {
             pass.set_pipeline(&self.overlay);
@@ -531,8 +531,8 @@ fn begin<'e>(
     })
 }
 
-/// What lights the clay, as the shader has it: which, how far turned, how bright, metal. A map's
-/// colours are told by the studio's lights alone.
+/// Returns the light of the clay, as the shader has it: kind, rotation, brightness, metal. A map
+/// always uses the studio's lights.
 fn light(look: &Look) -> [f32; 4] {
     let kind = match look.light {
         _ if look.map != Map::None => 0.0,
@@ -546,8 +546,8 @@ fn light(look: &Look) -> [f32; 4] {
     [kind, turned, bright, f32::from(metal)]
 }
 
-/// What clip depth loses for two thousandths of the way to the eye: with depth `a - b / d`, that is
-/// `b` times the share.
+/// Returns the loss of clip depth for two thousandths of the distance to the eye: with depth `a - b
+/// / d`, that is `b` times the share.
 fn nearer(camera: &Camera, radius: f32) -> f32 {
     if camera.orthographic {
         return 4e-4;

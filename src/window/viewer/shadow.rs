@@ -15,8 +15,8 @@ use sculptd_engine::camera::Camera;
 /// Texels along a side of the light's picture.
 const SIDE: u32 = 2048;
 
-/// How much wider than the view's height at its target the light's picture is: what is nearer or
-/// farther, or at the sides, is in it too.
+/// Width of the light's picture relative to the view's height at its target, so that it contains
+/// nearer and farther surfaces, and the sides.
 const WIDER: f32 = 1.5;
 
 #[derive(Debug)]
@@ -127,7 +127,7 @@ mod tests {
             assert!((-0.001..=1.001).contains(&p.z), "{p}");
         }
         assert!(light_matrix(&whole, light, (hi, lo)).is_none(), "an empty box");
-        // A light straight above has an upright of its own.
+        // A light straight above uses another up vector.
         let above = light_matrix(&whole, [0.0, 1.0, 0.0], (lo, hi)).expect("a matrix");
         assert!(above.is_finite());
     }

@@ -13,7 +13,7 @@ use crate::language::tr;
 use sculptd_daemon::Published;
 use sculptd_engine::camera::Camera;
 
-/// Where pictures go.
+/// Returns the folder of screenshots.
 fn folder() -> PathBuf {
     directories::UserDirs::new()
         .and_then(|d| d.picture_dir().map(PathBuf::from))

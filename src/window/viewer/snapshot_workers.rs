@@ -1,5 +1,5 @@
 //! The latest-wins workers that follow the newest snapshot: previews of Booleans, distances,
-//! measures. Each has a thread of its own, made when it is first asked for.
+//! measures. Each runs on a separate thread, started at its first request.
 
 use super::distance_field::{self, DistanceField, SizesRequest};
 use super::latest_wins::LatestWins;

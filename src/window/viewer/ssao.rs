@@ -16,7 +16,7 @@ struct Uniform {
 
 const SHADES: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-/// How far occlusion reaches, as a share of the bounding radius.
+/// Range of occlusion, as a share of the bounding radius.
 const REACH: f32 = 0.30;
 
 #[derive(Debug)]
@@ -30,7 +30,7 @@ pub struct Ssao {
     others: Option<Sized>,
 }
 
-/// What has the picture's size.
+/// Textures of the picture's size.
 #[derive(Debug)]
 struct Sized {
     rough: wgpu::TextureView,

@@ -41,22 +41,22 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::{MenuItem, Similarity};
 use sculptd_engine::scene::{ObjectId, ObjectTransform};
 
-/// A screen reader's request, sent from its own thread.
+/// A screen reader's request, sent from the screen reader's thread.
 #[cfg(feature = "accessibility")]
 pub(super) use egui_winit::accesskit_winit::Event as AccessibilityEvent;
 /// No screen reader is connected in a build without the feature `accessibility`.
 #[cfg(not(feature = "accessibility"))]
 pub(super) type AccessibilityEvent = ();
 
-/// What the mesh over the clay was made from: the held object and its transform, the Boolean that
-/// is previewed, the menu.
+/// Inputs of the mesh over the clay: the held object and its transform, the previewed Boolean, the
+/// menu.
 pub(super) type OverlayKey = (Option<(usize, Similarity)>, Option<MenuItem>, Vec<MenuBall>);
 
-/// So long the world's camera may lie behind the one that was sent: then something else has set
-/// it.
+/// Time after which a world's camera that differs from the sent one counts as set by something
+/// else.
 const CAMERA_PATIENCE_US: u64 = 500_000;
 
-/// Which clay it is, and its revision.
+/// Id of the clay, and its revision.
 type ClayState = (u32, u64);
 
 /// An open window and all that it draws with.
@@ -64,8 +64,8 @@ pub(super) struct WindowState {
     pub(super) window: Arc<Window>,
     pub(super) surface: wgpu::Surface<'static>,
     pub(super) config: wgpu::SurfaceConfiguration,
-    /// What the clay is drawn in: light adds up linearly there, while the panels blend in the
-    /// surface's own format, where thin letters keep their weight.
+    /// Texture format of the clay: light adds up linearly in it, while the panels blend in the
+    /// surface's format, where thin letters keep their weight.
     pub(super) clay_format: wgpu::TextureFormat,
     pub(super) gpu: Gpu,
     pub(super) adapter: String,
@@ -87,7 +87,7 @@ pub(super) struct WindowState {
     pub(super) ui_state: UiState,
     pub(super) tasks: Tasks,
     pub(super) preferences_file: PreferencesFile,
-    /// Where a person's own pictures for the look lie; `None`: none are looked for.
+    /// Folders of the person's pictures for the look; `None`: none are read.
     pub(super) look_folders: Option<LookFolders>,
     pub(super) look_choice: LookChoice,
     pub(super) values: Option<MapValues>,
@@ -96,7 +96,7 @@ pub(super) struct WindowState {
     pub(super) devices: Vec<String>,
     /// The lists of own brushes and pictures as they were shown, by their addresses.
     pub(super) shown_brushes: [usize; 2],
-    /// When the devices were listed last.
+    /// Time of the last list of devices.
     pub(super) listed_us: u64,
     pub(super) uploaded: u64,
     pub(super) figures: FrameFigures,
@@ -110,8 +110,8 @@ pub(super) struct WindowState {
     /// The newest preview; what was requested, and when.
     pub(super) preview: Option<Arc<Preview>>,
     pub(super) asked_preview: Option<((u64, Similarity, MenuItem), u64)>,
-    /// What distances are measured to, and the request that was sent last: the revision, that of
-    /// `before`, the held object's transform.
+    /// Reference of distances, and the request that was sent last: the revision, that of `before`,
+    /// the held object's transform.
     pub(super) before: Option<Snapshot>,
     /// The object that `before` is of.
     pub(super) before_of: Option<ObjectId>,
@@ -119,7 +119,7 @@ pub(super) struct WindowState {
     pub(super) asked_sizes: Option<(ClayState, DVec3, ObjectTransform)>,
     /// The newest revision, and since when.
     pub(super) rested: (u64, u64),
-    /// When a mesh was loaded that may not be published yet.
+    /// Time of loading a mesh that may not be published yet.
     pub(super) opened: Option<u64>,
     pub(super) distances: Option<MapValues>,
     pub(super) step_pictures: StepPictures,
@@ -130,11 +130,11 @@ pub(super) struct WindowState {
     pub(super) turning: Option<Turntable>,
     pub(super) screenshot: bool,
     pub(super) pacing: Pacing,
-    /// What the last frame showed.
+    /// State shown by the last frame.
     pub(super) drawn: Option<Arc<Published>>,
     pub(super) drawn_demo: bool,
     pub(super) drawn_kiosk: Option<KioskView>,
-    /// The refused undo that was told.
+    /// Refused undo that was already reported.
     pub(super) told_refusal: Option<sculptd_engine::world::UndoRefusal>,
     /// The part of the window between the panels, points; all of it before the first frame.
     pub(super) free: Option<egui::Rect>,
@@ -327,7 +327,7 @@ impl WindowState {
         if (max - min).min_element() < 1.0 { (Vec2::ZERO, whole) } else { (min, max - min) }
     }
 
-    /// Whether the picture of the clay can be copied into a part of the window.
+    /// Returns true if the picture of the clay can be copied into a part of the window.
     pub(super) fn takes_copies(&self) -> bool {
         self.config.usage.contains(wgpu::TextureUsages::COPY_DST)
     }

@@ -16,11 +16,11 @@ use sculptd_engine::camera::Camera;
 
 /// Pixels; a row is what copies are padded to.
 const SIZE: (u32, u32) = (128, 80);
-/// Where a processor draws, a larger object has no pictures: each costs a frame.
+/// Most triangles of an object that has pictures if a processor draws: each picture costs a frame.
 const MOST_ON_A_PROCESSOR: usize = 1_500_000;
-/// Measuring waits until the object has not changed for so long.
+/// Time without a change of the object before measuring starts.
 const REST_US: u64 = 150_000;
-/// A pen does not stand still for so long.
+/// Time longer than a pen stays still.
 const LONG_REST_US: u64 = 2_000_000;
 
 /// One number for which pages these are: an undo brings old ones back.
@@ -55,7 +55,7 @@ impl WindowState {
             return fetched;
         }
         if ahead == 0 {
-            // What was ahead is gone; of a full history the oldest steps are.
+            // The steps ahead are gone; of a full history the oldest steps are.
             kept.retain(|k| k.step < step.max(before + 1));
             if before_ahead == 0 && step <= before {
                 let gone = before + 1 - step;

@@ -11,7 +11,7 @@ pub(super) struct PendingPicture {
     pub(super) mapped: mpsc::Receiver<bool>,
 }
 
-/// What was taken and what is under way.
+/// Taken pictures and those under way.
 #[derive(Debug, Default)]
 pub(super) struct StepPictures {
     pub(super) target: Option<wgpu::Texture>,

@@ -18,7 +18,7 @@ pub struct Surroundings {
     diffuse: wgpu::TextureView,
     glossy: wgpu::TextureView,
     reference: wgpu::TextureView,
-    /// What the main light sees, and how that is compared.
+    /// Depths seen by the main light, with the comparison sampler.
     depths: wgpu::TextureView,
     compare: wgpu::Sampler,
     /// Width over height of the reference picture.

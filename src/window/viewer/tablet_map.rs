@@ -6,7 +6,7 @@
 //! some milliseconds later, which matters the more the faster the pen is, and a mouse may have
 //! moved the pointer. The delay is found by trying several; pairs far from the map are left out of
 //! a second fit (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, reweighting).
-//! A map is believed only where the motion tells it from a delay: [`super::map_fit`].
+//! The map is accepted only if the motion distinguishes it from a delay: [`super::map_fit`].
 
 use std::collections::VecDeque;
 
@@ -21,12 +21,12 @@ use sculptd_engine::desktop_layout::DesktopLayout;
 const PAIRS: usize = 1024;
 /// Microseconds between two pairs: closer ones say nothing new of the map.
 const APART_US: u64 = 6_000;
-/// A new fit is made after so large a part of the pairs has come anew, and never after fewer than
-/// half of [`LEAST`].
+/// Divisor of the pair count: the map is fitted again after that share of new pairs, and never
+/// after fewer than half of [`LEAST`].
 const FRESH: usize = 8;
 /// The same once a map is known.
 const KNOWN_FRESH: usize = 2;
-/// Places of the pen that are remembered, for looking back by the delay: half a minute at 250 Hz.
+/// Pen positions that are remembered, for looking back by the delay: half a minute at 250 Hz.
 const TRAIL: usize = 8192;
 /// Delays at which a known map is compared with the newest pairs, microseconds apart. A pen at a
 /// thousand pixels a second is two pixels on in half a step.
@@ -39,22 +39,21 @@ const BELIEVED: f64 = 3.0;
 const WILD: f64 = 24.0;
 /// A pen's pointer may be this far from where the map puts it, pixels: beyond, it is a mouse's.
 const NEAR: f64 = 32.0;
-/// So long may the pointer's events lie behind the pen, microseconds, in a window that takes its
-/// events at once.
+/// Greatest delay of the pointer's events after the pen, in microseconds, in a window that takes
+/// its events at once.
 pub(super) const LATE_US: u64 = 250_000;
-/// A touch of the pen and the press that the desktop makes of it may lie so far apart on a machine
-/// that is busy, microseconds.
+/// Greatest time between a touch of the pen and the desktop's press, in microseconds, on a busy
+/// machine.
 const PRESS_US: u64 = 2_000_000;
-/// Touches that no press has followed yet are remembered up to so many.
+/// Greatest number of touches remembered without a press.
 const TOUCHES: usize = 16;
 /// A pen that has not moved for so long is where its pointer is, whatever the delay, microseconds.
 const HALTED_US: u64 = 120_000;
-/// What a pair of another pen is worth beside one of a pen that has halted.
+/// Weight of a moving pen's pair relative to one of a pen that has halted.
 const MOVING: f64 = 0.1;
-/// At most so many of the newest pairs are looked at for whether the desktop has another map than
-/// before.
+/// Greatest number of the newest pairs that are tested for another map of the desktop.
 const NEWEST: usize = 8 * LEAST;
-/// So many pairs in turn that agree with the map end a contradiction.
+/// Number of consecutive pairs that agree with the map and so end a contradiction.
 const AGREE: usize = 3;
 /// Another map must fit this part of its pairs, by what they are worth: a map through three places
 /// fits more than half of them, even where the pointer was elsewhere at one of them.
@@ -76,7 +75,7 @@ struct Pair {
     pointer: DVec2,
 }
 
-/// Where the pen was at one time.
+/// Position of the pen at one time.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     t_us: u64,
@@ -85,12 +84,12 @@ struct Place {
     tip: bool,
 }
 
-/// What is known of one tablet.
+/// State of one tablet.
 #[derive(Debug, Default)]
 pub struct TabletMap {
     trail: VecDeque<Place>,
-    /// When and at which pixel the pen has touched by the map, before a press of the pointer has
-    /// followed. The pen's own samples sculpt there, whatever becomes of the map.
+    /// Times and pixels at which the pen touched by the map without a press of the pointer yet. The
+    /// pen's samples sculpt there, regardless of later changes of the map.
     touches: VecDeque<(u64, DVec2)>,
     pairs: VecDeque<Pair>,
     /// Pairs taken since the last fit.
@@ -103,35 +102,35 @@ pub struct TabletMap {
     together: bool,
     /// The pointer goes where the pen does not: it is a mouse's.
     apart: bool,
-    /// When the first of the pairs was taken that contradict the map, microseconds.
+    /// Time of the first pair that contradicts the map, in microseconds.
     contradicted_us: Option<u64>,
     /// Pairs in turn that agree with the map.
     agree: usize,
     /// Pairs since the map was doubted, while no other is known.
     doubts: usize,
-    /// When the map became known, microseconds.
+    /// Time at which the map became known, in microseconds.
     since_us: u64,
-    /// Where the pen goes.
+    /// Prediction of the pen's path.
     predictor: PenPredictor,
 }
 
-/// What the window knows of the tablets.
+/// The window's state of the tablets.
 #[derive(Debug, Default)]
 pub(super) struct Tablets {
     pub(super) known: Vec<(DeviceId, TabletMap)>,
     /// Those whose pen is in range.
     pub(super) in_range: Vec<DeviceId>,
-    /// Where the pointer was when it was last paired with the pens.
+    /// Position of the pointer when it was last paired with the pens.
     pub(super) paired: Option<Vec2>,
     pub(super) sent: DesktopLayout,
-    /// When every event that waited was last taken, microseconds.
+    /// Time at which all waiting events were last taken, in microseconds.
     pub(super) taken_us: u64,
-    /// When a key of a pad was pressed that no press of the pointer has followed yet, microseconds.
+    /// Time of a pad key's press that no press of the pointer has followed yet, in microseconds.
     pub(super) key_us: Option<u64>,
 }
 
 impl Tablets {
-    /// Whether the desktop moves its pointer by the pen of a tablet, or may do so.
+    /// Returns true if the desktop moves its pointer with the pen of a tablet, or may do so.
     pub(super) fn moves_pointer(&self, device: DeviceId) -> bool {
         let known = self.known.iter().find(|t| t.0 == device);
         known.is_some_and(|(_, map)| map.map().is_some() || map.is_undecided())
@@ -186,7 +185,7 @@ impl TabletMap {
         }
     }
 
-    /// Where the pen goes from its last report.
+    /// Returns the predictor of the pen's path after its last report.
     pub fn predictor(&self) -> &PenPredictor {
         &self.predictor
     }
@@ -209,24 +208,24 @@ impl TabletMap {
         self.fit
     }
 
-    /// Whether the pointer moves in this visit and nothing is known yet of why.
+    /// Returns true if the pointer moves in this visit and the cause is not known yet.
     pub fn is_undecided(&self) -> bool {
         self.map().is_none() && self.together && !self.apart
     }
 
-    /// Whether a pointer at this pixel is this pen's. `since_us`: the window has taken no event
-    /// since then, so that the pointer may have been here at any time after it.
+    /// Returns true if a pointer at this pixel belongs to this pen. `since_us`: the window has
+    /// taken no event since then, so that the pointer may have been here at any time after it.
     pub fn owns(&self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
         let Some(map) = self.map() else { return false };
         let oldest = now_us.saturating_sub(LATE_US).min(since_us.saturating_sub(LATE_US));
-        // A pen that rests sends nothing: the place before the oldest holds until the next.
+        // A resting pen sends nothing: the position before the oldest holds until the next.
         let from = self.trail.partition_point(|p| p.t_us < oldest).saturating_sub(1);
         let places = self.trail.iter().skip(from).filter_map(|p| p.share);
         places.into_iter().any(|share| map.at(share).distance(pointer) <= NEAR)
     }
 
-    /// Whether a press of the pointer at this pixel is this pen's: where it touched a while ago,
-    /// and no press has followed yet, or where it is.
+    /// Returns true if a press of the pointer at this pixel belongs to this pen. That is a pixel
+    /// which it touched recently without a press yet, or its current position.
     pub fn takes_press(&mut self, now_us: u64, since_us: u64, pointer: DVec2) -> bool {
         let oldest = now_us.min(since_us).saturating_sub(PRESS_US);
         self.touches.retain(|t| t.0 >= oldest);
@@ -237,8 +236,8 @@ impl TabletMap {
         touch.is_some() || self.owns(now_us, since_us, pointer) && !self.touched_unknown()
     }
 
-    /// Whether the newest touch of the pen began before the map was known: the pen did nothing
-    /// then, and the pointer sculpts in its place, however late its press is heard of.
+    /// Returns true if the newest touch of the pen began before the map was known. The pen did
+    /// nothing then, and the pointer sculpts instead, however late its press arrives.
     fn touched_unknown(&self) -> bool {
         let newest = self.trail.iter().rposition(|p| p.tip);
         let Some(end) = newest else { return false };
@@ -246,7 +245,8 @@ impl TabletMap {
         self.trail[begin].t_us < self.since_us
     }
 
-    /// Where the pen was at a time, between two places; `None` before the trail and out of range.
+    /// Returns the pen's position at a time, interpolated; `None` before the trail and out of
+    /// range.
     fn share_at(&self, t_us: u64) -> Option<DVec2> {
         let after = self.trail.partition_point(|p| p.t_us <= t_us);
         let before = self.trail.get(after.checked_sub(1)?)?;
@@ -260,8 +260,8 @@ impl TabletMap {
         })
     }
 
-    /// Whether the pen has rested since some time before the last pair: the pointer was told where
-    /// it is, and what moves it now is a mouse.
+    /// Returns true if the pen has rested since some time before the last pair: the pointer has
+    /// received its position, and only a mouse can move it now.
     fn rests_since_a_pair(&self, t_us: u64) -> bool {
         let from = self.pairs.back().map(|p| p.t_us.saturating_sub(LATE_US));
         let Some((from, at)) = from.and_then(|from| Some((from, self.share_at(from)?))) else {
@@ -278,8 +278,8 @@ impl TabletMap {
         let all = self.pairs.len();
         let Some(fit) = self.best_map(all) else { return };
         let (map, error) = (fit.map, fit.off);
-        // Where the newest pairs contradict the map that was known, they may do so because it was
-        // guessed from few; or else the pairs are of two maps, the older ones the more.
+        // If the newest pairs contradict the known map, it may have been guessed from few pairs.
+        // Otherwise the pairs are of two maps, most of them of the older one.
         let newest = self.contradicting();
         let of_two_maps = newest > 0
             && self.least_quantile(&map, newest, FITTED).is_none_or(|off| off > BELIEVED);
@@ -315,10 +315,9 @@ impl TabletMap {
         map_fit::best_fit(&|delay_us| self.samples(newest, delay_us))
     }
 
-    /// Where the newest pairs contradict the map and agree on another one, the desktop has another
-    /// map than before (its area was turned or cropped, or a screen was added): the older pairs are
-    /// dropped. Where they agree on none yet the map is doubted. A stroke goes on by the map with
-    /// which it began.
+    /// Drops the older pairs if the newest contradict the map and agree on another one: the desktop
+    /// has another map than before (its area was turned or cropped, or a screen was added). If they
+    /// agree on none yet, the map is in doubt. A stroke keeps the map with which it began.
     fn look_for_another(&mut self, now_us: u64) {
         let Some(known) = self.map else { return };
         let agrees = self.least_quantile(&known, 1, 0.5).is_none_or(|off| off <= CONTRADICTED);
@@ -350,7 +349,7 @@ impl TabletMap {
         }
     }
 
-    /// How many of the newest pairs there are since the map was contradicted.
+    /// Returns the number of pairs since the map was contradicted, of the newest ones.
     fn contradicting(&self) -> usize {
         let Some(since) = self.contradicted_us else { return 0 };
         self.pairs.iter().rev().take(NEWEST).take_while(|p| p.t_us >= since).count()
@@ -367,7 +366,7 @@ impl TabletMap {
         }
     }
 
-    /// Whether the newest pairs lie far from a map, whatever the delay is taken to be.
+    /// Returns true if the newest pairs are far from a map at every delay.
     fn is_contradicted(&self, map: &ScreenMap, newest: usize) -> bool {
         self.least_quantile(map, newest, 0.5).is_some_and(|off| off > WILD)
     }

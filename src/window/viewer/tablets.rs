@@ -1,14 +1,14 @@
-//! One pen, one stroke: a desktop moves its pointer by the pen that the daemon reads as well.
+//! One pen, one stroke: a desktop moves its pointer with the pen that the daemon reads as well.
 //!
 //! Laws kept here:
-//! * A pointer that follows a tablet's pen is not a second pen: the tablet's own samples sculpt, at
-//!   the place where the desktop has the pointer, and with their pressure and tilt.
-//! * Over a panel, behind another window, and until the map is known, the pen is the pointer alone;
-//!   until the map is known the pointer presses and leans as the pen does.
-//! * Which window has the keyboard says nothing of where the pen is.
-//! * A mouse that is used meanwhile is a pen of its own.
-//! * A click that the desktop makes of a pad's key does nothing over the view: the key has its own
-//!   action.
+//! * A pointer that follows a tablet's pen is not a second pen: the tablet's samples sculpt, at the
+//!   place of the desktop's pointer, and with their pressure and tilt.
+//! * Over a panel, behind another window, and until the map is known, the pen is only a pointer.
+//!   Until the map is known, the pointer has the pen's pressure and tilt.
+//! * Keyboard focus does not determine where the pen is.
+//! * A mouse used at the same time is a separate pen.
+//! * A click that the desktop makes of a pad's key does nothing over the view: the key has its
+//!   bound action.
 
 use std::sync::Arc;
 
@@ -39,24 +39,23 @@ impl WindowState {
         at.as_dvec2() + DVec2::new(f64::from(corner.x), f64::from(corner.y))
     }
 
-    /// When a frame that is drawn now will be seen: the time that drawing and presenting take in
-    /// the median.
+    /// Returns the time at which a frame drawn now will be seen, from the median times of drawing
+    /// and presenting.
     fn seen_us(&self, wiring: &Wiring) -> u64 {
         let latency = wiring.link.present_latency();
         let [_, _, draw, present, _] = latency.stages();
         wiring.clock.now_us() + draw.quantiles().p50 + present.quantiles().p50
     }
 
-    /// Where a tablet's pen will be over the view when a frame that is drawn now is seen; `None`
-    /// for another device. Only what is drawn follows it: what is sculpted depends on the pen's own
-    /// samples alone.
+    /// Returns the predicted view position of a tablet's pen when a frame drawn now is seen; `None`
+    /// for another device. Only drawing uses it: sculpting depends on the pen's samples alone.
     pub(super) fn predicted(&self, device: DeviceId, wiring: &Wiring) -> Option<Vec2> {
         let (_, map) = self.tablets.known.iter().find(|t| t.0 == device)?;
         let share = map.predictor().place_at(self.seen_us(wiring))?;
         Some(self.tablets.sent.place(device).unwrap_or_default().view(share.as_vec2()))
     }
 
-    /// What the pen of a tablet will have raised when a frame that is drawn now is seen.
+    /// Returns the dabs that a tablet's pen will have made when a frame drawn now is seen.
     pub(super) fn led(&self, state: &Published, wiring: &Wiring) -> ProvisionalDabs {
         let drawing = |id: DeviceId| state.last_dabs.iter().flatten().any(|d| d.0 == id);
         let pen = state.pens.iter().flatten().find(|(id, _)| drawing(*id));
@@ -66,15 +65,15 @@ impl WindowState {
             .unwrap_or_default()
     }
 
-    /// Whether a ring is shown ahead of its pen: the next frame shows it elsewhere, though nothing
-    /// else may have changed.
+    /// Returns true if a ring is shown ahead of its pen: the next frame shows it elsewhere, even if
+    /// nothing else has changed.
     pub(super) fn leads_a_pen(&self, wiring: &Wiring) -> bool {
         let now = wiring.clock.now_us();
         let mut all = self.tablets.known.iter().map(|t| t.1.predictor().ahead(now));
         all.any(|ahead| ahead.length() > f64::from(MOVED))
     }
 
-    /// Whether the pointer, where it is now, follows the pen of a tablet.
+    /// Returns true if the pointer, at its current position, follows the pen of a tablet.
     pub(super) fn pointer_is_a_pen(&self, wiring: &Wiring) -> bool {
         let (now, at) = (wiring.clock.now_us(), self.on_screen(self.pointer.at));
         let since = self.tablets.taken_us;
@@ -89,8 +88,8 @@ impl WindowState {
         all.any(|map| map.takes_press(now, since, at))
     }
 
-    /// Whether a press is the click that an X server makes of a pad's key: of one that was pressed
-    /// since the window last took every event, or shortly before. A key makes one click.
+    /// Returns true if a press is the click that an X server makes of a pad's key. The key was
+    /// pressed since the window last took every event, or shortly before. A key makes one click.
     pub(super) fn press_is_a_keys(&mut self) -> bool {
         let key_us = self.tablets.key_us.take();
         key_us.is_some_and(|key_us| key_us + LATE_US >= self.tablets.taken_us)
@@ -132,7 +131,7 @@ impl WindowState {
         self.tablets.taken_us = wiring.clock.now_us();
     }
 
-    /// Whether the pointer has moved since it was last paired with the pens of tablets.
+    /// Returns true if the pointer has moved since it was last paired with the pens of tablets.
     pub(super) fn pointer_is_unpaired(&self) -> bool {
         self.pointer.inside && self.tablets.paired != Some(self.pointer.at)
     }
@@ -190,7 +189,7 @@ impl WindowState {
             };
             *slot = Some((*id, place));
         }
-        // An installation has the whole screen, and nothing lies before it.
+        // An installation has the whole screen, and nothing covers it.
         let follows = desktop.tablets.iter().any(Option::is_some);
         if self.views.are_four() {
             let others =
@@ -211,13 +210,13 @@ impl WindowState {
         desktop
     }
 
-    /// What lies over the view and takes presses: least and greatest corner, pixels.
+    /// Returns the areas over the view that take presses: least and greatest corner, in pixels.
     fn covers(&self) -> Vec<[Vec2; 2]> {
         let context = self.egui.egui_ctx();
         let scale = context.pixels_per_point();
         let mut layers: Vec<egui::LayerId> =
             context.memory(|m| m.areas().visible_layer_ids()).into_iter().collect();
-        // Where there are too many, names of views are left out.
+        // If there are too many, names of views are left out.
         layers.sort_unstable_by_key(|l| (views::is_name(l.id), l.order, l.id.value()));
         let above =
             |rect: &egui::Rect| context.layer_id_at(rect.center()).is_some_and(takes_presses);
@@ -278,13 +277,13 @@ impl WindowState {
     }
 }
 
-/// Whether the daemon must hear of it.
+/// Returns true if the daemon must receive the new layout.
 fn differs(a: &DesktopLayout, b: &DesktopLayout) -> bool {
     let pairs = a.tablets.iter().zip(&b.tablets);
     a.away != b.away || a.covers != b.covers || !pairs.into_iter().all(|(a, b)| alike(a, b))
 }
 
-/// Whether two places of a tablet are the same to the eye.
+/// Returns true if two mappings of a tablet look the same.
 fn alike(a: &Option<(DeviceId, PenPlace)>, b: &Option<(DeviceId, PenPlace)>) -> bool {
     let near = |a: Vec2, b: Vec2| (a - b).abs().max_element() <= MOVED;
     let (Some((i, place)), Some((j, other))) = (a, b) else { return a == b };

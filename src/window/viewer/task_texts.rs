@@ -15,7 +15,7 @@ pub(super) fn failed(path: &Path, error: &dyn std::fmt::Display) -> String {
     tr!("task-failed", path = path.display().to_string(), error = error.to_string())
 }
 
-/// What an operation is called.
+/// Returns the name of an operation.
 pub(super) fn operation_title(operation: Operation) -> String {
     tr!(match operation {
         Operation::Union => "operation-union",

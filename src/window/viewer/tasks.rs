@@ -1,6 +1,6 @@
-//! Background tasks of the window, each on a thread of its own: reading and writing meshes, the
-//! live thickness map, file dialogs. The window never waits for them. The tick loop hears of them
-//! only by the command that a loaded mesh becomes.
+//! Background tasks of the window, each on a separate thread: reading and writing meshes, the live
+//! thickness map, file dialogs. The window never waits for them. The tick loop receives only the
+//! command that adds a loaded mesh.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,7 +55,7 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
 
-/// What a background task reports.
+/// Report of a background task.
 #[derive(Debug)]
 pub enum TaskReport {
     /// A line for the messages; `true`: something went wrong.
@@ -162,7 +162,7 @@ pub(super) fn thread(name: &str, what: impl FnOnce() + Send + 'static) {
 /// A dialog that is gone sooner was never seen: no person dismisses one so quickly.
 const NOBODY_ANSWERED_US: u64 = 300_000;
 
-/// Whether there is no session bus, by which a desktop's dialogs are asked for.
+/// Returns true if there is no session bus, which a desktop's dialogs need.
 fn no_desktop() -> bool {
     let there = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty());
     let socket = || there("XDG_RUNTIME_DIR").is_some_and(|d| Path::new(&d).join("bus").exists());
@@ -249,8 +249,8 @@ impl Tasks {
         });
     }
 
-    /// Carries out an operation on a thread of its own, and reports what the world did. `done`:
-    /// the message where it was carried out.
+    /// Carries out an operation on a separate thread, and reports the world's answer. `done`: the
+    /// message after success.
     fn operate<T>(
         &self,
         name: &'static str,
@@ -265,7 +265,7 @@ impl Tasks {
         });
     }
 
-    /// Does something on a thread of its own, and reports how it ended.
+    /// Runs a task on a separate thread, and reports its result.
     fn report(
         &self,
         name: &'static str,
@@ -304,7 +304,7 @@ impl Tasks {
         });
     }
 
-    /// What the hands hold becomes an object where they hold it.
+    /// Adds the held object to the scene at its current place.
     pub fn held(&self, held: HeldObject, commands: CommandSender) {
         self.report("sculptd-load", move || {
             let build = |e: BuildError| OperationError::Build(e.to_string());
@@ -318,7 +318,7 @@ impl Tasks {
         });
     }
 
-    /// A Boolean of the active object and another, in the place of both.
+    /// A Boolean of the active object and another, which replaces both.
     pub fn pair(&self, pairing: Pairing, shown: Arc<ArcSwap<Published>>, commands: CommandSender) {
         let active = shown.load().scene.active().map_or(pairing.with, |o| o.id);
         let ids = [active, pairing.with];
@@ -407,7 +407,7 @@ impl Tasks {
         self.operate("sculptd-remesh", (shown, commands), Arc::default(), compute, done);
     }
 
-    /// Triangles of one size in a part of the active object; what came of it is told.
+    /// Remeshes a part of the active object to triangles of one size, and reports the result.
     pub fn remesh_local(&self, asked: LocalRemesh, commands: CommandSender) {
         self.report("sculptd-remesh", move || {
             let command = Command::Scene(SceneCommand::RemeshLocal(asked));
@@ -428,7 +428,7 @@ impl Tasks {
         self.operate("sculptd-sets", (shown, commands), Arc::default(), compute, done);
     }
 
-    /// What is measured of the active object is masked.
+    /// Masks the measured vertices of the active object.
     pub fn mask_measured(
         &self,
         by: MaskMeasure,

@@ -13,12 +13,12 @@ use sculptd_clay::live_thickness::LiveMap;
 use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::job::Job;
 
-/// What is asked of the thickness thread: the newest clay, where the brush is, below what a wall is
-/// too thin.
+/// Request to the thickness thread: the newest clay, the position of the brush, and the thickness
+/// below which a wall is too thin.
 #[derive(Debug, Clone)]
 pub(super) struct ThicknessRequest {
     pub(super) mesh: Snapshot,
-    /// From the clay to the world, in whose unit walls are told.
+    /// Transform from the clay to the world, in whose unit walls are measured.
     pub(super) transform: ObjectTransform,
     pub(super) near: Vec3,
     pub(super) limit: f32,

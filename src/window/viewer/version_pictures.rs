@@ -1,5 +1,5 @@
-//! The session's history for the panel: the tree whenever it changed, and the pictures that are on
-//! the screen, which a thread of its own reads from the file.
+//! The session's history for the panel: the tree after each change, and the pictures on the screen,
+//! which a separate thread reads from the file.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ const ASKED: usize = 64;
 /// A picture, or that there is none.
 type Found = (u64, Option<egui::ColorImage>);
 
-/// What the panel was given, and the thread that reads pictures.
+/// Data passed to the panel, and the thread that reads pictures.
 #[derive(Debug, Default)]
 pub(super) struct VersionPictures {
     /// The tree that the panel has: see [`Handle::shape`].
@@ -31,7 +31,7 @@ fn decode(png: &[u8]) -> Option<egui::ColorImage> {
     Some(egui::ColorImage::from_rgb(size, picture.as_raw()))
 }
 
-/// Reads pictures until nobody asks any more.
+/// Reads pictures until the requests end.
 fn reader(
     history: Handle,
     context: egui::Context,

@@ -1,4 +1,4 @@
-//! What joins the window to the daemon.
+//! Connection of the window to the daemon.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -20,19 +20,19 @@ use sculptd_geometry::thickness::preset::Preset;
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
     pub commands: CommandSender,
-    /// What came of the commands that nobody waits for.
+    /// Answers to the commands that no caller waits for.
     pub answers: cc::Receiver<CommandAnswer>,
     pub published: Arc<ArcSwap<Published>>,
-    /// Where the pens of tablets were, each place once.
+    /// Positions of the tablets' pens, each once.
     pub pen_trail: PenTrail,
     /// The pointer's own way into the channel.
     pub pointer: Sender,
     pub pointer_id: DeviceId,
     /// The languages of the window.
     pub translations: Translations,
-    /// What each brush begins with.
+    /// Initial settings of each brush.
     pub presets: Presets,
-    /// Where a person's own brushes are kept; `None`: nowhere.
+    /// Folder of the person's brushes; `None`: nowhere.
     pub brushes: Option<PathBuf>,
     /// Limits of wall thickness by process and material, for the panel of walls.
     pub thickness_presets: Vec<Preset>,
@@ -50,16 +50,16 @@ pub struct Wiring {
     pub open_next: Arc<Mutex<Option<PathBuf>>>,
     /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
     pub demo_until_us: u64,
-    /// What is bound to the controls of tablets.
+    /// Bindings of the tablets' controls.
     pub controls: TabletControls,
     pub full_screen: bool,
     /// A large mesh to load as soon as there is a window, so that its progress is seen.
     pub open_first: Option<PathBuf>,
     /// The sculpture begins here: nobody has chosen a view of it.
     pub fresh: bool,
-    /// What the run keeps for the case that this window is lost.
+    /// State that the run keeps in case this window is lost.
     pub link: WindowLink,
-    /// The screen of an installation, in the place of the panels.
+    /// The screen of an installation, which replaces the panels.
     pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
 }
 

@@ -108,7 +108,8 @@ impl Tally {
         ] {
             // Places in contact were brought together: the surface moved by no more than that.
             let contact = report.contact.farthest;
-            // What a sum of cut corners' rounding may do on a thin sheet, beside the figure itself.
+            // The possible rounding error of cut corners on a thin sheet, beside that of the volume
+            // itself.
             let area: f64 = made.iter().map(|m| m.facts.area).sum();
             if off.abs() > 1e-12 * (va + vb) + (4e-16 + contact) * area {
                 self.faults.push(format!("{name}: {what}: off by {:e}", off / (va + vb)));

@@ -17,7 +17,7 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::{check, shapes};
 use serde_json::{Value, json};
 
-/// One call on a connection of its own: what it answers.
+/// Makes one call on a separate connection and returns the answer.
 fn call(socket: &Path, method: &str, params: &Value) -> Value {
     let mut out = UnixStream::connect(socket).expect("connects");
     out.set_read_timeout(Some(Duration::from_secs(120))).expect("set");
@@ -99,7 +99,7 @@ fn asked_watched_and_ended_over_the_socket() {
     assert_eq!(live.published.load().mesh.revision(), revision);
     assert_eq!(call(&socket, "hash", &json!({}))["result"]["hash"], before["result"]["hash"]);
 
-    // What cannot be is said.
+    // Impossible requests return an error.
     let nothing = json!({ "operation": "intersection", "path": small, "at": [9, 9, 9] });
     assert!(call(&socket, "boolean", &nothing)["error"]["message"].is_string());
     let trimmed = call(&socket, "trim", &json!({ "part": { "line": [0.5, 1.0, 0.5, 0.0] } }));

@@ -24,8 +24,8 @@ impl Solid {
         self
     }
 
-    /// Turned and moved; each point is computed on its own, so that planes that were one differ by
-    /// rounding.
+    /// Turns and moves the solid. Each point is computed separately, so that originally equal
+    /// planes differ by rounding.
     pub fn placed(mut self, turn: DMat3, shift: DVec3) -> Solid {
         for p in &mut self.mesh.positions {
             *p = turn * *p + shift;
@@ -211,7 +211,7 @@ fn volume(part: &[(DVec3, f64)]) -> f64 {
         .sum()
 }
 
-/// What a Boolean must give: volume and area of union, intersection, A - B, B - A.
+/// Returns the expected volume and area of union, intersection, A - B, B - A.
 pub fn expected(a: &Solid, b: &Solid) -> [(f64, f64); 4] {
     let total = |s: &Solid| s.parts.iter().map(|p| volume(p)).sum::<f64>();
     let mut both = 0.0;

@@ -12,7 +12,7 @@ use sculptd_geometry::{PolyMesh, check, io, repair, written};
 use super::scenes::{scenes, turn};
 use super::solids::expected;
 
-/// How the coordinates of an operand are stored.
+/// Storage format of an operand's coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stored {
     Double,
@@ -46,8 +46,8 @@ fn placed(mesh: &PolyMesh, angle: f64, shift: DVec3) -> PolyMesh {
     out
 }
 
-/// What is wrong with the four results of a solid and itself, shifted by a length: the intersection
-/// lacks at most the layer that the shift takes off, and volumes add up.
+/// Returns the fault in the four Booleans of a solid and a shifted copy, if any. The intersection
+/// lacks at most the layer that the shift removes, and volumes add up.
 fn shift_faults(name: &str, mesh: &PolyMesh, length: f64, how: Stored) -> Option<String> {
     let job = Job::default();
     let by = DVec3::new(0.48, 0.6, 0.64) * length;
@@ -130,7 +130,7 @@ fn a_solid_and_itself_shifted() {
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// How far the two volumes of a fault's text are apart, relative.
+/// Returns the relative difference of the two volumes in a fault's text.
 fn off_by(text: &str) -> f64 {
     let mut volumes = text
         .split("volume ")
@@ -146,7 +146,7 @@ fn off_by(text: &str) -> f64 {
     }
 }
 
-/// What is wrong with the turned scenes, as they are stored in one way.
+/// Returns the faults of the turned scenes, in one storage format.
 pub fn scene_faults(how: Stored, triangles: bool) -> Vec<String> {
     let job = Job::default();
     let mut out = Vec::new();
@@ -157,7 +157,7 @@ pub fn scene_faults(how: Stored, triangles: bool) -> Vec<String> {
             let shift = DVec3::new(0.1, -0.2, 0.3) * angle;
             let off = DVec3::new(3.7, 1.9, -2.3);
             let a = s.a.clone().placed(turn(angle), shift);
-            // The other is placed by way of a detour, so that it is rounded on its own.
+            // The second operand is placed in two moves, so that its rounding is independent.
             let b = s.b.clone().placed(DMat3::IDENTITY, -off);
             let b = b.placed(turn(angle), turn(angle) * off + shift);
             let (mut a, mut b) = (stored(&a.mesh, how), stored(&b.mesh, how));
@@ -306,7 +306,7 @@ fn random_boxes(seed: &mut u64) -> (PolyMesh, f64) {
     (mesh, volume)
 }
 
-/// What is wrong with solids of random overlapping and nested shells.
+/// Returns the faults of solids with random overlapping and nested shells.
 pub fn shell_faults(count: u32) -> Vec<String> {
     let job = Job::default();
     let mut seed = 7;

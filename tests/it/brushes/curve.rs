@@ -115,7 +115,7 @@ fn a_curve_that_is_put_away_leaves_nothing() {
     edited(&mut s);
     act(&mut s, CurveAction::Cancel);
     assert_eq!((views(&s).len(), s.world.undo_steps()), (0, 0));
-    // By undo, which takes back nothing else.
+    // By an undo, which undoes nothing else.
     pen(&mut s, &[(0.4, 0.5), (0.45, 0.52), (0.5, 0.5), (0.6, 0.55)]);
     assert_eq!(views(&s).len(), 5, "what is drawn freely gets handles");
     act(&mut s, CurveAction::Apply);

@@ -18,7 +18,7 @@ const RADIUS: f32 = 0.2;
 /// Half a millimetre on a tablet 152 mm high before a view 2.1 units high.
 const TREMBLE: f32 = 0.5 / 152.0 * 2.1;
 
-/// Where a stroke is drawn: its form, and for a length along it the point of the form.
+/// Form on which a stroke is drawn; it maps a length along the stroke to a point.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum TestForm {
     /// A square of side 2, straight over it.
@@ -32,7 +32,7 @@ pub enum TestForm {
 impl TestForm {
     /// With about so many vertices across the brush.
     fn mesh(self, across: u32) -> TriMesh {
-        // An even number of cells, so that vertices lie on the line of the stroke.
+        // An even number of cells, so that the stroke's line contains vertices.
         match self {
             TestForm::Plane | TestForm::Arc => {
                 let cells = across * 5 / 2 * 2;
@@ -83,7 +83,7 @@ pub struct Trial {
     pub across: u32,
     /// Reports a second of a stroke that takes 1.2 seconds.
     pub rate: u32,
-    /// How far the pen trembles, mesh units.
+    /// Amplitude of the pen's jitter, in mesh units.
     pub tremble: f32,
 }
 
@@ -122,16 +122,16 @@ impl Trial {
     }
 }
 
-/// What a stroke left: length along it, distance from its line, height, for each vertex.
+/// Result of a stroke: length along it, distance from its line, and height, for each vertex.
 pub struct Stroke(Vec<[f32; 3]>);
 
 impl Stroke {
     /// Height of the crest, and its waviness in degrees.
     ///
-    /// What is left of the heights near the line is taken once the section of the stroke, and
-    /// within half a radius the section's shift to a side, are taken away. Without that, vertices
-    /// that lie beside the line by chance (along an arc, or under a brush that moves them aside)
-    /// would be told as waves: an ideal bell sampled at the vertices along the arc has 0.8 degrees.
+    /// It is measured on the heights near the line, after subtracting the section of the stroke
+    /// and, within half a radius, the section's shift to a side. Otherwise vertices beside the line
+    /// by chance (along an arc, or under a brush that moves them aside) would appear as waves: an
+    /// ideal bell sampled at the vertices along the arc has 0.8 degrees.
     pub fn crest(&self) -> (f32, f32) {
         const BINS: usize = 200;
         const HALF: f32 = 0.32;
@@ -226,7 +226,7 @@ impl Section {
     }
 }
 
-/// How far the heights of a section lie apart, as a share of their mean.
+/// Returns the range of the heights of a section, as a share of their mean.
 pub fn flatness(section: &[f32]) -> f32 {
     let (lo, hi) = section.iter().fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
     let mean = section.iter().sum::<f32>() / section.len() as f32;
@@ -307,7 +307,7 @@ fn what_levels_or_evens_leaves_no_waves_on_a_ball() {
 
 #[test]
 fn strips_are_even_on_relief() {
-    // What is left of the relief along the middle of the strip, as a share of what was there.
+    // The remaining relief along the middle of the strip, as a share of the original relief.
     let left = |kind: BrushKind| {
         let trial = Trial { across: 60, ..Trial::new(sculptd::presets().of(kind)) };
         let mut mesh = trial.form.mesh(trial.across);
@@ -397,16 +397,17 @@ fn any_rate_and_spacing(kind: BrushKind, trial: Trial) {
     }
 }
 
-/// How far vertices come to lie from where they lie at the brush's own spacing, with each of four
-/// others, as a share of the longest way that one goes; on relief so long in x and in y.
+/// Returns the largest displacement of vertices relative to the brush's default spacing, over four
+/// other spacings, as a share of the longest path of a vertex. The relief has these wave numbers in
+/// x and y.
 fn off_by_spacing(brush: BrushSettings, waves: Vec2) -> f32 {
     let relief = |p: Vec3| 0.02 * (p.x * waves.x).sin() * (p.y * waves.y + 0.4).sin();
     let (off, most) = off_and_way(brush, relief);
     off / most
 }
 
-/// How far vertices come to lie from where they lie at the brush's own spacing, with the worst of
-/// four others, and the longest way that one goes; on this relief.
+/// Returns the largest displacement of vertices relative to the brush's default spacing, over four
+/// other spacings, and the longest path of a vertex, on this relief.
 fn off_and_way(brush: BrushSettings, mut relief: impl FnMut(Vec3) -> f32) -> (f32, f32) {
     let trial = Trial { across: 30, ..Trial::new(brush) };
     let mut mesh = trial.form.mesh(trial.across);
@@ -479,8 +480,8 @@ fn nor_does_what_raises_on_relief() {
         let off = off_by_spacing(sculptd::presets().of(kind), Vec2::new(19.0, 23.0));
         assert!(off < 0.02, "{kind}: {off}");
     }
-    // The rims of some alphas are upright, and tell of any shift of a pattern. Where relief bends
-    // still more sharply, coordinates along the surface fold, and a pattern laid by them with it.
+    // The rims of some alphas are steep and show any shift of a pattern. On still sharper relief,
+    // coordinates along the surface fold, and a pattern mapped by them folds too.
     for alpha in Alpha::MADE {
         let brush = BrushSettings { alpha, ..sculptd::presets().of(BrushKind::Texture) };
         for waves in [Vec2::new(9.0, 8.0), Vec2::new(19.0, 23.0)] {

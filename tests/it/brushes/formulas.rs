@@ -179,7 +179,7 @@ fn saturation_is_never_exceeded_and_is_reached_exactly() {
             if kind == BrushKind::Gaussian {
                 assert!(most >= limit * (1.0 - 1e-5), "{kind}: only {most} of {limit}");
             }
-            // The next stroke has a budget of its own.
+            // The next stroke has a separate budget.
             studio.stroke(&back_and_forth);
             let second = far(&first, &studio.positions());
             assert!(
@@ -283,9 +283,9 @@ fn radial_copies_and_any_plane_are_where_they_should_be() {
     assert!(here > 0.0 && (here - there).abs() < 0.05 * here, "{here} and {there}");
 }
 
-/// What the closed form of de Goes and James (2017) with three scales says of the change of volume
-/// at `r`: for one scale `-(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f)`; scaled so that the held point
-/// goes by `by`.
+/// Returns the change of volume at `r` in the closed form of de Goes and James (2017) with three
+/// scales: for one scale `-(a - 2b) (r^2 + 5/2 e^2) / r_e^5 (r . f)`, scaled so that the held point
+/// moves by `by`.
 fn divergence(r: Vec3, by: Vec3, size: f32, nu: f32) -> f32 {
     let e = [size, size * 1.1, size * 1.21];
     let [s1, s2, s3] = e.map(|e| e * e);

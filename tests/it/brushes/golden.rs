@@ -1,5 +1,5 @@
 //! One stroke of each brush and of each option on the same form: readable facts, and a hash that
-//! does not depend on the number of workers. `SCULPTD_BLESS=1` writes the facts anew.
+//! does not depend on the number of workers. `SCULPTD_BLESS=1` rewrites the facts.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ fn volume(mesh: &TriMesh) -> f64 {
         / 6.0
 }
 
-/// What is drawn, with so many workers.
+/// Draws with this number of workers.
 fn draw(
     start: &TriMesh,
     brush: &BrushSettings,
@@ -74,7 +74,7 @@ fn facts_on(
     studio.world.verify_invariants().unwrap_or_else(|e| panic!("{about}: {e}"));
     let hash = studio.world.hash();
     for workers in [2, 3, 7, 16] {
-        // A thread of its own: it takes part in the work of its pool.
+        // In a separate thread, which takes part in the work of its pool.
         let other = std::thread::scope(|s| {
             s.spawn(|| draw(start, brush, act, workers).1.world.hash()).join()
         });

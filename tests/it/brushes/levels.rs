@@ -64,7 +64,7 @@ fn detail_survives_strokes_on_a_coarser_level() {
     let pulled = studio.world.mesh().to_tri();
     assert_ne!(pulled, followed);
     assert_eq!((go(&mut studio, true), go(&mut studio, true)), ((1, 3), (2, 3)));
-    // Both forms without the detail: the same levels made anew.
+    // Both forms without the detail: the same levels computed again.
     let bare = |of: &TriMesh| {
         let mut bare = Studio::new(of, fine, 1);
         go(&mut bare, true);
@@ -130,7 +130,7 @@ fn mask_and_colour_go_up_and_down_with_the_level() {
     assert_eq!((below.0.colours.as_deref(), &below.1[..]), (Some(&colours[..n]), &painted.1[..n]));
     go(&mut studio, true);
     assert!(all(&mut studio) == painted);
-    // What is masked on the coarser level is masked on the finer one.
+    // A mask of the coarser level applies to the finer one.
     go(&mut studio, false);
     studio.tell(Command::Mask(MaskAction::Fill));
     go(&mut studio, true);
@@ -168,7 +168,7 @@ fn a_box_and_a_line_cut_off_what_is_seen_there() {
         studio.world.verify_invariants().expect("in order");
         studio.world.mesh().to_tri()
     };
-    // The left half: the cut lies in the plane of the eye, through the middle.
+    // The left half: the cut is a plane through the eye and the middle.
     let (foot, head) = (studio.view(Vec3::NEG_Y * 0.9), studio.view(Vec3::Y * 0.9));
     let half = cut(&mut studio, trim::Part::Line([foot.x, foot.y, head.x, head.y]));
     assert!((volume(&half) / whole - 0.5).abs() < 1e-4, "{}", volume(&half) / whole);

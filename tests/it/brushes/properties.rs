@@ -144,7 +144,7 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
             radius: 0.1,
             pressure_strength: none,
             pressure_radius: firm,
-            // Vertices are told by their numbers here.
+            // The test identifies vertices by their numbers.
             topology: TopologySettings::default(),
             ..sculptd::presets().of(*kind)
         };
@@ -180,13 +180,13 @@ fn no_pressure_moves_nothing_and_no_vertex_outside_the_dab_moves() {
     }
 }
 
-/// Where a view point lies on a ball as it was.
+/// Returns the point of the initial ball under a view position.
 fn hit(start: &TriMesh, studio: &Studio, view: Vec2) -> Vec3 {
     let mesh = Clay::build(start, &Job::default()).expect("builds");
     mesh.pick(studio.world.camera().ray(view)).expect("on the ball").position
 }
 
-/// Which vertices were masked, coloured or put into a face set.
+/// Returns, for each vertex, true if it was masked, coloured or put into a face set.
 fn changed(studio: &Studio, count: usize) -> Vec<bool> {
     let (mesh, mut all) = (studio.world.mesh(), vec![false; count]);
     for i in 0..mesh.page_count() as u32 {
@@ -204,7 +204,7 @@ fn changed(studio: &Studio, count: usize) -> Vec<bool> {
 fn no_brush_allocates_in_the_steady_state_of_a_stroke() {
     for kind in BrushKind::ALL {
         let mut brush = BrushSettings { radius: 0.1, ..sculptd::presets().of(*kind) };
-        // Where triangles are cut, pages are built anew: that is no steady state.
+        // Cutting triangles rebuilds pages, which is no steady state.
         brush.topology.by = Measure::Off;
         brush.auto.topology = true;
         if kind.grip() == Grip::Surface {

@@ -1,5 +1,5 @@
 //! The contact sheet: the same stroke of each brush on the same form, as a picture.
-//! `SCULPTD_BLESS=1` draws it anew: look at it before it is kept.
+//! `SCULPTD_BLESS=1` redraws it: look at it before you keep it.
 
 use std::path::PathBuf;
 
@@ -34,8 +34,8 @@ fn cell(kind: BrushKind) -> Picture {
         brush.alpha = Alpha::Rope;
         brush.strength = 0.35;
     }
-    // What evens takes more than one stroke to be seen; what only moves or cuts triangles is seen
-    // by their size.
+    // Smoothing brushes need more than one stroke to be visible. Brushes that only move or cut
+    // triangles are visible by the triangles' size.
     let cuts = matches!(kind, BrushKind::Density | BrushKind::Simplify);
     let sizes = cuts || matches!(kind, BrushKind::Relax | BrushKind::SlideRelax);
     let evens = matches!(

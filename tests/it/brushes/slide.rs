@@ -22,7 +22,7 @@ fn drawn(start: &TriMesh, negative: bool, times: usize) -> TriMesh {
     studio.world.mesh().to_tri()
 }
 
-/// How far the vertices lie off a surface about the middle, along the way outwards.
+/// Returns the distance of the vertices from a surface about the middle, measured outwards.
 fn off(surface: &TriMesh, mesh: &TriMesh) -> f32 {
     let surface = Clay::build(surface, &Job::default()).expect("builds");
     let off = |p: &Vec3| {

@@ -13,7 +13,7 @@ use sculptd_geometry::{TriMesh, shapes};
 use super::super::clay::Dice;
 use super::{Studio, form};
 
-/// Dabs of one run are at most so many spacings apart.
+/// Greatest distance between dabs of one run, in spacings.
 const WIDEST: f32 = 1.05;
 
 /// Clay that writes down where dabs were laid.
@@ -26,9 +26,9 @@ struct Bench<'a> {
     /// Dabs that may still be laid before the walk must pause.
     left: usize,
     laid: Vec<(PenPoint, Vec3, Laid)>,
-    /// Which piece of the path each dab lies on, and which is walked.
+    /// Index of the path's piece for each dab; `piece` is the current one.
     pieces: Vec<usize>,
-    /// What the last dab was laid on.
+    /// Surface point of the last dab.
     under: Option<Hit>,
     piece: usize,
     /// From the last dab, as its clay stood then, in spacings; none for the first of a run.
@@ -51,7 +51,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Where the clay stands now that the last dab was laid on.
+    /// Returns the current position of the surface point under the last dab.
     fn clay(&self) -> Option<Vec3> {
         let hit = self.under?;
         let [a, b, c] = self.mesh.page(hit.page).corners(hit.triangle as usize);

@@ -174,7 +174,7 @@ fn detail_is_what_was_asked_for_and_the_cost_is_local() {
     let median = edges[edges.len() / 2];
     assert!(longest < 0.04 * 1.34, "{longest}");
     assert!((0.02..0.05).contains(&median), "{median}");
-    // What lies beyond is as it was.
+    // The surface beyond is unchanged.
     let far = |m: &TriMesh| m.positions.iter().filter(|p| (**p - Vec3::Z).length() > 0.65).count();
     assert_eq!(far(&start), far(&end));
     // The other way: all of it drawn together.

@@ -35,7 +35,7 @@ fn any_cutting_brush(dice: &mut Dice) -> BrushSettings {
     }
 }
 
-/// What a run leaves behind.
+/// Result of a run.
 #[derive(Debug)]
 struct Outcome {
     /// Of the world at the start and at the end of each window.
@@ -54,10 +54,11 @@ const LEAST_ANGLE: f64 = 0.25;
 const WINDOW: usize = 25;
 /// A window ends with fewer strokes where its undo steps weigh this much: all must be kept.
 const WINDOW_BYTES: usize = 700 << 20;
-/// Random strokes let the form swell: with more vertices a run begins anew, or it would slow down.
+/// Random strokes make the form swell: above this number of vertices a run restarts, or it would
+/// become slow.
 const MOST_VERTICES: usize = 25_000;
 
-/// Draws until so many dabs were made. `look`: checks the surface, and takes each window back.
+/// Draws until this number of dabs is reached. `look`: checks the surface, and undoes each window.
 fn run(start: &TriMesh, euler: i64, dabs: u64, workers: usize, look: bool) -> Outcome {
     let mut dice = Dice(77);
     let first = any_cutting_brush(&mut dice);
@@ -67,7 +68,7 @@ fn run(start: &TriMesh, euler: i64, dabs: u64, workers: usize, look: bool) -> Ou
         if studio.world.mesh().vertex_count() > MOST_VERTICES {
             studio = Studio::new(start, first, workers);
         }
-        // What was done before can no longer be taken back.
+        // Earlier steps can no longer be undone.
         studio.tell(Command::Reopened);
         let before = studio.world.hash();
         for stroke in 0..WINDOW {
@@ -122,7 +123,8 @@ fn random_brushes_with_dynamic_topology_keep_the_surface_whole() {
         assert!(one.least >= LEAST_ANGLE, "an angle of {} degrees", one.least);
         for workers in [2, 3, 7, 16] {
             let start = &start;
-            // The workers' pool belongs to the thread that uses it first: each run has its own.
+            // The workers' pool belongs to the first thread that uses it: each run has a separate
+            // one.
             let other = std::thread::scope(|s| {
                 s.spawn(|| run(start, euler, dabs, workers, false)).join().expect("no panic")
             });

@@ -18,8 +18,8 @@ fn exhaustive(mesh: &TriMesh, p: DVec3) -> f64 {
     (0..mesh.triangles.len()).map(each).fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// The solid angle of a triangle seen from the origin, over 4 pi, each by an arc tangent of its own
-/// (Van Oosterom and Strackee 1983); positive where its front is turned away.
+/// Returns the solid angle of a triangle seen from the origin, over 4 pi, by a separate arc tangent
+/// for each (Van Oosterom and Strackee 1983); positive if its front faces away.
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let up = a.dot(b.cross(c));

@@ -23,7 +23,7 @@ fn a_history_keeps_within_its_bound_and_the_oldest_places_go_first() {
     let mut s = Studio::bounded(dir.path(), 3000, 1, MOST);
     let start = s.world.hash();
     let mut hashes = vec![start];
-    // An early branch: two strokes, taken back.
+    // An early branch: two strokes, undone.
     hashes.push(s.stroke(Vec2::new(-0.1, 0.0)));
     s.settle();
     s.tick(&[], &[Command::Undo]);

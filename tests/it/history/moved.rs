@@ -11,7 +11,7 @@ use sculptd_clay::Workers;
 use sculptd_daemon::session::{self, replay};
 use sculptd_geometry::job::Job;
 
-/// What a person or a program does to the file.
+/// Change of the file by a person or a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Act {
     Rename,

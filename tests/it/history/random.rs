@@ -227,7 +227,7 @@ fn sequence(seed: u64, steps: u64) -> usize {
         let whole =
             replay::replay(&opened, None, Workers::new(2), &Job::default()).expect("replays");
         assert_eq!((whole.world.hash(), whole.jumps_missed), (live, 0), "seed {seed}: replayed");
-        // Where undo went back beyond every checkpoint, it opens by replaying.
+        // If undo went back beyond every checkpoint, the file opens by replaying.
         if let Some(quick) = reopen(&path, &opened, None, 1, &Job::default()) {
             assert_eq!(quick.replayed.world.hash(), live, "seed {seed}: reopened");
             quickly += 1;

@@ -49,13 +49,13 @@ fn face_sets_are_made_hidden_extracted_by_request_and_come_back_from_a_session()
     run.ask("sets.show", json!({}));
     assert_eq!((&run.sets()["hidden"], steps()), (&json!(0), before + 4));
 
-    // What is hidden leaves with the file all the same.
+    // Hidden parts are still exported to the file.
     run.ask("sets.hide", json!({ "masked": true }));
     let out = dir.path().join("out.obj");
     let written = run.ask("export", json!({ "path": out, "objects": "active" }));
     assert_eq!(written["vertices"], vertices);
 
-    // A shell of the other half, which is an object of its own; one step.
+    // A shell of the other half, as a separate object; one step.
     let before = steps();
     let made = run.ask("sets.extract", json!({ "thickness": 0.2, "set": 0, "name": "half" }));
     let shell = run.objects().iter().find(|o| o["id"] == made["id"]).expect("there").clone();
@@ -164,7 +164,7 @@ fn requests_wait_in_their_order_while_an_edit_takes_several_ticks() {
     let right = run.sets()["sets"][1]["vertices"].as_u64().expect("some");
     assert!(right > vertices / 3 && right < vertices * 2 / 3, "{right} of {vertices}");
 
-    // An undo behind an edit takes back the whole of it; what is behind that goes on from there.
+    // An undo during an edit undoes the whole edit; the next commands continue from there.
     run.ask("mask", json!({ "action": "invert" }));
     run.ask("undo", json!({}));
     run.ask("sets.hide", json!({ "masked": true }));

@@ -67,7 +67,7 @@ fn layers_come_from_a_file_are_edited_by_request_and_leave_again() {
     );
     let begun = run.hash();
 
-    // What leaves is what came.
+    // The export equals the import.
     let out = dir.path().join("out.gltf");
     run.ask("export", json!({ "path": out, "objects": "active" }));
     let read = read_mesh(&out, &Job::default()).expect("readable");

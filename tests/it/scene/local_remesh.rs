@@ -57,7 +57,7 @@ fn what_was_stretched_is_remeshed_by_request_taken_back_and_replayed() {
     run.ask("scene.lock", json!({ "id": id, "locked": true }));
     assert!(refused().contains("locked"));
     run.ask("scene.lock", json!({ "id": id, "locked": false }));
-    // An undo does not wait for the end of what it takes back.
+    // An undo does not wait for the end of the edit that it undoes.
     let (begun, count) = (run.bits(), || run.live.published.load().mesh.triangle_count());
     let (steps, triangles) = (run.live.published.load().undo_steps, count());
     std::thread::scope(|scope| {

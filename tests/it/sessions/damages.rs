@@ -1,5 +1,5 @@
-//! Random damage: nothing is lost in silence, nothing is refused that can be read, the damaged
-//! file stays as it is, and the loss is told in ticks.
+//! Random damage: nothing is lost silently, nothing readable is refused, the damaged file does not
+//! change, and the loss is reported in ticks.
 
 use std::path::Path;
 

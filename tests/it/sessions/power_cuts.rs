@@ -1,4 +1,4 @@
-//! Power cuts: what was not synced is there, torn, or not.
+//! Power cuts: data that was not synced exists, is torn, or is missing.
 
 use super::*;
 
@@ -31,8 +31,8 @@ fn acknowledged_at(db: &[u8]) -> Vec<std::ops::Range<usize>> {
     marks.map(|(at, _)| at..at + MAGIC.len() + 2 * SLOT).collect()
 }
 
-/// What may be on the disk when the power goes between the states `a` (all of it synced) and `b`
-/// (its last writes not).
+/// Returns a possible content of the disk after a power cut between the states `a` (completely
+/// synced) and `b` (its last writes not).
 fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
     let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
     // A log is begun again only after the database holds all of it: then the database is `b`'s.

@@ -1,5 +1,5 @@
-//! What is drawn beside the clay: shaded hollows, what a join would make, the hands' balls; and
-//! what follows the clay off to the side.
+//! Drawings beside the clay: shaded hollows, the preview of a Boolean, the balls of the hand menu;
+//! and views that follow the clay off to the side.
 
 use std::sync::Arc;
 
@@ -65,7 +65,7 @@ fn a_fold_is_shaded_and_an_open_form_is_not() {
         let plain = drawn(&mut painter, &snapshot, &camera, look(0.0), Beside::default());
         let shaded = drawn(&mut painter, &snapshot, &camera, look(1.0), Beside::default());
         let share = |x, y| light(&shaded, x, y) / light(&plain, x, y);
-        // Where they meet, in the middle; the front of the left one; the ground.
+        // The fold in the middle; the front of the left one; the ground.
         let (fold, open, ground) = (share(100, 100), share(52, 100), share(3, 3));
         println!("orthographic {orthographic}: fold {fold:.2}, open {open:.2}, ground {ground:.2}");
         assert!(fold < 0.82, "{fold}");
@@ -101,7 +101,7 @@ fn what_a_join_would_make_is_drawn_where_it_is_and_nowhere_else() {
         let beside = Beside { preview: Some(&preview), ..Beside::default() };
         let shown = drawn(&mut painter, &mesh.snapshot(), &camera, look, beside);
         let (before, now) = (clay.get_pixel(100, 100).0, shown.get_pixel(100, 100).0);
-        // Where only what both have stays, the clay's own surface is in front.
+        // For an intersection, the clay's surface is in front.
         assert_eq!(
             before == now,
             choice == MenuItem::Keep,
@@ -217,8 +217,8 @@ fn distances_follow_where_the_clay_changed_and_a_thing_where_it_goes() {
     assert!((about.min - 0.5).abs() < 2e-3 && (about.rms - 0.5).abs() < 0.02, "{about:?}");
     let (_, about) = last(&after, DistanceReference::HeldObject(thing(Vec3::X * 0.5)));
     assert!(about.min.abs() < 5e-3 && (about.max - 1.0).abs() < 0.02, "{about:?}");
-    // The object moved and made twice as large, its own distances with it; what a hand holds stays
-    // where it is in the world.
+    // Moving the object and doubling its size scales its distances too; a held object stays at its
+    // place in the world.
     let placed = at(DVec3::X * 0.5, 2.0);
     let (_, about) = measured(&after, placed, DistanceReference::Before(before.clone()));
     assert!((0.08..0.1202).contains(&about.max), "{about:?}");

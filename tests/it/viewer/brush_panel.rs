@@ -16,7 +16,7 @@ use sculptd_window::panels::{Tab, UiRequest};
 use super::super::brushes::Studio;
 use super::panels::{State, brushes, harness};
 
-/// What the world would answer: the last brush that was asked for is in hand.
+/// Simulates the world's answer: the last requested brush is in hand.
 fn answer(h: &mut Harness<'_, State>) {
     if let Some(brush) = brushes(h).last().copied() {
         let shown = &mut h.state_mut().published;
@@ -174,7 +174,7 @@ fn a_radius_in_pixels_stays_on_the_screen_and_one_in_units_on_the_object() {
     h.run_steps(3);
     assert!(h.state().ui_state.prefs.brushes.radius_in_pixels);
     assert!(brushes(&h).is_empty());
-    // How far apart the middle and the rim of the brush are seen, where the view's middle looks.
+    // Distance on screen between the middle and the rim of the brush, at the middle of the view.
     let seen = |h: &Harness<'_, State>, setting: f32| {
         let shown = &h.state().published;
         let (camera, world) = (&shown.camera, setting * shown.brush_radius / shown.brush.radius);

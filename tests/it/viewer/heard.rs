@@ -1,4 +1,4 @@
-//! What is heard of what was published: pens by their pressure, hands by their dabs.
+//! Sounds of the published state: pens by their pressure, hands by their dabs.
 
 use glam::{Vec2, Vec3};
 use sculptd_devices::{DeviceId, Hand, Hands};

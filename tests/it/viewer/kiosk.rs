@@ -185,7 +185,7 @@ fn one_switch_presses_what_is_lit_and_all_lies_within_reach() {
     screen.show.contrast = true;
     at(&screen, Stage::Working, 0);
     let mut h = harness(&screen, [1280.0, 720.0]);
-    // Everything to be pressed lies in the lower half.
+    // All controls are in the lower half.
     for name in ["Add", "Carve", "Smooth", "Finished", "English", "Staff"] {
         let rect = h.get_by_label(name).rect();
         assert!(rect.top() >= 360.0 && rect.bottom() <= 720.0, "{name}: {rect:?}");

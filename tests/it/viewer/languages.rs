@@ -122,7 +122,8 @@ fn harness(language: &Translation, width: f32, height: f32, scale: f32) -> Harne
     h
 }
 
-/// Whether the window speaks this language here: some need a font that a machine may lack.
+/// Returns true if the window can display this language here: some need a font that a machine may
+/// lack.
 fn speaks(h: &Harness<'_, State>, language: &Translation) -> bool {
     let fontless = h.state().ui_state.shown_language.fontless;
     if fontless {

@@ -1,5 +1,5 @@
-//! Every page on every screen: nothing cut at its sides, no text on another, text at least 4.5:1 on
-//! what lies under it.
+//! Every page on every screen: nothing is cut at its sides, no text overlaps another, and text has
+//! a contrast of at least 4.5:1 with its background.
 //!
 //! Read from the shapes that the panels paint, so it needs no adapter.
 
@@ -106,13 +106,13 @@ fn texts(shapes: &[ClippedShape], clay: Color32) -> Vec<Text> {
     out
 }
 
-/// The texts of a screen that are cut at a side or lie on another one.
+/// Returns the texts of a screen that are cut at a side or overlap another one.
 pub(super) fn misplaced(h: &Harness<'_, State>) -> Vec<String> {
     let clay = Color32::from_rgb(150, 100, 80);
     look_at(h, clay, true).0.into_iter().filter(|wrong| !wrong.contains(":1, ")).collect()
 }
 
-/// What is wrong on one screen, and the least contrast.
+/// Returns the faults of one screen, and the least contrast.
 fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<String>, f32) {
     let all = texts(&h.output().shapes, clay);
     assert!(all.len() > 15, "only {} texts are painted", all.len());
@@ -125,7 +125,7 @@ fn look_at(h: &Harness<'_, State>, clay: Color32, disabled_ok: bool) -> (Vec<Str
             wrong.push(format!("'{}' is cut at a side: {l:.1}, {r:.1}", t.what));
         }
         let ratio = contrast(t.colour, t.ground);
-        // A button that cannot be pressed says so by being faint (WCAG 2 asks nothing of it).
+        // A disabled button is faint (WCAG 2 sets no minimum for it).
         if !(disabled_ok && DISABLED.contains(&t.what.as_str())) {
             least = least.min(ratio);
             if ratio < 4.5 {
@@ -202,9 +202,8 @@ fn nothing_is_cut_nothing_overlaps_and_text_can_be_read() {
                         .with_pixels_per_point(scale)
                         .build_ui_state(show, s);
                     harness.run_steps(4);
-                    // The dimmest and the palest clay that a cursor's text may lie on does not
-                    // matter: text over the clay has a ground of its own; this is what would be
-                    // under it.
+                    // The dimmest and the palest clay under a cursor's text does not matter: text
+                    // over the clay has a separate background; this colour would be under it.
                     let clay = Color32::from_rgb(150, 100, 80);
                     let (wrong, ratio) = look_at(&harness, clay, true);
                     let where_ = format!("{w}x{h} at {scale}, light {light}, {tab:?}");

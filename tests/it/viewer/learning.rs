@@ -41,14 +41,14 @@ fn hints_are_gone_for_good_once_followed() {
     h.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     h.run_steps(3);
     assert_eq!(hint(&h), Some(Hint::Mirror));
-    // What is left may be skipped.
+    // The rest may be skipped.
     h.state_mut().ui_state.tab = Tab::More;
     h.run_steps(2);
     h.get_by_label("Skip the lesson").click();
     h.run_steps(2);
     assert_eq!(h.state().ui_state.prefs.hints, HintsFollowed::ALL);
     assert!(h.query_by_label_contains("of 6)").is_none());
-    // Kept from day to day.
+    // Stored from day to day.
     let kept = toml::to_string(&h.state().ui_state.prefs).expect("plain data");
     let kept = sculptd_window::panels::state::Preferences::read(&kept).expect("read");
     assert_eq!(kept.hints.hint(), None);
@@ -124,7 +124,7 @@ fn a_key_of_the_tablet_is_chosen_by_pressing_it() {
         for request in h.state_mut().asked.drain(..) {
             match request {
                 UiRequest::TabletListen(listens) => controls.listen(listens),
-                // Kept nowhere, and said so.
+                // Not stored, and reported as such.
                 UiRequest::TabletBinding(control, binding) => {
                     assert!(controls.bind(control, binding).is_err());
                 }

@@ -14,7 +14,7 @@ use super::pictures::painter;
 use super::published;
 use crate::brushes::Studio;
 
-/// How far the channels of the pixels lie apart in the mean, as a share of white.
+/// Returns the mean difference of the pixels' channels, as a share of white.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let sum: f64 = a.iter().zip(b.iter()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
     sum / (a.len() as f64 * 255.0)

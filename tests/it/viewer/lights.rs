@@ -165,8 +165,8 @@ fn what_stands_in_the_main_light_casts_a_shadow() {
         let cast = Look { shadow: 1.0, ..plain };
         let without = in_the_light(&mut painter, plain, true);
         let with = in_the_light(&mut painter, cast, true);
-        // Where the line from the light through the small ball meets the large one; the camera
-        // looks along the third axis, and a ball of radius one is this many pixels wide.
+        // The point where the line from the light through the small ball meets the large one. The
+        // camera looks along the third axis, and a ball of radius one is this many pixels wide.
         let mesh = sphere(2_000);
         let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
         let seen = |p: Vec3| {

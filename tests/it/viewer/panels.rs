@@ -138,7 +138,7 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     h.run_steps(2);
     h.key_press(Key::Escape);
     h.run_steps(2);
-    // Which one is not known before one was held.
+    // No handle is selected before one was held.
     h.key_press(Key::Delete);
     h.run_steps(2);
     assert_eq!(acts(&mut h), [CurveAction::Apply, CurveAction::Cancel]);
@@ -155,7 +155,7 @@ fn a_curve_that_is_laid_has_buttons_and_keys() {
     h.run_steps(2);
     let asked = acts(&mut h);
     assert_eq!(asked, [CurveAction::Delete(1), CurveAction::Apply]);
-    // What was asked for is what the world does.
+    // The world carries out the requests.
     for (i, act) in asked.into_iter().enumerate() {
         world.step(30 + i as u64, &[], &[Command::CurveStroke(act)]);
     }
@@ -219,7 +219,7 @@ fn keys_do_what_the_tooltips_say() {
     h.key_press(Key::T);
     h.run_steps(2);
     assert_eq!(h.state().ui_state.look.map, Map::Thickness);
-    // The legend is there, with its unit.
+    // The legend exists, with its unit.
     h.state_mut().ui_state.look.scale = (0.5, 2.5);
     h.run_steps(2);
     h.key_press(Key::T);

@@ -78,7 +78,7 @@ fn a_map_paints_each_vertex_by_its_own_value() {
     let mut mesh = sphere(8_000);
     let snapshot = mesh.snapshot();
     let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
-    // The value is the height: the scale's ends lie at the poles.
+    // The value is the height: the ends of the scale are at the poles.
     let pages = snapshot.pages().map(|p| (0..p.own()).map(|v| p.point(v).y).collect()).collect();
     let values = MapValues { pages };
     let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), cavity: 0.0, ..Look::default() };
@@ -352,7 +352,7 @@ fn large_works_are_drawn_at_interactive_rates() {
             renderer.coarse,
             renderer.drawn.0
         );
-        // Where a processor draws, the time is the processor's: told, not promised.
+        // If a processor draws, the time is that of the processor: reported, not checked.
         assert!(gpu.software || frame < 33.0, "{frame} ms");
         assert!(cpu < 20.0, "{cpu} ms");
     }

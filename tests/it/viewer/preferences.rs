@@ -14,8 +14,8 @@ fn file(folder: &Path) -> PathBuf {
     folder.join("preferences/viewer.toml")
 }
 
-/// The scale is changed three times, each kept or told of on standard output. Run by the test below
-/// in a process of its own, whose disk fails.
+/// Changes the scale three times, and prints for each change whether it was stored. The test below
+/// runs it in a separate process, whose disk fails.
 #[test]
 fn preferences_day() {
     let Some(folder) = std::env::var_os(PREFERENCES_DAY).map(PathBuf::from) else {

@@ -39,7 +39,7 @@ fn press(h: &mut Harness<'_, State>, at: Pos2) {
     drag(h, &[at]);
 }
 
-/// What was asked for since it was last looked at.
+/// Returns the requests since the last call.
 fn asked(h: &mut Harness<'_, State>) -> Vec<UiRequest> {
     std::mem::take(&mut h.state_mut().asked)
 }
@@ -98,7 +98,7 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
     h.key_press(Key::Escape);
     h.run_steps(2);
     assert!(h.state().ui_state.region.drawing.is_none());
-    // What is far too long keeps its form with fewer corners.
+    // A path that is far too long keeps its form with fewer corners.
     h.key_press(Key::L);
     h.run_steps(2);
     let long: Vec<Pos2> =

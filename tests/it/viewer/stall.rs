@@ -79,8 +79,8 @@ fn a_viewer_that_stalls_costs_no_sample_and_no_memory() {
     assert!(now.mesh.revision() > held.mesh.revision());
     // The held state is whole still.
     assert_eq!(held.mesh.vertex_count(), now.mesh.vertex_count());
-    // What a stroke itself keeps for undo is bounded by the clay's own size; published states do
-    // not pile up.
+    // A stroke's undo memory is bounded by the size of the clay; published states do not
+    // accumulate.
     assert!(grown < 64 << 20, "{grown} bytes");
     sender_lifts(&factory, &clock);
     wait(60);

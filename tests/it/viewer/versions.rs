@@ -69,7 +69,7 @@ fn a_version_on_a_branch_is_gone_to_by_a_click() {
     assert_eq!(jumps(&h), [] as [u64; 0]);
     // The pictures of what is seen are asked for.
     assert_eq!(h.state().ui_state.versions.visible, [0, 1, 2, 3, 4]);
-    // Memory holds nothing to take back, the file does.
+    // Memory contains no step to undo, but the file does.
     h.get_by_label("Undo").click();
     h.run_steps(3);
     assert!(

@@ -34,13 +34,13 @@ pub enum Desktop {
     Sway,
 }
 
-/// A part of the screen or a turn, as each desktop is told of it.
+/// A part of the screen or a rotation, as configured on each desktop.
 #[derive(Debug, Clone, Copy)]
 pub struct Area {
     pub name: &'static str,
     /// From shares of the tablet to shares of the screen.
     pub to_screen: DMat3,
-    /// What swaymsg says of the tablet for it.
+    /// The tablet's settings for swaymsg.
     sway: [&'static str; 2],
 }
 
@@ -92,7 +92,7 @@ impl Desktop {
         }
     }
 
-    /// What names this desktop to the programs on it.
+    /// Returns the variables that name this desktop to its programs.
     pub fn variables(self) -> [(&'static str, &'static str); 1] {
         match self {
             Desktop::X11 => [("DISPLAY", DISPLAY)],
@@ -100,7 +100,7 @@ impl Desktop {
         }
     }
 
-    /// What swaymsg answers.
+    /// Returns the answer of swaymsg.
     fn message(self, kind: &str, what: &str) -> String {
         let socket = std::fs::read_dir(RUNTIME).into_iter().flatten().flatten();
         let mut socket = socket.filter(|e| e.file_name().to_string_lossy().starts_with("sway-ipc"));
@@ -109,7 +109,7 @@ impl Desktop {
         tool("swaymsg", &["-r", "-s", &socket, kind, what])
     }
 
-    /// Whether the desktop has made a pointer of the pen.
+    /// Returns true if the desktop has made a pointer of the pen.
     pub fn has_pen(self) -> bool {
         match self {
             Desktop::X11 => !pen_ids().is_empty(),
@@ -129,7 +129,8 @@ impl Desktop {
         Some(DVec2::new(value("X=")?, value("Y=")?))
     }
 
-    /// Where the window's own pixels begin: it knows its place on the screen under X11 alone.
+    /// Returns the origin of the window's pixels: the window knows its place on the screen under
+    /// X11 alone.
     pub fn origin(self) -> DVec2 {
         fn find(node: &Value) -> Option<DVec2> {
             if node["name"] == "sculptd" && node["pid"].is_u64() {

@@ -58,7 +58,7 @@ pub fn spawn(name: &str, args: &[&str], log: &str) -> io::Result<Ended> {
     Ok(Ended(child))
 }
 
-/// What a tool prints; empty where it fails.
+/// Returns the output of a tool; empty if it fails.
 pub fn tool(name: &str, args: &[&str]) -> String {
     let mut command = Command::new(name);
     command.args(args).env("DISPLAY", DISPLAY).env("XDG_RUNTIME_DIR", "/tmp/run");
@@ -98,7 +98,8 @@ pub fn frames() -> u64 {
     status()["frames"].as_u64().unwrap_or(0)
 }
 
-/// Where the pen's ring is drawn, pixels of the desktop; `None` where it may begin no stroke.
+/// Returns the position of the pen's ring, in pixels of the desktop; `None` if no stroke may begin
+/// there.
 pub fn ring() -> Option<DVec2> {
     let all = status()["pens"].clone();
     let pen = all.as_array()?.iter().find(|p| is_tablet(p))?.clone();
@@ -136,7 +137,7 @@ impl Tablet {
         }
     }
 
-    /// Whether the X server has its pen now.
+    /// Plugs in the pen. Returns true if the X server has it.
     pub fn plug(&mut self) -> io::Result<bool> {
         self.uhid = None;
         pause(1500);
@@ -175,7 +176,7 @@ impl Tablet {
         Vec2::new(a.width_mm as f32, a.height_mm as f32)
     }
 
-    /// Where on the tablet the pen must be for the pointer to be at a pixel, mm.
+    /// Returns the position on the tablet, in mm, that moves the pointer to a pixel.
     fn mm(&self, pixel: DVec2) -> Vec2 {
         let share = self.to_screen.inverse().transform_point2(pixel / SCREEN);
         share.as_vec2() * self.size_mm()

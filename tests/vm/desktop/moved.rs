@@ -28,8 +28,9 @@ pub struct ViewRect {
     pub size: DVec2,
 }
 
-/// How far moved vertices lie from the segments of the paths: how many moved, how many lie outside
-/// of the brush's reach, and the greatest distance in radii of the brush.
+/// Measures the distance of moved vertices from the segments of the paths. Returns the number of
+/// moved vertices, the number outside the brush's reach, and the greatest distance in radii of the
+/// brush.
 pub fn beside(
     before: &[Vec3],
     after: &[Vec3],
@@ -41,7 +42,7 @@ pub fn beside(
     let (mut moved, mut outside, mut worst) = (0, 0, 0.0f64);
     for (a, b) in before.iter().zip(after).filter(|(a, b)| a.distance(**b) > 1e-6) {
         moved += 1;
-        // Where it is now or was before: a dab is laid on what was there at its time.
+        // The position now or before: a dab acts on the surface at its time.
         let off = |p: Vec3| {
             let at = camera.project(p)?;
             let pixel = view.corner + view.size * at.as_dvec2();

@@ -1,6 +1,6 @@
-//! What is shown, one after the other. Nothing waits for a time: each step waits for what the
-//! daemon or the desktop says, and what must be learned is counted in frames of the window, which
-//! takes a third of a second for one here.
+//! The steps of the demonstration in order. No step waits for a time: each waits for a report of
+//! the daemon or the desktop. Learning is counted in frames of the window, which take a third of a
+//! second each here.
 
 use std::io;
 use std::process::ExitCode;
@@ -53,7 +53,7 @@ struct Show {
     view: ViewRect,
     camera: Camera,
     radius: f32,
-    /// Where the pen is, pixels.
+    /// Position of the pen, in pixels.
     at: DVec2,
     /// Stops that were made.
     stops: usize,
@@ -98,7 +98,7 @@ impl Show {
         Ok(last)
     }
 
-    /// How far cursor and ring are apart, pixels; `None` where no ring is shown.
+    /// Returns the distance between cursor and ring, in pixels; `None` if no ring is shown.
     fn apart(&mut self) -> io::Result<Option<f64>> {
         let (cursor, ring) = self.rest()?;
         Ok(cursor.zip(ring).map(|(c, r)| c.distance(r)))

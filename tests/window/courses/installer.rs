@@ -25,7 +25,7 @@ fn an_installer_s_hour() {
     let dir = tempfile::tempdir().expect("a folder");
     let gallery = dir.path().join("gallery");
     std::fs::create_dir(&gallery).expect("a folder");
-    // A mistake in the settings is told before anything opens, with the key and its range.
+    // An error in the settings is reported before anything opens, with the key and its range.
     let wrong = settings(dir.path(), "share_minutes = 0.0\n");
     let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
         .args(["run", "--kiosk", "--headless", "--for", "1", "--kiosk-config", &wrong])
@@ -62,7 +62,7 @@ fn an_installer_s_hour() {
     );
     c.is_as_kept();
     c.step("a second stroke", |s| s.drag((-60, 60), (60, 50)), |s| steps(s) == 2);
-    // The tools lie at the lower edge: Add, Carve, Smooth, Undo, Finished.
+    // The tools are at the lower edge: Add, Carve, Smooth, Undo, Finished.
     let tools = [(283, 651), (453, 651), (623, 651), (805, 651), (965, 651)];
     let negative = |s: &Stage| super::brush(s)["negative"].clone();
     c.step("Carve", |s| press(s, tools[1]), |s| negative(s) == true);

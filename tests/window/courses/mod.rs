@@ -1,7 +1,7 @@
-//! Three courses through the program as people begin with it: a sculptor with a tablet, a newcomer
-//! with a mouse, an installer. Each step is done in a real window by pen, pointer and keys, and has
-//! come when the daemon or the screen says so. The list of steps is printed; with
-//! `SCULPTD_SHOTS=folder` each leaves a picture, and some are compared with those that are kept.
+//! Three courses through the program for beginners: a sculptor with a tablet, a newcomer with a
+//! mouse, an installer. Each step is done in a real window by pen, pointer and keys. It is complete
+//! when the daemon or the screen reports it. The list of steps is printed; with
+//! `SCULPTD_SHOTS=folder` each step saves a picture, and some are compared with reference pictures.
 //!
 //! They are long tests: each takes minutes where a processor draws.
 

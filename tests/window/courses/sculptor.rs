@@ -14,7 +14,7 @@ use crate::stage::{Stage, differs, pause};
 /// The tablet, mm.
 const AREA: Vec2 = Vec2::new(200.0, 125.0);
 
-/// Where a stroke begins and ends, and its pressure.
+/// Begin and end of a stroke, and its pressure.
 type DrawnLine = ((f32, f32), (f32, f32), f32);
 
 /// Every stroke of the course in turn: two places of the tablet, shares of it, and the pressure.

@@ -30,12 +30,12 @@ pub fn stream(
     (model.facts, packets)
 }
 
-/// How often the line is read for questions of the host.
+/// Interval at which the line is read for questions of the host.
 const LISTEN: Duration = Duration::from_millis(3);
-/// Attempts of 100 ms each before a reader that does not read is given up.
+/// Attempts of 100 ms each before a stalled reader is given up.
 const WRITE_ATTEMPTS: usize = 20;
 
-/// What a simulated serial pen is and how well its line works.
+/// Configuration of a simulated serial pen and the faults of its line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SerialPenConfig {
     /// The protocol.
@@ -89,7 +89,7 @@ impl SerialPen {
     /// Opens a pseudo-terminal and begins to answer questions on it.
     ///
     /// # Errors
-    /// If there is no pseudo-terminal to be had, or no thread.
+    /// If a pseudo-terminal or a thread cannot be created.
     pub fn new(script: PenScript, config: SerialPenConfig) -> io::Result<Self> {
         let (master, slave) = TTYPort::pair()?;
         let name =
@@ -139,7 +139,7 @@ impl SerialPen {
         &self.name
     }
 
-    /// Whether a reader has asked for the stream.
+    /// Returns true if a reader has asked for the stream.
     pub fn streaming(&self) -> bool {
         self.streaming.load(SeqCst)
     }
@@ -156,8 +156,8 @@ impl SerialPen {
         self.next_us = self.next_us.max(us);
     }
 
-    /// Pulls the plug: a reader sees the line break. What was in range leaves: gives the samples to
-    /// expect.
+    /// Pulls the plug: a reader sees the line break, and a pen in range leaves. Returns the number
+    /// of samples to expect.
     pub fn unplug(&mut self) -> u32 {
         self.streaming.store(false, SeqCst);
         self.listener = None;
@@ -206,9 +206,9 @@ impl SerialPen {
         if stall {
             self.stalled_until_us = at + 20_000 + self.rng.below(280_000);
         }
-        // Two faults in a row can make a whole packet out of two broken ones, which no reader can
-        // tell from a good one: these protocols have no checksum. One at a time is what a line's
-        // noise is, too.
+        // Two faults in a row can make a whole packet out of two broken ones. No reader can
+        // distinguish it from a good one, because these protocols have no checksum. A line's noise,
+        // too, comes one fault at a time.
         self.spoilt = !self.spoilt && (cut || lost || doubled);
         let mut bytes = packet;
         if self.spoilt {

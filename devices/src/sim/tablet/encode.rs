@@ -1,5 +1,5 @@
-//! A pen's pose as HID reports, by family: the inverse of what the parsers in `hid/` read. Facts
-//! and sources stand there.
+//! A pen's pose as HID reports, by family: the inverse of the parsers in `hid/`, which document the
+//! facts and sources.
 
 use glam::Vec2;
 
@@ -41,7 +41,7 @@ impl Encoder {
         }
     }
 
-    /// Whether this model's reports say when the pen leaves; else only silence does.
+    /// Returns true if this model's reports show when the pen leaves; else only silence does.
     pub(super) fn says_away(&self) -> bool {
         reports::away(self.family).is_some()
     }

@@ -25,7 +25,7 @@ use crate::tablet::Family;
 /// dropped.
 const KERNEL_KEEPS: usize = 63;
 
-/// How a simulated tablet behaves.
+/// Behaviour of a simulated tablet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TabletConfig {
     /// Reports a second: 133 to 330 in real ones.
@@ -34,7 +34,7 @@ pub struct TabletConfig {
     pub repeat_us: Option<u64>,
     /// Reports that wait for a reader before the newest are dropped.
     pub keeps: usize,
-    /// How well its line works.
+    /// Faults of its line.
     pub faults: Faults,
 }
 
@@ -129,8 +129,8 @@ impl SimTablet {
         (tablet, TabletEnd { rx, asked })
     }
 
-    /// Whether its reports say when the pen leaves; else only silence does, and
-    /// [`SimTablet::advance`] counts on a reader that looks at its clock.
+    /// Returns true if its reports show when the pen leaves. Otherwise only silence does, and
+    /// [`SimTablet::advance`] relies on a reader that checks its clock.
     pub fn says_away(&self) -> bool {
         self.encoder.says_away()
     }
@@ -181,7 +181,7 @@ impl SimTablet {
     fn happen(&mut self, event: Event<Vec<u8>>, at: u64, now: u64) -> u32 {
         match event {
             Event::Stall(us) => self.stalled_until_us = at + us,
-            // A tablet has no clock of its own.
+            // A tablet has no clock.
             Event::ClockJump(_) => {}
             Event::Unplug => return self.unplug(),
             Event::Whole(r) if at < self.stalled_until_us => self.backlog.push(r),

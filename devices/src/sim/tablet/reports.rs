@@ -240,7 +240,7 @@ pub(super) fn other(family: Family, c: &PoseCounts) -> Vec<u8> {
             b[16] = c.height as u8;
             b
         }
-        // One frame of those that fit.
+        // One frame; the report has room for several.
         Family::WacomProBluetooth | Family::WacomIntuosBluetooth => {
             let pro = family == Family::WacomProBluetooth;
             let mut b = vec![0x80, 0xe0 | c.ends()];

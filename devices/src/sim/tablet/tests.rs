@@ -133,7 +133,7 @@ fn every_model_reads_what_it_writes() {
     };
     for tablet in catalogue.tablets() {
         for at in 0..tablet.id.len() {
-            // A model that is read by its descriptor has no counts of its own.
+            // A model that is read by its report descriptor has no counts.
             if tablet.area.max_x > 0 {
                 generic.push(Found::new(tablet.clone(), at));
             }

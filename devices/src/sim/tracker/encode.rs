@@ -7,8 +7,8 @@ use glam::{Mat3, Vec3};
 use crate::sample::{Finger, Hand, Hands};
 use crate::sim::hand::basis;
 
-/// One frame: every field that protocol 6 has, for every hand that is there. `stamp` is the
-/// tracker's clock in us.
+/// Encodes one frame: every field of protocol 6, for every hand in view. `stamp` is the tracker's
+/// clock in µs.
 pub fn frame_json(hands: &Hands, stamp: u64, rate: f32) -> String {
     let mut out = String::with_capacity(1024 + 8192 * hands.count as usize);
     let _ = write!(

@@ -13,7 +13,7 @@ fn leapjs_takes_the_simulated_tracker_for_a_real_one() {
         return println!("skipped: SCULPTD_LEAPJS not set (devices/tests/leapjs/run sets it)");
     };
     let mut tracker = Tracker::new(journal().hands, TrackerConfig::default()).unwrap();
-    // From where both hands are there.
+    // From the time at which both hands are in view.
     tracker.skip_to(10_400_000);
     let port = tracker.address().port().to_string();
     let mut node = Command::new("node");

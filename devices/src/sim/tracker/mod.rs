@@ -24,7 +24,7 @@ pub use self::encode::frame_json;
 /// The tracker's own clock at the start of the simulation. Real trackers do not start at 0.
 const CLOCK_ORIGIN_US: u64 = 3_600_000_000;
 
-/// How a simulated tracker behaves.
+/// Behaviour of a simulated tracker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrackerConfig {
@@ -37,7 +37,7 @@ pub struct TrackerConfig {
     pub origins: Vec<String>,
     /// The script begins again after so long; `None` ends with it: no hands from then on.
     pub repeat_us: Option<u64>,
-    /// How well its line works.
+    /// Faults of its line.
     pub faults: Faults,
     /// Noise and lost hands.
     pub jitter: Jitter,
@@ -81,7 +81,7 @@ struct Packet {
     hands: u8,
 }
 
-/// What a correct client has received so far, to count the samples that are expected of it.
+/// Frames that a correct client has received so far, to count the expected samples.
 #[derive(Debug, Default)]
 struct ClientSeen {
     last: Option<(i64, u64, u8)>,
@@ -129,7 +129,7 @@ impl Tracker {
         })
     }
 
-    /// Where it serves.
+    /// Returns its address.
     pub fn address(&self) -> SocketAddr {
         self.server.address()
     }
@@ -144,7 +144,7 @@ impl Tracker {
         self.server.wait_for_clients(1, patience)
     }
 
-    /// How many clients are connected.
+    /// Returns the number of connected clients.
     pub fn clients(&self) -> usize {
         self.server.clients()
     }
@@ -251,7 +251,7 @@ impl Tracker {
 /// A simulated device that runs by itself; dropping it unplugs it.
 #[derive(Debug)]
 pub struct Playing {
-    /// Where it serves.
+    /// Its address.
     pub address: SocketAddr,
     _thread: DeviceThread,
 }

@@ -16,7 +16,7 @@ const MAX_FROM_CLIENT: usize = 4096;
 const MAX_CLIENTS: usize = 8;
 /// Most requests that are kept; later ones are not.
 const MAX_REQUESTS: usize = 64;
-/// How often a waiting connection is looked for.
+/// Interval at which waiting connections are accepted.
 const ACCEPT_SLICE: Duration = Duration::from_millis(5);
 /// For each step of the handshake, and for a frame to be taken.
 const PATIENCE: Duration = Duration::from_millis(500);

@@ -15,9 +15,9 @@
 // used from any thread, a mesh from several at once, a tablet from one at a time. No function
 // unwinds into C: a defect of the library comes out as SCULPTD_STATUS_DEFECT.
 
-// How a call ended.
+// The outcome of a call.
 typedef enum SculptdStatus {
-    // Good.
+    // Success.
     SCULPTD_STATUS_OK = 0,
     // An argument is null, out of its range, or contradicts another.
     SCULPTD_STATUS_ARGUMENT = 1,
@@ -33,7 +33,7 @@ typedef enum SculptdStatus {
     SCULPTD_STATUS_DEFECT = 6,
 } SculptdStatus;
 
-// What touches or hovers.
+// The tool that touches or hovers.
 typedef enum SculptdTool {
     // The tip of a pen.
     SCULPTD_TOOL_PEN = 0,
@@ -110,11 +110,11 @@ typedef struct SculptdPenSample {
     float twist;
     // Barrel buttons, bit 0 the lower one.
     uint32_t buttons;
-    // What touches or hovers.
+    // The tool that touches or hovers.
     enum SculptdTool tool;
-    // The position is meaningful; false in the last sample of a visit.
+    // True if the position is meaningful; false in the last sample of a visit.
     bool in_range;
-    // The tip touches.
+    // True while the tip touches.
     bool tip;
 } SculptdPenSample;
 
@@ -122,14 +122,14 @@ typedef struct SculptdPenSample {
 extern "C" {
 #endif // __cplusplus
 
-// What the last call of this thread that returns a SculptdStatus failed for; empty after a good
-// one. Valid until the next such call of this thread.
+// Returns the reason why this thread's last call that returns a SculptdStatus failed; empty if it
+// succeeded. Valid until the next such call of this thread.
 const char *sculptd_error_message(void);
 
 // The library's version, e.g. "0.1.0".
 const char *sculptd_version(void);
 
-// Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF, told by the content.
+// Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
 //
 // # Safety
 // `file` is a path that ends with a zero; `mesh` points to a pointer.
@@ -171,8 +171,8 @@ const double *sculptd_mesh_vertices(const struct SculptdMesh *mesh, size_t *coun
 // As sculptd_mesh_vertices().
 const uint32_t *sculptd_mesh_corners(const struct SculptdMesh *mesh, size_t *count);
 
-// Where the corners of each face begin, and at last their number; in `count` the number of faces,
-// one less than the entries. As sculptd_mesh_vertices().
+// Returns the start of each face's corners, and finally their number. `count` receives the number
+// of faces, one less than the entries. As sculptd_mesh_vertices().
 //
 // # Safety
 // As sculptd_mesh_vertices().

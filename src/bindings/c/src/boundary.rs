@@ -9,11 +9,11 @@ use sculptd_geometry::boolean::BooleanError;
 use sculptd_geometry::io::{ReadError, WriteError};
 use sculptd_geometry::thickness::ThicknessError;
 
-/// How a call ended.
+/// The outcome of a call.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SculptdStatus {
-    /// Good.
+    /// Success.
     Ok = 0,
     /// An argument is null, out of its range, or contradicts another.
     Argument = 1,
@@ -91,8 +91,8 @@ pub fn guarded(body: impl FnOnce() -> Result<(), Failure>) -> SculptdStatus {
     status
 }
 
-/// What the last call of this thread that returns a SculptdStatus failed for; empty after a good
-/// one. Valid until the next such call of this thread.
+/// Returns the reason why this thread's last call that returns a SculptdStatus failed; empty if it
+/// succeeded. Valid until the next such call of this thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn sculptd_error_message() -> *const c_char {
     MESSAGE.with(|m| m.borrow().as_ptr())

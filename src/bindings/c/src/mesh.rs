@@ -19,7 +19,7 @@ pub struct SculptdMesh {
     pub(crate) poly: PolyMesh,
 }
 
-/// Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF, told by the content.
+/// Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
 ///
 /// # Safety
 /// `file` is a path that ends with a zero; `mesh` points to a pointer.
@@ -138,8 +138,8 @@ pub unsafe extern "C" fn sculptd_mesh_corners(
     unsafe { lend(corners, corners.len(), count) }
 }
 
-/// Where the corners of each face begin, and at last their number; in `count` the number of faces,
-/// one less than the entries. As sculptd_mesh_vertices().
+/// Returns the start of each face's corners, and finally their number. `count` receives the number
+/// of faces, one less than the entries. As sculptd_mesh_vertices().
 ///
 /// # Safety
 /// As sculptd_mesh_vertices().

@@ -21,7 +21,7 @@ pub struct SculptdTablet {
     made: Vec<SculptdPenSample>,
 }
 
-/// What touches or hovers.
+/// The tool that touches or hovers.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SculptdTool {
@@ -55,11 +55,11 @@ pub struct SculptdPenSample {
     pub twist: f32,
     /// Barrel buttons, bit 0 the lower one.
     pub buttons: u32,
-    /// What touches or hovers.
+    /// The tool that touches or hovers.
     pub tool: SculptdTool,
-    /// The position is meaningful; false in the last sample of a visit.
+    /// True if the position is meaningful; false in the last sample of a visit.
     pub in_range: bool,
-    /// The tip touches.
+    /// True while the tip touches.
     pub tip: bool,
 }
 

@@ -19,7 +19,7 @@ use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Keeps the memory of shared arrays alive and tells NumPy where it is.
+/// Keeps the memory of shared arrays alive and gives NumPy its address.
 #[pyclass(frozen, module = "sculptd._native")]
 struct ArrayOwner {
     _owner: Arc<dyn Any + Send + Sync>,
@@ -63,7 +63,7 @@ macro_rules! elements {
 
 elements!(f64: "<f8" ">f8", f32: "<f4" ">f4", u32: "<u4" ">u4", u8: "|u1" "|u1");
 
-/// A read-only array of `shape` over `slice`, which lies in `owner`. No element is copied.
+/// Returns a read-only array of `shape` over `slice`, which `owner` keeps alive. Copies no element.
 pub fn shared<'py, E: Element>(
     py: Python<'py>,
     owner: Arc<dyn Any + Send + Sync>,

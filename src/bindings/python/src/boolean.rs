@@ -91,7 +91,7 @@ impl BooleanResult {
         self.report.tolerance
     }
 
-    /// Whether another tolerance may give another answer.
+    /// True if another tolerance may give another result.
     #[getter]
     fn depends_on_tolerance(&self) -> bool {
         self.report.depends_on_tolerance

@@ -91,7 +91,7 @@ fn system(path: &std::path::Path, source: &std::io::Error) -> PyErr {
     }
 }
 
-/// Why a file could not be read.
+/// The exception for a file that could not be read.
 pub fn read(py: Python<'_>, e: &ReadError) -> PyErr {
     match e {
         ReadError::Io { path, source } => system(path, source),
@@ -100,7 +100,7 @@ pub fn read(py: Python<'_>, e: &ReadError) -> PyErr {
     }
 }
 
-/// Why a file could not be written.
+/// The exception for a file that could not be written.
 pub fn write(e: &WriteError) -> PyErr {
     match e {
         WriteError::Io { path, source } => system(path, source),
@@ -108,7 +108,7 @@ pub fn write(e: &WriteError) -> PyErr {
     }
 }
 
-/// Why a Boolean has no result.
+/// The exception for a Boolean without a result.
 pub fn boolean(py: Python<'_>, e: &BooleanError) -> PyErr {
     let (operand, kind, count) = match e {
         BooleanError::Open { operand, edges } => (Some(*operand), "open", Some(*edges)),
@@ -128,7 +128,7 @@ pub fn boolean(py: Python<'_>, e: &BooleanError) -> PyErr {
     )
 }
 
-/// Why there is no thickness.
+/// The exception for a thickness that could not be measured.
 pub fn thickness(e: &ThicknessError) -> PyErr {
     match e {
         ThicknessError::Cancelled(c) => cancelled(*c),
@@ -136,7 +136,7 @@ pub fn thickness(e: &ThicknessError) -> PyErr {
     }
 }
 
-/// Why there is no new surface.
+/// The exception for a surface that could not be made.
 pub fn remesh(e: &RemeshError) -> PyErr {
     match e {
         RemeshError::Cancelled(c) => cancelled(*c),

@@ -9,12 +9,12 @@ use sculptd_geometry::job::Job;
 /// Between two looks at signals and at the progress.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// What watches a function's progress: a Python function of one number from 0 to 1.
+/// A progress callback: a Python function of one number from 0 to 1.
 pub type Progress = Option<Py<PyAny>>;
 
-/// Runs `work` on a thread of its own. While it runs, the interpreter's lock is free. About ten
-/// times a second the calling thread takes it, lets Python handle its signals and calls `progress`;
-/// an exception from either cancels the job, and is raised once the work has stopped.
+/// Runs `work` on a separate thread. While it runs, the interpreter's lock is free. About ten times
+/// a second the calling thread takes it, lets Python handle its signals and calls `progress`; an
+/// exception from either cancels the job, and is raised once the work has stopped.
 pub fn watched<T: Send>(
     py: Python<'_>,
     progress: &Progress,

@@ -4,7 +4,7 @@
 //!
 //! * A [`mesh::Mesh`] never changes. Its arrays are shared with NumPy and never copied: NumPy reads
 //!   the memory of the Rust vectors through `__array_interface__`, and keeps their owner alive.
-//! * Long work runs on a thread of its own without the interpreter's lock ([`job::watched`]), calls
+//! * Long work runs on a separate thread without the interpreter's lock ([`job::watched`]), calls
 //!   `progress` with a number from 0 to 1 about ten times a second, and stops on Ctrl+C.
 //! * A failure is an exception with its place and its reason as attributes ([`errors`]).
 

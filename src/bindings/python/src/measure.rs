@@ -13,7 +13,7 @@ use crate::errors;
 use crate::job::{Progress, watched};
 use crate::mesh::Mesh;
 
-/// What serialises as JSON, as Python's own dicts and lists.
+/// Converts a value to Python's dicts and lists, by way of JSON.
 pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|e| PyValueError::new_err(e.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
@@ -38,8 +38,8 @@ fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py
     Ok(out)
 }
 
-/// What the mesh is: counts, topology, bounds, whether it crosses itself. A dict with the fields of
-/// `sculptd info --json`. `crossings=False` leaves out the slowest part.
+/// Returns the facts of the mesh: counts, topology, bounds, crossings. The result is a dict with
+/// the fields of `sculptd info --json`. `crossings=False` leaves out the slowest part.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, crossings=true, progress=None))]
 fn check_mesh<'py>(

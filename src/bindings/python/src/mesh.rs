@@ -27,7 +27,7 @@ use crate::job::{Progress, watched};
 #[derive(Debug)]
 pub struct Mesh {
     pub poly: Arc<PolyMesh>,
-    /// What the file was, where it came from one.
+    /// The format of the file, if it came from one.
     format: Option<&'static str>,
     warnings: Vec<String>,
 }
@@ -135,7 +135,7 @@ impl Mesh {
         shared(py, self.poly.clone(), &self.poly.corners, vec![self.poly.corners.len()])
     }
 
-    /// Where each face's corners begin, and their number at last: uint32, read-only, shared.
+    /// The start of each face's corners, and finally their number: uint32, read-only, shared.
     #[getter]
     fn face_starts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shared(py, self.poly.clone(), &self.poly.face_starts, vec![self.poly.face_starts.len()])
@@ -155,13 +155,13 @@ impl Mesh {
         shared(py, self.poly.clone(), groups, vec![groups.len()]).map(Some)
     }
 
-    /// What the file was, e.g. 'STL (binary)'; None for a mesh that came from no file.
+    /// The format of the file, e.g. 'STL (binary)'; None for a mesh that came from no file.
     #[getter]
     fn format(&self) -> Option<&'static str> {
         self.format
     }
 
-    /// What the maker of this mesh left out, guessed or repaired: one sentence each.
+    /// The data left out, guessed or repaired when this mesh was made: one sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
@@ -233,10 +233,10 @@ impl Mesh {
     }
 }
 
-/// Reads a mesh file: OBJ, STL, PLY, OFF, glTF, GLB or 3MF, told by its content.
+/// Reads a mesh file: OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
 ///
-/// Raises OSError (FileNotFoundError and others) where the file can't be opened, FileFormatError
-/// with the line or byte where it is not what it claims.
+/// Raises OSError (FileNotFoundError and others) if the file can't be opened. Raises
+/// FileFormatError, with the line or byte, if the content violates the format.
 #[pyfunction]
 #[pyo3(signature = (path, progress=None))]
 fn read(py: Python<'_>, path: PathBuf, progress: Progress) -> PyResult<Mesh> {

@@ -71,7 +71,7 @@ impl Thickness {
         least.map(|l| plain(py, &l)).transpose()
     }
 
-    /// Whether no wall is below `limit`: True, False, or None where the bounds cannot tell.
+    /// Returns True if no wall is below `limit`, False if one is, None if the bounds cannot decide.
     fn reaches(&self, limit: f32) -> Option<bool> {
         match self.measured.compare(limit) {
             Comparison::Reached => Some(true),
@@ -112,7 +112,7 @@ impl Thickness {
         self.summary.valid
     }
 
-    /// How far a value may be off by rounding and by the cone's spread.
+    /// The greatest error of a value from rounding and from the cone's spread.
     #[getter]
     fn error_bound(&self) -> f32 {
         self.summary.error_bound
@@ -175,13 +175,13 @@ impl Thickness {
     }
 }
 
-/// How thick the walls are under every vertex.
+/// Measures the thickness of the walls under every vertex.
 ///
 /// `method`: 'ray' (one ray along the normal; the least wall is proven), 'cone' (the mean of `rays`
 /// rays within `opening` degrees, corrected by the chord) or 'sphere' (the largest ball between the
 /// place and the side opposite). `faces=True` measures the middle of each triangle, too. `side`:
-/// 'wall', or 'gap' for the clearance in front of the surface. `edges`: what a vertex on a sharp
-/// edge says: 'extrapolate', 'raw', 'sphere' or 'neutral'.
+/// 'wall', or 'gap' for the clearance in front of the surface. `edges` is the value of a vertex on
+/// a sharp edge: 'extrapolate', 'raw', 'sphere' or 'neutral'.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, method="ray", rays=25, opening=60.0, side="wall",
                     edges="extrapolate", faces=false, progress=None))]

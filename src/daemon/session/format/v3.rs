@@ -75,8 +75,8 @@ pub const FIELD_COUNTS: &FieldCounts = &[
     ("Volume", 3),
 ];
 
-/// What the table `log` holds: every group up to the first that is missing, torn, or out of order,
-/// and what is wrong with that one.
+/// Reads the table `log`: every group up to the first that is missing, torn or out of order, and
+/// the fault of that group.
 pub fn read_log(db: &Connection) -> (Vec<TickInput>, Option<String>) {
     let mut input: Vec<TickInput> = Vec::new();
     let mut read = || -> Result<Option<String>, rusqlite::Error> {

@@ -36,7 +36,7 @@ pub struct HistoryWriter {
     names: BTreeMap<Name, u64>,
     topologies: BTreeSet<Name>,
     sides: Vec<(SideData, u64)>,
-    /// What is known of the pages that were hashed for the checkpoint before.
+    /// Known hashes of the pages for the previous checkpoint.
     hashes: KnownHashes,
     next_side: u64,
     polygons: StoredPolygons,
@@ -50,8 +50,8 @@ pub struct HistoryWriter {
 }
 
 impl HistoryWriter {
-    /// What the file holds, without the nodes after `purge` and without pages that belong to no
-    /// node.
+    /// Opens the history in the file, without the nodes after `purge` and without pages that no
+    /// node uses.
     pub fn open(
         store: Store,
         purge: u64,
@@ -77,7 +77,7 @@ impl HistoryWriter {
             );
             used.extend(n.scene.iter().flat_map(|s| s.names()));
         }
-        // What the log's jumps name stays, whatever became of the places.
+        // The pages named by the log's jumps stay, even if their places were removed.
         store.settle_pins(purge)?;
         for (_, _, pin) in store.pins()? {
             used.extend(pin.pages.iter().map(|&(i, revision)| (pin.object_id, i, revision)));
@@ -124,7 +124,7 @@ impl HistoryWriter {
         })
     }
 
-    /// Puts the cursor where the world is: at `at`, or at a node of its own below it.
+    /// Moves the cursor to the state of the world: to `at`, or to a new node below it.
     pub fn begin(
         &mut self,
         tick: u64,
@@ -172,7 +172,7 @@ impl HistoryWriter {
                 changes.push((i, before, NOTHING));
                 continue;
             }
-            // What it is made of is not known to be stored: so it is stored.
+            // Its topology may not be stored yet, so store it.
             self.topology.insert(i, page.revision());
             self.keep_topology((work.object_id(), i, page.revision()), page)?;
             self.keep_page((work.object_id(), i, page.revision()), page.revision(), page)?;
@@ -191,13 +191,14 @@ impl HistoryWriter {
         Ok(())
     }
 
-    /// The objects as they are stored, with the pages of those that are not active, which are
-    /// written where they are not stored yet. `None`: there is one, as a session begins.
+    /// Returns the objects as they are stored. Pages of inactive objects are written if they are
+    /// not stored yet. `None`: there is one object, as at the start of a session.
     fn scene_of(&mut self, view: &Arc<SceneView>) -> Result<Option<Arc<StoredScene>>, StoreError> {
         if Arc::ptr_eq(view, &self.view) {
             return Ok(self.scene.clone());
         }
-        // As a session begins: what a Boolean of all objects left alone has another number.
+        // As at the start of a session: an object that remains after a Boolean of all has another
+        // number.
         let first = view.objects.first().is_some_and(|o| o.id == ObjectId(0));
         if first && view.is_plain() && self.scene.is_none() {
             return Ok(None);
@@ -228,11 +229,11 @@ impl HistoryWriter {
         Ok(Some(Arc::new(StoredScene { objects, active: view.active as u32 })))
     }
 
-    /// Every page of a clay by name; those that are not stored are written.
+    /// Returns the name of every page of a clay; pages not yet stored are written.
     fn stored_pages(&mut self, clay: &Snapshot) -> Result<Vec<(u32, u64)>, StoreError> {
         let (number, all) = (clay.object_id(), versions_of(clay));
         for &(i, revision) in &all {
-            // The pages of the start are the start's.
+            // The start already contains its pages.
             let known = revision == NOTHING || number == 0 && revision == 0;
             if !known && !self.names.contains_key(&(number, i, revision)) {
                 let page = clay.page(i).clone();
@@ -280,7 +281,7 @@ impl HistoryWriter {
         }
     }
 
-    /// Where a side is kept; written when it is first met.
+    /// Returns the id of a side, which is written on its first use.
     fn side(&mut self, side: SideData) -> Result<u64, StoreError> {
         if let Some((_, id)) = self.sides.iter().find(|(known, _)| known.is_same(&side)) {
             return Ok(*id);
@@ -380,7 +381,7 @@ impl HistoryWriter {
         let mut node = self.node(tick, moment, parent, deed);
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
-        // Where one object is left as a session begins, that is said too.
+        // If one object remains as at the start of a session, the node records that too.
         node.scene = (!same).then(|| scene.unwrap_or_else(|| Arc::new(StoredScene::plain())));
         node.changes = match changes {
             Some(changes) => {
@@ -435,7 +436,7 @@ impl HistoryWriter {
                 if revision == NOTHING {
                     return Ok((i, NOTHING, NOTHING));
                 }
-                // Where the work comes back by undo, it is stored already.
+                // If undo restores the sculpture, its pages are already stored.
                 if !self.names.contains_key(&(object_id, i, revision)) {
                     self.keep_topology((object_id, i, revision), &page)?;
                     self.keep_page((object_id, i, revision), revision, &page)?;
@@ -560,12 +561,12 @@ impl HistoryWriter {
         let (tree, names, topologies) = (&mut self.tree, &mut self.names, &mut self.topologies);
         let (freed, left) = bound(&self.store, tree, names, topologies, self.bytes, most)?;
         self.bytes = left;
-        // Things that were let go are written anew when they come again.
+        // Sides that were removed are written again on their next use.
         self.sides.clear();
         Ok(Some(freed))
     }
 
-    /// A jump to a node will stand in the log: what it names stays as long as it can.
+    /// Keeps the data that a jump to a node in the log names, as long as possible.
     pub fn pin(
         &mut self,
         node: u64,

@@ -29,14 +29,14 @@ use sculptd_geometry::job::Job;
 
 /// Moments that may wait for the disk, each holding the pages of its time.
 const WAITING: usize = 64;
-/// How often a disk that takes nothing is tried again.
+/// Interval between retries while the disk cannot be written.
 const RETRY: Duration = Duration::from_millis(1000);
-/// A jump that the world took no notice of for so long was for a work that had changed.
+/// A jump that the world ignores for this long was for an earlier state of the sculpture.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// Undos that wait for the one under way.
+/// Maximum number of undos that wait for the one in progress.
 const WANTS: usize = 64;
 
-/// Where somebody wants to go.
+/// A requested move in the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Want {
     Undo,
@@ -60,11 +60,11 @@ pub struct Handle {
     tree: Arc<Mutex<Tree>>,
     fault: Arc<Mutex<Option<String>>>,
     path: SessionPath,
-    /// Raised when nobody waits for a disk that takes nothing.
+    /// Set when the caller no longer waits for a disk that cannot be written.
     ending: Arc<AtomicBool>,
-    /// Messages that were handed over and are not yet dealt with.
+    /// Number of messages sent and not yet processed.
     busy: Arc<AtomicUsize>,
-    /// A jump waits, or was sent and did not come back yet.
+    /// True while a jump is waiting, or was sent and has not returned.
     jumping: Arc<AtomicBool>,
 }
 
@@ -109,33 +109,34 @@ impl Handle {
         }
     }
 
-    /// The tree as it is written by now.
+    /// Returns the tree as written so far.
     pub fn tree(&self) -> Tree {
         self.tree.lock().map(|t| t.clone()).unwrap_or_default()
     }
 
-    /// Where the work is, the last place's number and how many there are: another tree has another.
+    /// Returns the cursor, the next node id and the number of nodes: together they identify the
+    /// tree.
     pub fn shape(&self) -> (u64, u64, usize) {
         self.tree.lock().map(|t| (t.cursor, t.next_id(), t.len())).unwrap_or_default()
     }
 
-    /// The picture of a node, PNG.
+    /// Returns the picture of a node as PNG.
     pub fn thumbnail(&self, node: u64) -> Option<Vec<u8>> {
         Store::read(&self.path.get()).ok()?.thumbnail(node).ok()?
     }
 
-    /// Whether all that was handed over is written, and no jump is under way.
+    /// Returns true if every message is written and no jump is in progress.
     pub fn is_idle(&self) -> bool {
         self.busy.load(Relaxed) == 0
     }
 
-    /// Returns whether something is still to be written, or a jump is wanted that the world has not
-    /// made and that was not given up.
+    /// Returns true if something still has to be written, or if a requested jump is pending: the
+    /// world has not made it and it was not abandoned.
     pub fn is_going(&self) -> bool {
         !self.is_idle() || self.jumping.load(Relaxed)
     }
 
-    /// What stands in the way, if anything.
+    /// Returns the current fault, if any.
     pub fn trouble(&self) -> Option<String> {
         self.fault.lock().ok().and_then(|f| f.clone())
     }
@@ -149,12 +150,12 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// Begins or goes on with the history of a session that the world was made of. `purge`: nodes
-    /// after this tick are no part of what was recovered. `at`: the node that the world was at,
-    /// before what was replayed. `most`: bytes in the file, beyond which the oldest places go.
+    /// Begins or continues the history of the session that the world was created from. `purge`:
+    /// nodes after this tick were not recovered. `at`: the world's node before the replayed input.
+    /// `most`: bytes in the file, beyond which the oldest places are removed.
     ///
     /// # Errors
-    /// Where the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn start(
         path: impl Into<SessionPath>,
         world: &mut World,
@@ -216,10 +217,10 @@ struct HistoryThread {
     path: SessionPath,
     shown: Arc<Mutex<Tree>>,
     wants: VecDeque<Want>,
-    /// When a jump was sent that did not come back yet.
+    /// Time at which the outstanding jump was sent.
     sent: Option<u64>,
     jumping: Arc<AtomicBool>,
-    /// What is left is more than the bound, and that was said.
+    /// True if the remaining history exceeds the bound, and that was reported.
     full: bool,
     clock: Clock,
 }

@@ -19,13 +19,13 @@ pub struct Place {
     /// Pages that the step changed, of all.
     pub changed: usize,
     pub pages: u32,
-    /// Whether another branch goes off at the place before.
+    /// True if another branch starts at the previous place.
     pub branch: bool,
-    /// Whether the work is here.
+    /// True if the sculpture is at this place.
     pub here: bool,
 }
 
-/// What a session's history holds.
+/// Contents of a session's history.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct History {
     pub places: Vec<Place>,
@@ -54,10 +54,10 @@ pub fn places(tree: &Tree) -> Vec<Place> {
         .collect()
 }
 
-/// Reads a session's history. A session without one has none.
+/// Reads a session's history; it is empty if the session has none.
 ///
 /// # Errors
-/// Where the file cannot be read.
+/// Returns an error if the file cannot be read.
 pub fn read(path: &Path) -> Result<History, StoreError> {
     let store = Store::read(path)?;
     if !store.has_tables()? {
@@ -71,7 +71,7 @@ pub fn read(path: &Path) -> Result<History, StoreError> {
     }
     let mut tree = store.tree()?;
     let all = store.checkpoints(u64::MAX)?;
-    // Where it was when the file was last written.
+    // The cursor at the time of the last write.
     if let Some(newest) = all.first().and_then(|id| store.checkpoint(*id).ok()) {
         tree.cursor = newest.node;
     }

@@ -21,9 +21,9 @@ use crate::session::VERSION;
 const KEPT: usize = 2;
 /// Bytes that are freed in one transaction: the journal waits for no longer than that takes.
 const CHUNK: u64 = 8 << 20;
-/// What a place costs there beside its bytes.
+/// Cost of a place there beside its bytes.
 const PLACE: u64 = 256 << 10;
-/// A jump that was sent and has not come back: its tick is not known yet.
+/// A jump in progress, whose tick is not known yet.
 const UNDER_WAY: i64 = i64::MAX;
 
 /// The pages and levels that a jump names.
@@ -53,18 +53,19 @@ impl HighestNumbers {
     }
 }
 
-/// What went.
+/// Counts of removed places and freed bytes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Freed {
     pub places: u64,
     pub bytes: u64,
 }
 
-/// Lets the oldest go until the history takes `most` bytes, or no more can go. `had`: what it takes
-/// now, see [`Store::total`]. The second answer: what it takes afterwards.
+/// Removes the oldest places until the history is at most `most` bytes, or no more can be removed.
+/// `had`: its current size, see [`Store::total`]. The second result is its new size.
 ///
 /// # Errors
-/// Where the file cannot be written; what was done so far is done, and the file is whole.
+/// Returns an error if the file cannot be written. The removals made so far remain, and the file is
+/// consistent.
 pub fn bound(
     store: &Store,
     tree: &mut Tree,
@@ -196,7 +197,7 @@ impl<'a> RetentionRun<'a> {
             return Ok(());
         };
         let changes = tree.versions(next.id).into_iter().map(|(page, v)| (page, v, v)).collect();
-        // It takes over the list of objects, if it has none of its own.
+        // It inherits the list of objects if it has none.
         let scene = tree.scene_at(next.id).cloned();
         let first = Node { parent: None, changes, scene, ..next };
         for name in named(&first) {

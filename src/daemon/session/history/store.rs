@@ -88,21 +88,21 @@ pub enum StoreError {
     Damaged(String),
 }
 
-/// A state of the world, as it lies in the file.
+/// A state of the world, as stored in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Checkpoint {
     pub tick: u64,
     pub node: u64,
     pub rest: ObjectState,
     pub core: Vec<u8>,
-    /// The sides: thing, picture, levels.
+    /// The sides: held object, picture, levels.
     pub sides: [Option<u64>; 3],
     pub steps: (u32, u32),
-    /// The layout that `core` is in; stands in a column of its own.
+    /// The layout of `core`, stored in a separate column.
     #[serde(skip)]
     pub layout: u32,
-    /// The hash of the live sculpture, [`SceneView::page_hash`]; stands in a table of its own.
-    /// `None` in files from before it was written.
+    /// The hash of the live sculpture, [`SceneView::page_hash`], stored in a separate table. `None`
+    /// in files written by earlier versions.
     ///
     /// [`SceneView::page_hash`]: sculptd_engine::scene::SceneView::page_hash
     #[serde(skip)]
@@ -117,12 +117,12 @@ struct StoredRow {
 }
 
 impl StoredRow {
-    /// `None`: the bytes are not those that were written.
+    /// Decodes the value; `None` if the bytes have changed.
     fn decode<T: DeserializeOwned>(&self) -> Option<T> {
         self.decode_with_rest().map(|(value, _)| value)
     }
 
-    /// The value, and the bytes behind it.
+    /// Decodes the value, and returns the bytes after it.
     fn decode_with_rest<T: DeserializeOwned>(&self) -> Option<(T, &[u8])> {
         let counts = field_counts(self.layout)?;
         if crc32fast::hash(&self.data) != self.crc {
@@ -179,10 +179,10 @@ impl Store {
         Ok(())
     }
 
-    /// Whether there is any history.
+    /// Returns true if the file contains a history.
     ///
     /// # Errors
-    /// Where that cannot be read.
+    /// Returns an error if the schema cannot be read.
     pub fn has_tables(&self) -> Result<bool, StoreError> {
         self.has_table("node")
     }
@@ -218,11 +218,11 @@ impl Store {
         row.optional()?.ok_or_else(|| StoreError::Damaged(format!("{table} {id}")))
     }
 
-    /// Reads every row, and says what is damaged: how many rows of which table, or the table that
-    /// cannot be read to its end.
+    /// Reads every row and returns a description of the damage: the number of bad rows of each
+    /// table, or the table that cannot be read completely.
     ///
     /// # Errors
-    /// Where nothing can be read.
+    /// Returns an error if nothing can be read.
     pub fn check(&self) -> Result<Option<String>, StoreError> {
         if !self.has_tables()? {
             return Ok(None);

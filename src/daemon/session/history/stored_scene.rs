@@ -1,8 +1,8 @@
 //! The list of objects at a node of the history.
 //!
-//! A node has one where the list differs from that of the node before it: an object was added,
-//! removed, set, or made active. Of the active object the pages stand in the nodes themselves; of
-//! the others, which no stroke reaches, the list names them all.
+//! A node has a list if it differs from that of the previous node: an object was added, removed,
+//! changed, or made active. The nodes themselves contain the active object's pages. The list names
+//! all pages of the other objects, which no stroke reaches.
 
 use std::sync::Arc;
 
@@ -71,7 +71,7 @@ impl StoredScene {
         self.objects.iter().find(|o| o.id == id)
     }
 
-    /// Whether both are the same state: numbers that only ever run up are left out.
+    /// Returns true if both are the same state, ignoring numbers that only increase.
     fn same_as(&self, other: &StoredScene) -> bool {
         let one = |a: &StoredObject, b: &StoredObject| {
             a.id == b.id
@@ -88,7 +88,8 @@ impl StoredScene {
     }
 }
 
-/// Whether two nodes have the same objects; without a list there is one, as a session begins.
+/// Returns true if two nodes have the same objects. No list means one object, as at the start of a
+/// session.
 pub fn same_scene(a: Option<&Arc<StoredScene>>, b: Option<&Arc<StoredScene>>) -> bool {
     match (a, b) {
         (None, None) => true,
@@ -97,12 +98,12 @@ pub fn same_scene(a: Option<&Arc<StoredScene>>, b: Option<&Arc<StoredScene>>) ->
     }
 }
 
-/// What a page's version is called.
+/// Returns the version of a page, by which it is named.
 pub fn version(page: &Page) -> u64 {
     if page.own() == 0 && page.revision() == 0 { NOTHING } else { page.revision() }
 }
 
-/// Every page of a clay and its version.
+/// Returns every page of a clay with its version.
 pub fn versions_of(clay: &Snapshot) -> Vec<(u32, u64)> {
     (0u32..).zip(clay.pages()).map(|(i, page)| (i, version(page))).collect()
 }

@@ -13,12 +13,12 @@ const DOTS: usize = 40_000;
 /// Seen from a little to the right and above.
 const YAW: f32 = 0.5;
 const PITCH: f32 = -0.35;
-/// How much of the half diagonal of its box a work reaches from its middle: a ball 0.58, a cube
-/// seen so 0.81.
+/// Greatest extent of the sculpture from its middle, as a share of half the box's diagonal: a ball
+/// reaches 0.58, a cube in this view 0.81.
 const REACH: f32 = 0.82;
 const PAPER: [u8; 3] = [38, 40, 43];
 
-/// As PNG; `None` where there is nothing to see.
+/// Returns a PNG; `None` if nothing is visible.
 pub fn png(work: &Snapshot) -> Option<Vec<u8>> {
     let (lo, hi) = work.bounds();
     let (middle, size) = ((lo + hi) * 0.5, (hi - lo).length() * 0.5);

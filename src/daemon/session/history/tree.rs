@@ -116,12 +116,12 @@ impl Tree {
         self.children.get(&id).map_or(&[], Vec::as_slice)
     }
 
-    /// Where undo leads from here; `None` at the beginning.
+    /// Returns the target of an undo; `None` at the beginning.
     pub fn before(&self) -> Option<u64> {
         self.here()?.parent
     }
 
-    /// Where redo leads from here.
+    /// Returns the target of a redo.
     pub fn after(&self) -> Option<u64> {
         self.latest.get(&self.cursor).copied()
     }

@@ -85,7 +85,7 @@ fn ended(bytes: &[u8], what: &str) -> ParseError {
         .into()
 }
 
-/// Where an element of rows of one length ends.
+/// Returns the end of an element whose rows have one length.
 fn fixed_end(bytes: &[u8], at: usize, element: &PlyElement) -> Result<usize, ParseError> {
     element
         .least()

@@ -53,7 +53,7 @@ impl PlyScalar {
         !matches!(self, PlyScalar::F32 | PlyScalar::F64)
     }
 
-    /// What a colour of this type is multiplied by to fill a byte.
+    /// Returns the factor that scales a colour of this type to a byte.
     pub(super) fn colour_scale(self) -> f64 {
         match self {
             PlyScalar::I16 | PlyScalar::U16 => 255.0 / 65535.0,
@@ -97,7 +97,7 @@ impl PlyElement {
         self.properties.iter().all(|p| p.list.is_none())
     }
 
-    /// Which property holds the corners.
+    /// Returns the index of the property that holds the corners.
     pub(super) fn corners(&self) -> Option<usize> {
         let named = |n: &str| self.properties.iter().position(|p| p.name == n && p.list.is_some());
         named("vertex_indices").or_else(|| named("vertex_index"))
@@ -126,7 +126,7 @@ impl PlyElement {
 pub(super) struct PlyHeader {
     pub encoding: PlyEncoding,
     pub elements: Vec<PlyElement>,
-    /// Where the data starts.
+    /// The start of the data.
     pub data: usize,
     /// The line on which text data starts.
     pub data_line: u64,

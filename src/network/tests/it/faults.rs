@@ -2,7 +2,7 @@
 
 use crate::simulated::{BAD, Faults, GOOD, Random, Simulation, ball, undo};
 
-/// Long runs: seconds of strokes and kills, in the place of the short ones of every test run.
+/// Returns the length of a long run, in seconds, or the short default of every test run.
 fn long(name: &str, short: u64) -> u64 {
     std::env::var(name).ok().and_then(|t| t.parse().ok()).unwrap_or(short)
 }
@@ -104,13 +104,13 @@ fn a_host_that_dies_is_followed_within_two_seconds_and_nothing_acknowledged_is_l
         }
         s.run(4.0, |_| true);
         s.run(4.0, |_| false);
-        // Who is alone has nobody that could have its input too.
+        // With two people, no third replica could have the survivor's input too.
         if people > 2 {
             s.verify()
         } else {
             s.verify_worlds()
         }
-        // The old host comes back under its own name, as a replica.
+        // The old host returns under its old name, as a replica.
         let key = s.keyring.0[0].clone();
         let name = format!("person {host}");
         let back = s.join(&name, sculptd_network::wire::frame::Role::Sculptor, key);
@@ -142,7 +142,7 @@ fn what_each_part_of_a_split_network_acknowledged_is_in_the_one_sculpture() {
     s.replicas[2..].iter_mut().for_each(|r| r.part = 1);
     s.run(8.0, |_| true);
     assert_eq!(s.replicas.iter().filter(|r| r.station.hosts()).count(), 2, "each part goes on");
-    // Each is told that another replica has what it gave: the log of one part is given up though.
+    // Each learns that another replica has its input, although the log of one part is given up.
     for (i, r) in s.replicas.iter().enumerate() {
         let (outbox, notes) = (r.station.outbox(), r.notes.join("\n"));
         assert!(outbox.acknowledged() + 60 > outbox.last(), "replica {i}: {notes}");

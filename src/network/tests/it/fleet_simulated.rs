@@ -1,8 +1,8 @@
-//! A fleet on a simulated network: installations that visitors, errors, crashes and partitions
-//! befall, all from a seed, and the staff's end.
+//! A fleet on a simulated network: installations with random visitors, errors, crashes and
+//! partitions, all from a seed, and the staff's end.
 //!
-//! What is checked: within ten seconds of every change the list says what is so, and it never says
-//! what has not been so within the last ten seconds.
+//! The test checks that the list shows every change within ten seconds, and never shows a state
+//! that did not hold within the last ten seconds.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -24,14 +24,14 @@ const STEP_US: u64 = 250_000;
 const RIGHT_US: u64 = 10_000_000;
 pub const S: u64 = 1_000_000;
 pub const HOUR: u64 = 3600 * S;
-/// How often each of these befalls an installation, on average.
+/// Mean interval of each event at an installation.
 const VISIT_EVERY_US: f64 = 1200e6;
 const ERROR_EVERY_US: f64 = 86_400e6;
 const CRASH_EVERY_US: f64 = 4.0 * 86_400e6;
-/// How often a part of the network is cut off.
+/// Mean interval of network partitions.
 const CUT_EVERY_US: f64 = 900e6;
 
-/// What an installation has on its disk, and what was done to it.
+/// Disk of an installation, with its history.
 #[derive(Debug, Clone, Default)]
 pub struct Disk {
     pub text: String,
@@ -105,7 +105,7 @@ impl Disk {
     }
 }
 
-/// What the list has to say.
+/// The state that the list must show.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     here: bool,
@@ -125,7 +125,7 @@ pub struct Unit {
     pub starts_us: Option<u64>,
     pub publish_us: u64,
     pub runs: u64,
-    /// What was so, and since when; the last is so now.
+    /// States and their start times; the last one is current.
     pub truths: VecDeque<(u64, Truth)>,
     pub check_us: Option<u64>,
 }
@@ -173,7 +173,7 @@ pub struct Fleet {
     pub cut_us: u64,
     pub heals: BTreeMap<u64, Vec<usize>>,
     pub troubles: bool,
-    /// What was counted: changes of the truth, publications that came, cuts, crashes.
+    /// Counts: changes of the truth, received publications, cuts, crashes.
     pub counts: [u64; 4],
 }
 
@@ -282,7 +282,7 @@ impl Fleet {
         unit.measured.settings.trial = unit.disk.on_trial.is_some();
         let may_us = (part.due_us() + SPACING_US).saturating_sub(PERIOD_US);
         let state = part.advance(unit.measured.clone(), &mut unit.disk, now_us);
-        // What changes soon after a publication waits a little.
+        // A change soon after a publication waits a little.
         let waits = state.is_none() && now_us < may_us;
         let next_us = if waits { may_us } else { part.due_us().max(now_us + 1) };
         let restarts = part.restarts();
@@ -334,7 +334,7 @@ impl Fleet {
         let runs = self.units[i].part.is_some();
         match befalls {
             Befalls::Publish => {
-                // Only the newest of those that were planned.
+                // Only the newest of the planned publications.
                 if self.units[i].publish_us == at_us {
                     self.publish(i);
                 }
@@ -384,7 +384,7 @@ impl Fleet {
             Befalls::Check => {
                 self.units[i].check_us = None;
                 self.check(i);
-                // What has changed since is checked in its turn.
+                // A later change is checked in its turn.
                 let last = self.units[i].truths.back().map_or(0, |(at, _)| *at);
                 if last + RIGHT_US > self.now_us {
                     self.units[i].check_us = Some(last + RIGHT_US);

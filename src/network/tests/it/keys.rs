@@ -1,4 +1,4 @@
-//! Who is not let in, and what those who are may not do.
+//! Refused entries, and the limits of admitted members.
 
 use crate::simulated::{GOOD, Random, Simulation};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
@@ -127,7 +127,7 @@ fn who_holds_a_key_and_floods_is_bounded_and_the_others_go_on() {
     let made = s.replicas[0].station.log().last() - frames;
     assert!(made as f64 > seconds * 115.0, "{made} frames in {seconds} s");
     assert!(given(&s, other) - others > 20, "the other sculpts");
-    // What it gives is acknowledged as fast as ever: a quarter of a second waits, not more.
+    // Its input is acknowledged as fast as ever: a quarter of a second waits, not more.
     assert!(worst < 40, "{worst} batches of the other waited");
     let taken = applied(&s, person);
     let told = s.replicas[0].notes.join("\n");

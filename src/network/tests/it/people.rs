@@ -1,9 +1,9 @@
-//! Who is here, and undo of one's own, in every replica alike.
+//! The people present, and undo of a person's steps, the same in every replica.
 
 use crate::simulated::{BAD, Faults, GOOD, Random, Simulation};
 use sculptd_engine::command::Command;
 
-/// The names of those who are here, as a replica's log tells it.
+/// Returns the names of the people present, from a replica's log.
 fn here(s: &Simulation, replica: usize) -> Vec<String> {
     s.replicas[replica].station.log().here().map(|a| a.name.clone()).collect()
 }

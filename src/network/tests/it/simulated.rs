@@ -50,7 +50,7 @@ impl Random {
     }
 }
 
-/// What a network does to datagrams.
+/// Faults of a network's datagrams.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Faults {
     pub delay_us: u64,
@@ -73,7 +73,7 @@ pub struct Replica {
     /// Parts of its checkpoints that another thread would still be making.
     making: VecDeque<(u64, Vec<u8>, bool)>,
     restoring: Restoring,
-    /// Shows the own strokes before they are ordered; `None`: without.
+    /// Shows the local strokes before they are ordered; `None`: without.
     pub echo: Option<LocalEcho>,
     /// Ticks with a tip down in which the world that was shown moved, and in which it did not.
     pub shown: (u64, u64),
@@ -189,7 +189,7 @@ impl Simulation {
         self.replicas.iter().position(|r| r.alive && !r.cut_off && r.station.hosts())
     }
 
-    /// A stroke and a pause after the other, of each replica on its own part of the ball.
+    /// Draws one stroke and pause after the other, for each replica on a separate part of the ball.
     fn strokes(&mut self, i: usize) {
         let (now, stroke_s) = (self.now_us as f64 / 1e6 + i as f64 * 0.37, self.stroke_s);
         let replica = &mut self.replicas[i];

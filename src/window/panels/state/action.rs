@@ -82,12 +82,12 @@ pub enum Action {
     Lesson,
 }
 
-/// What an action is called in English, its keys, and words that find it.
+/// English name of an action, its keys, and its search terms.
 #[derive(Debug, Clone)]
 pub struct ActionEntry {
     pub action: Action,
     pub name: Cow<'static, str>,
-    /// Of the program's own set ([`super::key_map::KeyMap`] knows those that are in force).
+    /// Default keys ([`super::key_map::KeyMap`] has those in force).
     pub keys: Option<KeyCombination>,
     also: Cow<'static, str>,
 }
@@ -144,7 +144,7 @@ fn also_of_page(tab: Tab) -> &'static str {
     }
 }
 
-/// What a button says, in the language of this thread.
+/// Returns the label of a brush's button, in the language of this thread.
 pub fn brush_title(kind: BrushKind) -> String {
     text_or(&format!("kind-{}", kind.name()), &english_title(kind))
 }
@@ -264,7 +264,7 @@ impl Action {
         all.iter().find(|e| e.action == self).unwrap_or(&all[0])
     }
 
-    /// What it is called, in the language of this thread.
+    /// Returns its name, in the language of this thread.
     pub fn title(self) -> String {
         match self {
             Action::Brush(kind) => tr!("action-brush", brush = brush_title(kind)),

@@ -1,25 +1,25 @@
-//! What a person likes of brushes, kept between runs: favourites, colours, how a radius is told.
+//! Brush preferences kept between runs: favourites, colours, the unit of the radius.
 
 use serde::{Deserialize, Serialize};
 
 /// Favourites, and colours, that are kept at most.
 const MOST: usize = 24;
 
-/// What a person likes of brushes.
+/// Brush preferences of a person.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BrushPreferences {
-    /// Names of brushes, the program's and a person's own, as they were marked one after another.
+    /// Names of favourite brushes, built-in and custom, in the order in which they were marked.
     pub favourites: Vec<String>,
     /// Colours to come back to, RGBA, sRGB, as they were kept one after another.
     pub colours: Vec<[u8; 4]>,
-    /// The radius is told in pixels, and the brush keeps its size on the screen while the view is
-    /// zoomed. Off: it is told in the scene's unit, and keeps its size on the object.
+    /// True if the radius is in pixels: the brush keeps its size on the screen while the view is
+    /// zoomed. Off: the radius is in the scene's unit, and keeps its size on the object.
     pub radius_in_pixels: bool,
 }
 
 impl BrushPreferences {
-    /// Whether a brush is a favourite.
+    /// Returns true if a brush is a favourite.
     pub fn is_favourite(&self, name: &str) -> bool {
         self.favourites.iter().any(|f| f == name)
     }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What a file is chosen for.
+/// Purpose of choosing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilePurpose {
     Open,

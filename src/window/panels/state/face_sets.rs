@@ -13,7 +13,7 @@ pub struct FaceSetPanel {
     had: Option<HadSets>,
     /// The name that is being typed for a set.
     pub renaming: Option<(u16, String)>,
-    /// Where creases and turns part sets, degrees.
+    /// Angle of creases and turns that separate sets, in degrees.
     pub degrees: f32,
     /// Of what is extracted, as a share of the object's longest side; below 0 inwards.
     pub thickness: f64,
@@ -55,7 +55,7 @@ impl FaceSetPanel {
         was.is_some_and(|w| w.active == active && w.clay != clay && w.any && !any)
     }
 
-    /// The face sets of the active object; counted anew only where it has changed.
+    /// Returns the face sets of the active object; recounts them only after a change.
     pub fn sets(&mut self, now: &Published) -> &[(u16, u64, u64)] {
         let seen = Some((now.mesh.object_id(), now.mesh.revision()));
         if self.seen != seen {

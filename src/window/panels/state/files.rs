@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What a number in a file stands for, by the message of its name: the object itself is in
+/// Units of a number in a file, each with the message of its name: the object itself is in
 /// millimetres.
 pub const UNITS: [(&str, f64); 4] =
     [("unit-mm", 1.0), ("unit-cm", 0.1), ("unit-m", 0.001), ("unit-inch", 1.0 / 25.4)];
@@ -35,7 +35,7 @@ impl Default for FilesPage {
 }
 
 impl FilesPage {
-    /// What coordinates are multiplied by, and the message of the unit's name.
+    /// Returns the factor of the coordinates, and the message of the unit's name.
     pub fn factor(&self) -> (f64, &'static str) {
         let (name, factor) = UNITS[self.unit.min(UNITS.len() - 1)];
         (self.scale * factor, name)

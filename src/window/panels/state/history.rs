@@ -82,7 +82,7 @@ pub struct HistoryVersions {
     pub pictures: BTreeMap<u64, egui::TextureHandle>,
     /// Versions whose pictures are on the screen.
     pub visible: Vec<u64>,
-    /// Where a drag asked to go last.
+    /// Version that a drag requested last.
     pub(in crate::panels) asked: Option<u64>,
     /// The version that was last scrolled to.
     pub(in crate::panels) shown: Option<u64>,
@@ -138,7 +138,7 @@ impl HistoryVersions {
 }
 
 impl HistoryVersions {
-    /// Whether there is a version before the present one, and one that redo leads to.
+    /// Returns whether a version precedes the present one, and whether redo leads to one.
     pub fn ends(&self) -> (bool, bool) {
         let Some(here) = self.rows.iter().position(|r| r.here) else { return (false, false) };
         (self.rows[here].parent.is_some(), self.line.last().is_some_and(|last| *last > here))

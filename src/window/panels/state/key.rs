@@ -39,17 +39,17 @@ impl KeyCombination {
         held.collect::<String>() + self.key.symbol_or_name()
     }
 
-    /// Whether these modifiers are held, for a key that is known to be the right one. A plus sign
-    /// lies on the shifted half of its key on many keyboards.
+    /// Returns true if these modifiers are held, for a key already known to match. A plus sign is
+    /// the shifted half of its key on many keyboards.
     fn is_held(&self, modifiers: egui::Modifiers) -> bool {
         (modifiers.command || modifiers.ctrl) == self.ctrl
             && modifiers.alt == self.alt
             && (modifiers.shift == self.shift || self.key == Key::Plus)
     }
 
-    /// Whether the press of `key` with `modifiers` is meant.
+    /// Returns true if `key` with `modifiers` is this combination.
     pub fn is_pressed(&self, key: Key, modifiers: egui::Modifiers) -> bool {
-        // Some keyboards say "=" where "+" is meant.
+        // Some keyboards report "=" for "+".
         let plus = key == Key::Equals && self.key == Key::Plus && self.ctrl;
         (key == self.key || plus) && self.is_held(modifiers)
     }

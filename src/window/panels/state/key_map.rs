@@ -1,9 +1,9 @@
-//! Which key does what: a set that a person knows from elsewhere, and what they changed of it.
+//! The action of each key: a set known from another program, and the person's changes to it.
 //!
 //! Laws kept here:
-//! * A press does one thing. Where two actions have the same keys, the one whose keys the person
-//!   chose is done, and of two such ones the first of the table.
-//! * What cannot be read in a file of preferences leaves the set's own keys, and is told.
+//! * A press does one thing. If two actions have the same keys, the one whose keys the person chose
+//!   wins, and of two such ones the first of the table.
+//! * An unreadable entry in a file of preferences leaves the set's keys, and is reported.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ impl KeySet {
     pub const ALL: [(KeySet, &str); 3] =
         [(KeySet::Sculptd, "sculptd"), (KeySet::Blender, "Blender"), (KeySet::Zbrush, "ZBrush")];
 
-    /// What differs from the table of actions. `None`: the action has no key.
+    /// Returns the differences from the table of actions. `None`: the action has no key.
     fn changes(self) -> &'static [(Action, Option<KeyCombination>)] {
         match self {
             KeySet::Sculptd => &[],
@@ -100,7 +100,7 @@ const ZBRUSH: &[(Action, Option<KeyCombination>)] = &[
     (Action::Distance, None),
 ];
 
-/// What a person has changed, as the file of preferences keeps it.
+/// The person's changes, as the file of preferences keeps them.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KeySettings {
@@ -134,11 +134,11 @@ pub struct Binding {
 /// The keys of every action, resolved.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyMap {
-    /// What it was made of.
+    /// Settings it was built from.
     settings: KeySettings,
     /// In the order of the table of actions.
     bindings: Vec<Binding>,
-    /// What could not be read of the settings.
+    /// Settings that could not be read.
     pub wrong: Vec<String>,
 }
 
@@ -175,7 +175,7 @@ impl KeyMap {
         map
     }
 
-    /// Whether it is what these settings say.
+    /// Returns true if it was built from these settings.
     pub fn is_of(&self, settings: &KeySettings) -> bool {
         self.settings == *settings
     }
@@ -201,8 +201,8 @@ impl KeyMap {
         self.bindings.iter().filter(same).map(|b| b.action)
     }
 
-    /// What a press does. Keyboards of other alphabets are known by the place of the key, where
-    /// what is printed on it means nothing.
+    /// Returns the action of a press. On keyboards of other alphabets the physical key decides, if
+    /// its printed character has no action.
     pub fn pressed(&self, press: &Press) -> Option<Action> {
         let by = |key: Key| {
             let is = |b: &&Binding| b.keys.is_some_and(|k| k.is_pressed(key, press.modifiers));
@@ -310,7 +310,8 @@ mod tests {
         let cyrillic =
             Press { key: Key::Space, physical: Some(Key::W), modifiers: egui::Modifiers::NONE };
         assert_eq!(map.pressed(&cyrillic), Some(Action::Wireframe));
-        // What is printed on a key goes before its place: "Z" of a French keyboard lies on "W".
+        // The printed character of a key wins over its position: "Z" of a French keyboard is at
+        // "W".
         let ctrl = egui::Modifiers::CTRL | egui::Modifiers::COMMAND;
         let french = Press { key: Key::Z, physical: Some(Key::W), modifiers: ctrl };
         assert_eq!(map.pressed(&french), Some(Action::Undo));

@@ -1,11 +1,11 @@
 //! The state of an installation's screen.
 
-/// What the person at the screen has chosen; forgotten with each visit.
+/// Choices of the person at the screen; reset with each visit.
 #[derive(Debug, Default)]
 pub struct KioskPad {
     /// Index into the screen's languages.
     pub language: usize,
-    /// What staff has typed so far, while the keypad is open.
+    /// Digits that staff has typed so far, while the keypad is open.
     pub typed: Option<String>,
     pub(in crate::panels) visits: u64,
     /// Buttons of the last frame that can be pressed.

@@ -4,7 +4,7 @@ use sculptd_clay::LayerId;
 use sculptd_daemon::Published;
 use sculptd_engine::scene::ObjectId;
 
-/// What a person has begun in the panel of layers and not finished.
+/// Unfinished input of the layer panel.
 #[derive(Debug, Default)]
 pub struct LayerPanel {
     /// The name that is being typed.
@@ -26,8 +26,8 @@ struct SeenLayers {
 }
 
 impl LayerPanel {
-    /// How many layers the active object had, where since this was last asked other clay without
-    /// any has taken the place of its own, or a new object that of the whole object.
+    /// Returns the former number of layers if the active object has lost them since the last call.
+    /// It loses them when clay without layers, or a new object, replaces its clay.
     pub fn baked(&mut self, now: &Published) -> Option<usize> {
         let active = now.scene.active()?.id;
         let count = now.mesh.layers().map_or(0, |s| s.layers.len());

@@ -1,7 +1,7 @@
 //! What a person's own pictures offer for the look of the clay: lit balls, surroundings,
 //! references.
 
-/// What was found in the person's folders when the page was opened last.
+/// Files found in the person's folders when the page was last opened.
 #[derive(Default)]
 pub struct LightPage {
     /// Names of the files of lit balls, with small pictures.
@@ -31,9 +31,9 @@ impl std::fmt::Debug for LightPage {
 pub struct Reference {
     /// The file's name in the folder of references; empty: none is shown.
     pub file: String,
-    /// It stands behind the clay; else in a window of its own beside it.
+    /// True if it is shown behind the clay; false shows it in a separate window.
     pub behind: bool,
-    /// How dense it is, 0 none to 1.
+    /// Opacity, 0 none to 1.
     pub opacity: f32,
 }
 

@@ -1,9 +1,9 @@
 //! What the panel of masks holds between frames.
 
-/// How the next mask is measured.
+/// Parameters of the next measured mask.
 #[derive(Debug, Clone, Copy)]
 pub struct MaskPanel {
-    /// What counts as thin, as a share of the object's longest side.
+    /// Thickness that counts as thin, as a share of the object's longest side.
     pub thin: f32,
 }
 

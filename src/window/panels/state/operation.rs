@@ -5,7 +5,7 @@ use egui::Pos2;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_engine::hand::MenuItem;
 
-/// What a Boolean would make, shown while the held object is carried.
+/// Preview of a Boolean while the held object is carried.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BooleanTrial {
     pub choice: Option<MenuItem>,
@@ -38,7 +38,7 @@ pub enum ModalSetting {
 #[derive(Debug, Clone, Copy)]
 pub struct Modal {
     pub what: ModalSetting,
-    /// Where the pointer was; the ring stays there. Points.
+    /// Position of the pointer at the start, in points; the ring stays there.
     pub from: Pos2,
     pub before: BrushSettings,
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sculptd_engine::scene::{ObjectId, ObjectTransform, Primitive};
 use sculptd_geometry::boolean::Operation;
 
-/// What a person has begun in the outliner and not finished.
+/// Unfinished input of the outliner.
 #[derive(Debug, Default)]
 pub struct Outliner {
     /// The name that is being typed.

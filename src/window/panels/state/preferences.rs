@@ -61,7 +61,8 @@ impl HintsFollowed {
     }
 }
 
-/// What two fingers do when they move together; three do the other. Pinched, two zoom.
+/// Effect of two fingers that move together; three fingers have the other one. A pinch of two
+/// zooms.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TwoFingers {
@@ -90,13 +91,13 @@ pub struct Preferences {
     pub light: bool,
     /// Four samples a pixel, where no graphics card draws: a card always does.
     pub smooth_edges: bool,
-    /// The speed of a pointer without pressure stands in for it.
+    /// True if a pointer without pressure derives it from its speed.
     pub speed_is_pressure: bool,
     /// A stroke of a tablet's pen is shown where the pen will be when the frame is seen.
     pub lead_strokes: bool,
-    /// What the pens and hands do to the clay is heard.
+    /// True if strokes of pens and hands make a sound.
     pub sound: bool,
-    /// What two fingers on a touch screen do when they move together.
+    /// Effect of two fingers that move together on a touch screen.
     pub two_fingers: TwoFingers,
     #[serde(alias = "done")]
     pub hints: HintsFollowed,

@@ -2,20 +2,20 @@
 
 use egui::Pos2;
 
-/// How a region is drawn.
+/// Shape with which a region is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RegionShape {
     /// Freely, while the button is held.
     Lasso,
     /// From corner to corner.
     Box,
-    /// What lies to the left of a line.
+    /// The left side of a line.
     Line,
     /// Corner by corner, a press each.
     Polyline,
 }
 
-/// What is done with what is seen in a region.
+/// Purpose of a drawn region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RegionPurpose {
     Mask,
@@ -49,8 +49,8 @@ impl RegionPurpose {
 pub struct RegionDrawing {
     pub shape: RegionShape,
     pub purpose: RegionPurpose,
-    /// Where the pointer was, points: of a lasso its path, of a polyline its corners, else where
-    /// the drag began. Empty before it begins.
+    /// Positions of the pointer, in points: the path of a lasso, the corners of a polyline, else
+    /// the start of the drag. Empty before it begins.
     pub points: Vec<Pos2>,
 }
 
@@ -59,13 +59,13 @@ pub struct RegionDrawing {
 pub struct RegionTool {
     /// While it is there the pointer draws and does not sculpt.
     pub drawing: Option<RegionDrawing>,
-    /// What the next one begins with, if only its purpose is chosen.
+    /// Shape of the next drawing if only its purpose is chosen.
     pub shape: RegionShape,
-    /// What the next one begins with, if only its shape is chosen.
+    /// Purpose of the next drawing if only its shape is chosen.
     pub purpose: RegionPurpose,
     /// Only what faces the eye.
     pub front_faces: bool,
-    /// How long edges are to be where triangles get one size, times the usual length.
+    /// Target edge length for triangles of one size, times the usual length.
     pub edge: f32,
 }
 

@@ -20,7 +20,7 @@ use super::action::Action;
 use super::outliner::Pairing;
 use super::views::ViewKind;
 
-/// What a panel asks for.
+/// Request of a panel.
 #[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant)] // A few a frame, on the stack.
 pub enum UiRequest {
@@ -43,16 +43,15 @@ pub enum UiRequest {
     Join(MenuItem),
     /// An object of a primitive is added.
     AddPrimitive(Primitive),
-    /// What the hands hold becomes an object of the scene.
+    /// Adds the held object to the scene.
     AddHeld,
-    /// A primitive gets other numbers.
+    /// Changes the numbers of a primitive.
     Reshape(ObjectId, Primitive),
-    /// A Boolean of the active object and another; the result takes the place of both, or follows
-    /// them.
+    /// A Boolean of the active object and another; the result replaces both, or follows them.
     BooleanWith(Pairing),
     /// A mirrored twin of an object, in a plane through the origin: 0 of x, 1 of y, 2 of z.
     Mirror(ObjectId, usize),
-    /// What is seen in this part of the view is cut off.
+    /// Cuts off this part of the view.
     Trim(Part),
     /// The object one level finer, or coarser.
     Level(bool),
@@ -62,7 +61,7 @@ pub enum UiRequest {
     MakeSets(Partition),
     /// Triangles of a part of the active object get one size.
     RemeshLocal(LocalRemesh),
-    /// What is measured of the active object is masked.
+    /// Masks the measured vertices of the active object.
     MaskMeasured(MaskMeasure),
     /// A part of the active object becomes a new one of this thickness, in the unit of the scene.
     Extract(FaceSetPart, f64),
@@ -76,9 +75,9 @@ pub enum UiRequest {
     Outline(PathBuf),
     /// The loop waits for a control of a tablet, which then does nothing, or no longer does.
     TabletListen(bool),
-    /// What a control of a tablet does; `None`: as usual.
+    /// Binds a control of a tablet; `None`: its default.
     TabletBinding(Control, Option<Binding>),
-    /// The brush in hand takes the colour of the clay at this place of the window, points.
+    /// Picks the colour of the clay at this place of the window, in points, for the active brush.
     SampleColour(egui::Pos2),
     /// The brush in hand becomes one of the person's own.
     SaveBrush {

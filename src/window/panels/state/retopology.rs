@@ -1,4 +1,4 @@
-//! What is chosen for quads and for decimation, and the change that is under way.
+//! Settings for quads and for decimation, and the operation under way.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub struct Retopology {
     pub creases: bool,
     /// Finer levels on top of the quads.
     pub levels: u32,
-    /// How many of the triangles decimation leaves, per cent.
+    /// Share of the triangles that decimation keeps, in per cent.
     pub share: f32,
     /// Quads or a decimation under way: how far it is, and its end.
     pub under_way: Option<Arc<Job>>,

@@ -13,17 +13,17 @@ const SAME: f32 = 1e-4;
 pub struct ScreenRadius {
     /// World units a pixel where the surface is seen; 0: not known yet.
     scale: f32,
-    /// What that was measured with last: the camera, and how many pixels the view is high.
+    /// Inputs of the last measurement: the camera, and the height of the view in pixels.
     measured: Option<(Camera, f32, f32)>,
     /// The radius that is kept, pixels.
     pixels: f32,
-    /// When a radius was asked for, seconds of the context's time.
+    /// Time of the last radius request, in seconds of the context's time.
     asked: Option<f64>,
 }
 
 impl ScreenRadius {
-    /// World units a pixel: as they were measured last, or anew where the camera or the height of
-    /// the view, pixels, has changed.
+    /// Returns the world units per pixel. Measures them again if the camera or the height of the
+    /// view, in pixels, has changed.
     pub fn scale(&mut self, camera: &Camera, pixels: f32, measure: impl FnOnce() -> f32) -> f32 {
         match self.measured {
             Some((of, high, scale)) if of == *camera && high == pixels => scale,

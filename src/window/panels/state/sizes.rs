@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sculptd_geometry::projection::PlaneRegion;
 
-/// What was measured of one state of the object; lengths in the mesh's unit.
+/// Measurements of one state of the object; lengths in the mesh's unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     pub revision: u64,
@@ -12,23 +12,23 @@ pub struct Measured {
     pub dimensions: [f64; 3],
     /// Areas of the shadows along x, y and z.
     pub projected: [f64; 3],
-    /// What was looked along, and the shadow that way.
+    /// Direction of view of the shadow.
     pub direction: DVec3,
     pub shadow: f64,
     pub outline: Vec<PlaneRegion>,
 }
 
-/// What distances are to.
+/// Reference of distances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DistanceTarget {
-    /// The object as it was opened, or as it was when the person said so.
+    /// The object as it was opened, or as it was when the person chose to keep it.
     #[default]
     Before,
-    /// the held object, where it is.
+    /// The held object, at its current place.
     HeldObject,
 }
 
-/// What the distance map says.
+/// Summary of the distance map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DistanceSummary {
     pub min: f32,

@@ -2,7 +2,7 @@
 
 use crate::language::tr;
 
-/// Which page of the right panel is open.
+/// Open page of the right panel.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
 )]
@@ -45,12 +45,12 @@ impl Tab {
         }
     }
 
-    /// What its button says.
+    /// Returns the label of its button.
     pub fn title(self) -> String {
         tr!(self.id())
     }
 
-    /// What it is about.
+    /// Returns its description.
     pub fn about(self) -> String {
         tr!(&format!("{}.about", self.id()))
     }

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use sculptd_daemon::tablet_controls::WorkedControl;
 use sculptd_devices::pad_actions::{ActionTable, Control};
 
-/// What panels see of the controls of tablets.
+/// Controls of tablets, as panels see them.
 #[derive(Debug, Clone)]
 pub struct TabletKeys {
-    /// What the person has bound.
+    /// Bindings of the person.
     pub own: Arc<ActionTable>,
     /// The control that was pressed or turned last.
     pub last: Option<WorkedControl>,
 }
 
-/// What the page of the pens has open.
+/// State of the pens page.
 #[derive(Debug, Default)]
 pub struct TabletKeysPage {
     /// The control whose action is being chosen.

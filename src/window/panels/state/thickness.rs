@@ -10,7 +10,7 @@ pub struct ThinSpot {
     pub thickness: f32,
 }
 
-/// What the map says of the whole object; lengths in the mesh's unit.
+/// Summary of the thickness map of the whole object; lengths in the mesh's unit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ThicknessSummary {
     pub min: f32,

@@ -26,7 +26,7 @@ use super::thickness::WallsPage;
 use crate::look::Look;
 use sculptd_daemon::remesh_job::Wanted;
 
-/// What the person has set on the window: nothing of the world.
+/// Settings of the window; no part of the world.
 #[derive(Debug, Default)]
 pub struct UiState {
     pub look: Look,
@@ -55,16 +55,16 @@ pub struct UiState {
     /// A Boolean is under way.
     pub joining: bool,
     pub trial: BooleanTrial,
-    /// What was begun in the outliner.
+    /// Unfinished input of the outliner.
     pub outliner: Outliner,
-    /// What was begun in the panel of layers.
+    /// Unfinished input of the layer panel.
     pub layers: LayerPanel,
     /// The face sets as they were last counted, and what the next ones are made with.
     pub face_sets: FaceSetPanel,
     pub mask: MaskPanel,
     /// A person's own pictures for the look of the clay.
     pub light: LightPage,
-    /// How fine the next remeshing is.
+    /// Resolution of the next remesh.
     pub remesh: Wanted,
     /// Quads and decimation.
     pub retopology: Retopology,
@@ -89,14 +89,14 @@ pub struct UiState {
 pub struct ShownLanguage {
     /// The code of the one that was last chosen.
     pub(in crate::panels) chosen: Option<String>,
-    /// The computer has no font for it, and English stands in.
+    /// True if the computer has no font for it, and English replaces it.
     pub fontless: bool,
 }
 
 /// The hand that shows a hint over the clay.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LessonHand {
-    /// What it shows, and since when, seconds of the context's time.
+    /// Hint that it shows, and since when, in seconds of the context's time.
     pub shows: Option<(Hint, f64)>,
 }
 

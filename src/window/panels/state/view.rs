@@ -11,7 +11,7 @@ use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
 
-/// What panels see.
+/// Data that panels see.
 #[derive(Debug)]
 pub struct View<'a> {
     pub state: &'a Published,
@@ -19,7 +19,7 @@ pub struct View<'a> {
     pub translations: &'a Translations,
     /// The keys that are in force.
     pub keys: &'a KeyMap,
-    /// What each brush begins with.
+    /// Initial settings of each brush.
     pub presets: &'a sculptd_clay::brush::Presets,
     /// The camera as the window has it: the world's own follows a tick later.
     pub camera: Camera,
@@ -36,9 +36,9 @@ pub struct View<'a> {
     /// Bytes of pages sent to the card with the last frame.
     pub uploaded: u64,
     pub adapter: &'a str,
-    /// What the window measured of itself.
+    /// Measurements of the window's frames.
     pub frame: FrameFigures,
-    /// How long samples took to the screen.
+    /// Latency from a sample to the screen.
     pub latency: PresentLatency,
     /// The demo performs.
     pub demo_runs: bool,
@@ -60,7 +60,7 @@ impl View<'_> {
     }
 }
 
-/// What the window measured of itself.
+/// Measurements of the window's frames.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FrameFigures {
     /// Of the last frames, our own work on the processor, ms: without waiting for the card.

@@ -49,7 +49,7 @@ impl ViewKind {
         }
     }
 
-    /// Whether a camera looks as this view does.
+    /// Returns true if a camera has this view's direction.
     fn is_of(self, camera: &Camera) -> bool {
         let turned = self.direction().is_some_and(|to| to != (camera.yaw, camera.pitch));
         self == ViewKind::Free || camera.orthographic && !turned
@@ -66,7 +66,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// Whether four views are shown.
+    /// Returns true if four views are shown.
     pub fn are_four(&self) -> bool {
         self.split
     }
@@ -84,7 +84,7 @@ impl Views {
         }
     }
 
-    /// Whether the view in which is worked keeps its direction.
+    /// Returns true if the active view keeps its direction.
     pub fn is_held(&self) -> bool {
         self.split && self.active != ViewKind::Free
     }
@@ -263,11 +263,11 @@ mod tests {
         assert_eq!(taken, Camera { yaw: 3.0, pitch: 0.0, ..free });
         assert_eq!(views.active(), ViewKind::Free);
         assert_eq!(views.camera(ViewKind::Front, &taken), nearer);
-        // With a place of its own it is one that was kept, and is taken whole.
+        // A camera with another target is a saved one, and is taken whole.
         let front = views.work_in(ViewKind::Front, &taken);
         let kept = Camera { target: Vec3::ONE, pitch: 0.4, ..Camera::default() };
         assert_eq!(views.take(kept, &front), Camera { aspect: front.aspect, ..kept });
-        // Perspective is asked of the free one too.
+        // The free view changes to perspective too.
         let front = views.work_in(ViewKind::Front, &taken);
         let deep = Camera { orthographic: false, ..front };
         assert_eq!(views.take(deep, &front), Camera { orthographic: false, ..taken });

@@ -163,7 +163,7 @@ fn a_thousand_strokes_of_one_finger_come_whole() {
         assert_eq!(presses(&done), 1, "stroke {n}");
         assert!(matches!(done[0], FingerAction::Press(c) if c.t_us == from_us), "{:?}", done[0]);
         assert!(matches!(done.last(), Some(FingerAction::Lift(_))), "stroke {n}");
-        // Every report is there, in the order of its time.
+        // Every report is present, in the order of time.
         let times: Vec<u64> = done
             .iter()
             .map(|a| match a {
@@ -285,7 +285,7 @@ fn a_second_finger_that_lands_while_the_window_draws_is_heard_first() {
     fingers.set_up(1.0, TwoFingers::Turn);
     let contact = |id, t_us, x| Contact { id, t_us, at: Vec2::new(x, 300.0), force: None };
     fingers.touch(TouchStep::Down, contact(1, 0, 400.0));
-    // A slow frame: what came meanwhile is told at its end, and only then the time.
+    // A slow frame: earlier events are delivered at its end, and only then the time.
     let late = 3 * HOLD_US;
     fingers.touch(TouchStep::Moved, contact(1, late, 404.0));
     fingers.touch(TouchStep::Down, contact(2, late, 500.0));

@@ -60,7 +60,7 @@ fn the_map_is_right_to_two_pixels_after_a_second() {
             for mouse in [false, true] {
                 let learned = hover(&truth, delay_us, mouse);
                 let map = learned.map().expect("a map");
-                // Where the pen has been; and the far corners, which it has not seen.
+                // Positions the pen has visited; and the far corners, which it has not seen.
                 for share in [DVec2::new(0.3, 0.4), DVec2::new(0.55, 0.6)] {
                     let off = map.at(share).distance(truth.at(share));
                     assert!(off < 2.0, "{off} pixels with {delay_us} us, mouse {mouse}");
@@ -232,7 +232,7 @@ impl SlowDesktop {
         }
     }
 
-    /// How far the map is off where the pen hovers, pixels; `None` while none is known.
+    /// Returns the error of the map in the hovered area, in pixels; `None` while no map is known.
     fn off(&self, truth: &ScreenMap) -> Option<f64> {
         let map = self.map.map()?;
         let shares = [[0.42, 0.36], [0.57, 0.42], [0.56, 0.61], [0.5, 0.5]];

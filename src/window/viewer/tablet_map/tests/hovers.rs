@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 
-/// What a map may be off, pixels, over the part of the tablet that the pen's surroundings take.
+/// Greatest error of a map, in pixels, over the tablet area around the pen.
 const MOST_OFF: f64 = 2.0;
 
 struct Random(u64);
@@ -23,7 +23,7 @@ impl Random {
 
 type Path = Box<dyn Fn(f64) -> DVec2>;
 
-/// Where a pen is at a time in seconds.
+/// Returns a path of a pen: its position at a time in seconds.
 fn path(kind: usize, r: &mut Random) -> (&'static str, Path) {
     let middle = DVec2::new(r.within(0.35, 0.65), r.within(0.35, 0.65));
     let (w, phase) = (r.within(0.5, 14.0), r.within(0.0, TAU));
@@ -83,7 +83,7 @@ fn path(kind: usize, r: &mut Random) -> (&'static str, Path) {
     }
 }
 
-/// How far a map is off around where the pen was, pixels.
+/// Returns the error of a map around the pen's positions, in pixels.
 fn off(map: &ScreenMap, truth: &ScreenMap, shares: &[DVec2]) -> f64 {
     let least = shares.iter().copied().fold(DVec2::MAX, DVec2::min);
     let most = shares.iter().copied().fold(DVec2::MIN, DVec2::max);
