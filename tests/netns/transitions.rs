@@ -1,5 +1,5 @@
-//! Prints the contents of a session's file by device: `transitions FILE`. One line of JSON: samples
-//! and those that did more than move, by the device's number. A person of a shared sculpture has
+//! Prints the contents of a session's file by device: `transitions FILE`. One line of JSON: samples,
+//! and samples that did more than move, by the device's number. A person of a shared sculpture has
 //! the numbers from 256 times the person's number.
 
 #![allow(clippy::print_stdout)]

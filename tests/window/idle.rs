@@ -43,7 +43,7 @@ fn shares(s: &Stage, seconds: u64) -> BTreeMap<String, f64> {
     out
 }
 
-/// Returns the share of the window's threads: all but those that tick and store the session.
+/// Returns the share of the window's threads: all but the tick and session threads.
 fn of_the_window(shares: &BTreeMap<String, f64>) -> f64 {
     let daemon = ["sculptd-tick", "sculptd-journal", "sculptd-tail", "sculptd-history"];
     // Linux keeps fifteen letters of a name.

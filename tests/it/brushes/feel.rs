@@ -526,7 +526,7 @@ fn the_far_side_of_a_thin_plate_stays() {
     let surface = BrushKind::ALL.iter().copied().filter(|k| k.grip() == Grip::Surface);
     for kind in surface {
         let mut brush = sculptd::presets().of(kind);
-        // Vertices are told by their numbers.
+        // The test identifies vertices by their numbers.
         brush.topology = TopologySettings::default();
         let mut studio = Studio::new(&mesh, brush, 1);
         let points: Vec<_> = (0..20).map(|i| Vec3::new(-0.3 + 0.03 * i as f32, 0.0, 0.0)).collect();
