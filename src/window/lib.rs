@@ -11,5 +11,4 @@
 pub mod language;
 pub mod look;
 pub mod panels;
-pub mod sound;
 pub mod viewer;

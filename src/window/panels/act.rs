@@ -93,7 +93,6 @@ pub fn act(
         }
         Action::Panels => ui_state.hidden = !ui_state.hidden,
         Action::LightOrDark => ui_state.prefs.light = !ui_state.prefs.light,
-        Action::Sound => ui_state.prefs.sound = !ui_state.prefs.sound,
         Action::LargerText => ui_state.prefs.scale = (ui_state.prefs.scale + 0.1).min(SCALE.1),
         Action::SmallerText => ui_state.prefs.scale = (ui_state.prefs.scale - 0.1).max(SCALE.0),
         Action::Help => ui_state.help = !ui_state.help,

@@ -22,7 +22,6 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
         .on_hover_text(tr!("preferences-speed.tip"));
     ui.checkbox(&mut p.lead_strokes, tr!("preferences-lead"))
         .on_hover_text(tr!("preferences-lead.tip"));
-    ui.checkbox(&mut p.sound, tr!("preferences-sound")).on_hover_text(tr!("preferences-sound.tip"));
     rows::flow(ui, |ui| {
         ui.label(tr!("preferences-fingers"));
         for (two, name) in [

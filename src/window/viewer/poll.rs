@@ -58,7 +58,6 @@ impl WindowState {
         changed |= self.follow_look();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
-        changed |= self.follow_sound(&state, wiring);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
             let mut devices = (wiring.devices)();
             devices.extend(self.tablet_lines());

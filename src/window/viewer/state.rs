@@ -9,7 +9,6 @@ use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
 use super::clay_picture::ClayPicture;
-use super::contact_sound::ContactSound;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
@@ -148,7 +147,6 @@ pub(super) struct WindowState {
     pub(super) held_on_panels: u32,
     pub(super) tablets: Tablets,
     pub(super) fingers: Fingers,
-    pub(super) sound: ContactSound,
 }
 
 impl WindowState {
@@ -306,7 +304,6 @@ impl WindowState {
             held_on_panels: 0,
             tablets: Tablets::default(),
             fingers: Fingers::default(),
-            sound: ContactSound::default(),
         };
         open.send_camera(wiring);
         if let Some(path) = &wiring.open_first {

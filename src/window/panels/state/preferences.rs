@@ -95,8 +95,6 @@ pub struct Preferences {
     pub speed_is_pressure: bool,
     /// A stroke of a tablet's pen is shown where the pen will be when the frame is seen.
     pub lead_strokes: bool,
-    /// True if strokes of pens and hands make a sound.
-    pub sound: bool,
     /// Effect of two fingers that move together on a touch screen.
     pub two_fingers: TwoFingers,
     #[serde(alias = "done")]
@@ -122,7 +120,6 @@ impl Default for Preferences {
             smooth_edges: false,
             speed_is_pressure: true,
             lead_strokes: true,
-            sound: false,
             two_fingers: TwoFingers::default(),
             hints: HintsFollowed::default(),
             look: Look::default(),
