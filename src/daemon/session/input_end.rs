@@ -33,6 +33,20 @@ impl InputEnd {
         Acknowledgement { identity: self.identity, tick: self.tick, chain: self.chain, salts }
     }
 
+    /// Reads the end of the input from a session's file.
+    pub fn read(db: &Connection) -> rusqlite::Result<InputEnd> {
+        let sql = "SELECT value FROM meta WHERE key = ?1";
+        let bytes: Vec<u8> = db.query_row(sql, [META_IDENTITY], |r| r.get(0))?;
+        let identity = bytes.try_into().map(u64::from_le_bytes).unwrap_or_default();
+        let last = "SELECT number, last_tick, chain FROM input ORDER BY number DESC LIMIT 1";
+        let last = db.query_row(last, [], |r| {
+            let (number, tick): (i64, i64) = (r.get(0)?, r.get(1)?);
+            Ok(InputEnd { identity, number: number as u64, tick: tick as u64, chain: r.get(2)? })
+        });
+        let none = InputEnd { identity, number: 0, tick: 0, chain: chain_start(identity) };
+        Ok(last.optional()?.unwrap_or(none))
+    }
+
     /// Puts the next row.
     pub fn put(
         &mut self,
@@ -60,17 +74,8 @@ pub(super) fn begin_log(
     db: &Connection,
     path: &Path,
 ) -> rusqlite::Result<(InputEnd, Option<SharedMemoryLog>)> {
-    let sql = "SELECT value FROM meta WHERE key = ?1";
-    let bytes: Vec<u8> = db.query_row(sql, [META_IDENTITY], |r| r.get(0))?;
-    let identity = bytes.try_into().map(u64::from_le_bytes).unwrap_or_default();
-    let last = "SELECT number, last_tick, chain FROM input ORDER BY number DESC LIMIT 1";
-    let last = db.query_row(last, [], |r| {
-        let (number, tick): (i64, i64) = (r.get(0)?, r.get(1)?);
-        Ok(InputEnd { identity, number: number as u64, tick: tick as u64, chain: r.get(2)? })
-    });
-    let none = InputEnd { identity, number: 0, tick: 0, chain: chain_start(identity) };
-    let mut end = last.optional()?.unwrap_or(none);
-    let Ok(file) = FileIdentity::of(path, identity) else { return Ok((end, None)) };
+    let mut end = InputEnd::read(db)?;
+    let Ok(file) = FileIdentity::of(path, end.identity) else { return Ok((end, None)) };
     let logs = shared_memory_log::logs_of(&file);
     let dead: Vec<_> = logs.into_iter().filter(|l| !l.owner_lives() || l.is_own()).collect();
     for log in &dead {

@@ -11,10 +11,11 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use rusqlite::Connection;
+use rusqlite::{Connection, OpenFlags};
 
 use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
 use super::connection::companion;
+use super::input_end::InputEnd;
 
 /// The path of a session that may be moved while it is written. Clones name the same place.
 #[derive(Debug, Clone)]
@@ -128,7 +129,8 @@ impl SessionPlace {
             // complete.
             result = db
                 .execute("VACUUM INTO ?1", [begun.to_string_lossy()])
-                .and_then(|_| {
+                .and_then(|_| ends_at(&begun, known))
+                .and_then(|()| {
                     let published =
                         acknowledge(&begun, known).and_then(|()| std::fs::rename(&begun, &target));
                     published.map_err(|_| rusqlite::Error::InvalidPath(target.clone()))
@@ -185,4 +187,14 @@ fn free_name(folder: &Path, path: &Path) -> PathBuf {
     numbered
         .find(|p| !p.exists() && !companion(p, "-wal").exists())
         .unwrap_or_else(|| folder.join("kept.sculpt"))
+}
+
+/// Reads back whether the input of a session's copy ends where it is `known` to end.
+fn ends_at(copy: &Path, known: Acknowledgement) -> rusqlite::Result<()> {
+    let db = Connection::open_with_flags(copy, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    let end = InputEnd::read(&db)?;
+    match (end.identity, end.tick, end.chain) == (known.identity, known.tick, known.chain) {
+        true => Ok(()),
+        false => Err(rusqlite::Error::InvalidPath(copy.to_path_buf())),
+    }
 }

@@ -474,9 +474,15 @@ impl JournalThread {
         }
         let path = place.path.get();
         let text = match place.rescue(&self.db, self.end.known(ENDED)) {
-            Ok(to) => format!(
+            Ok(to) if self.groups.is_empty() && !self.closed => format!(
                 "{} was deleted or replaced: all of the session is in {}",
                 path.display(),
+                to.display()
+            ),
+            Ok(to) => format!(
+                "{} was deleted or replaced: the session up to tick {} is in {}; later input is lost",
+                path.display(),
+                self.end.tick,
                 to.display()
             ),
             Err(e) => format!(

@@ -68,7 +68,7 @@ impl Scene {
             && objects
                 .iter()
                 .enumerate()
-                .all(|(i, o)| objects[..i].iter().all(|other| other.id != o.id));
+                .all(|(i, o)| objects[..i].iter().all(|before| !before.is_as(o)));
         fine.then(|| Scene { objects, active, next_id, view: Arc::default(), stale: true })
     }
 
@@ -212,11 +212,11 @@ impl Scene {
             return Err(format!("object {} of {} is active", self.active, self.objects.len()));
         }
         for (i, o) in self.objects.iter().enumerate() {
-            let (id, names) = (o.id, o.clay.object_id());
+            let id = o.id;
             if id.0 >= self.next_id {
                 return Err(format!("object {id}: the next id is {}", self.next_id));
             }
-            if self.objects[..i].iter().any(|b| b.id == id || b.clay.object_id() == names) {
+            if self.objects[..i].iter().any(|before| before.is_as(o)) {
                 return Err(format!("object {id}: its id or its clay's is there twice"));
             }
             if !o.settings.transform.is_sane() {

@@ -30,6 +30,11 @@ pub struct Object {
 }
 
 impl Object {
+    /// Returns true if the other has the same id or the same clay: no scene holds both.
+    pub(super) fn is_as(&self, other: &Object) -> bool {
+        self.id == other.id || self.clay.object_id() == other.clay.object_id()
+    }
+
     /// An object around this clay, measured.
     pub fn new(id: ObjectId, settings: ObjectSettings, clay: Clay) -> Object {
         let mut object = Object { id, settings, clay, middle: Vec3::ZERO, extent: 1.0 };

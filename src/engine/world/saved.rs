@@ -298,6 +298,11 @@ impl World {
                 let World { timeline, scene, garbage, .. } = self;
                 timeline.forget(scene, garbage);
             }
+            // The scene has changed since: another object has this clay now.
+            (Payload::Clay(clay), Some(_)) if self.has_clay_beside(clay.object_id()) => {
+                self.garbage.discard_owned(clay);
+                return Err(SceneError::Stale);
+            }
             (Payload::Clay(clay), Some(other)) => {
                 self.forget_steps();
                 let clay = self.adopted(*clay);
@@ -316,6 +321,12 @@ impl World {
         self.report.jumps += 1;
         self.note(HistoryEvent::Jump(jump.node));
         Ok(Answer::Done)
+    }
+
+    /// Returns true if an object other than the active one has the clay with this id.
+    fn has_clay_beside(&self, object_id: u32) -> bool {
+        let active = self.scene.active().id;
+        self.scene.objects().iter().any(|o| o.id != active && o.clay.object_id() == object_id)
     }
 
     /// Returns true if nothing is under way: no stroke, no waiting work, no open step.

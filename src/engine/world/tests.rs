@@ -4,9 +4,10 @@ use std::sync::{Arc, Mutex};
 
 use super::{World, WorldOptions};
 use crate::camera::Camera;
-use crate::command::{Command, Jump, NewClay};
+use crate::command::{Command, Jump, NewClay, OtherWork};
 use crate::hand::HandSettings;
 use crate::payload::{Payload, PayloadId};
+use crate::scene::{ObjectId, SceneCommand, SceneError};
 use sculptd_clay::brush::BrushSettings;
 use sculptd_clay::{Clay, CollectGarbage, Garbage, GarbageSink, Workers};
 use sculptd_geometry::job::Job;
@@ -79,6 +80,31 @@ fn a_jump_that_was_read_from_bytes_works_where_its_pages_can_be_had() {
     world.deliver_for_jump(named, Payload::Pages(pages));
     assert_eq!(world.step(2, &[], &[read]).jumps, 1);
     assert_eq!(world.hash(), larger.hash());
+    world.verify_invariants().expect("sound");
+}
+
+#[test]
+fn a_jump_that_was_made_for_another_scene_is_refused() {
+    let mut world = world(&shapes::sphere_of_about(400));
+    let first = world.mesh().object_id();
+    world.step(1, &[], &[Command::Scene(SceneCommand::Duplicate(ObjectId(0)))]);
+    let [ball, copy] = world.scene().objects() else { panic!("two objects") };
+    assert_eq!(ball.clay.object_id(), first);
+    let from = (copy.clay.object_id(), copy.clay.revision());
+    // It leads the copy to the clay that the ball has.
+    let other = OtherWork {
+        rest: ball.clay.rest(),
+        middle: ball.middle,
+        extent: ball.extent,
+        levels: None,
+    };
+    let jump = Jump { node: 7, from, object_id: first, pages: Vec::new(), other: Some(other) };
+    let payload = Payload::Clay(Box::new(clay(&shapes::sphere_of_about(400))));
+    world.deliver_for_jump(&jump, payload);
+    let hash = world.hash();
+    assert_eq!(world.step(2, &[], &[Command::Jump(Box::new(jump))]).jumps, 0);
+    assert_eq!(world.answers(), [Err(SceneError::Stale)]);
+    assert_eq!(world.hash(), hash);
     world.verify_invariants().expect("sound");
 }
 
