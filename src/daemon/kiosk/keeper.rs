@@ -46,14 +46,14 @@ pub struct Start {
 }
 
 impl Start {
-    /// The command that puts everything back. Building the pages takes as long as the start is
-    /// large: not on the tick thread.
-    pub fn command(&self) -> Option<QueuedCommand> {
-        let mesh = Clay::build(&self.plain, &Job::default()).ok()?;
+    /// Returns the command that resets everything, with a copy of the clay that was built from
+    /// `plain`: a reset costs by the number of pages, so a visitor's first stroke is not lost.
+    fn command(&self, built: &Clay) -> QueuedCommand {
         let clay = NewClay::new(self.plain.clone(), false);
         let beginning = Beginning { clay, camera: self.camera, brush: self.brush };
         let command = Command::Begin(Box::new(beginning));
-        Some(QueuedCommand::with_payload(command, Payload::Clay(Box::new(mesh))))
+        let copy = built.duplicate(built.object_id());
+        QueuedCommand::with_payload(command, Payload::Clay(Box::new(copy)))
     }
 }
 
@@ -96,6 +96,8 @@ pub struct KioskKeeper {
 struct KioskThread {
     config: KioskConfig,
     start: Start,
+    /// Built from the start, never changed.
+    built: Clay,
     published: Arc<ArcSwap<Published>>,
     commands: CommandSender,
     sender: Sender,
@@ -153,10 +155,12 @@ pub fn start(
     };
     let countdown = format!("{} {}", words.countdown, words.go_on);
     let speech = Speech::new(&config.speak, &words.welcome, &countdown);
+    let built = Clay::build(&start.plain, &Job::default()).map_err(|e| e.to_string())?;
     let desk = Arc::new(KioskDesk::default());
     let mut keeping = KioskThread {
         config,
         start,
+        built,
         published,
         commands,
         sender: factory.sender(),
@@ -289,9 +293,10 @@ impl KioskThread {
     }
 
     fn put_back(&self) {
-        if let Some(command) = self.start.command() {
-            // The loop takes 64 commands a tick: it has room again before long.
-            let _ = self.commands.send_timeout(command, Duration::from_secs(2));
+        let command = self.start.command(&self.built);
+        // The loop takes 64 commands a tick: it has room again before long.
+        if self.commands.send_timeout(command, Duration::from_secs(2)).is_err() {
+            tracing::error!("kiosk: the reset was not carried out; the loop takes no commands");
         }
     }
 
