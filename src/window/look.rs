@@ -190,7 +190,7 @@ impl Default for Look {
             shadow: 0.0,
             bright: 1.0,
             flat: false,
-            cavity: 1.0,
+            cavity: 0.0,
             shade: 1.0,
             wireframe: false,
             grid: false,
