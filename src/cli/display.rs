@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "viewer")]
+use sculptd_daemon::event_clock::EventClock;
 use sculptd_daemon::live_run::LiveRun;
 
 /// `Err` holds the reason, in words for a person.
@@ -66,8 +68,9 @@ pub fn window(
 ) -> Result<impl FnOnce() -> Result<(), String> + use<>, String> {
     let adaptors = run.adaptors.clone();
     let (reports, answers) = crossbeam_channel::bounded(ANSWERS);
+    let events = EventClock::new(run.clock.clone());
     let wiring = sculptd_window::viewer::Wiring {
-        commands: run.live.commands.reporting_to(reports),
+        commands: run.live.commands.of_window(reports, events.clone()),
         answers,
         published: run.live.published.clone(),
         pen_trail: run.live.pen_trail.clone(),
@@ -77,6 +80,7 @@ pub fn window(
         presets: crate::presets().clone(),
         brushes: shown.brushes.clone(),
         clock: run.clock.clone(),
+        events,
         stop: run.stop.clone(),
         devices: Box::new(move || adaptors.describe()),
         session: shown.session.as_ref().map(|p| p.display().to_string()),

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
+use crate::event_clock::EventClock;
 use sculptd_engine::answer::CommandResult;
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::Payload;
@@ -21,6 +22,9 @@ pub struct QueuedCommand {
     /// Channel for the answer. It is sent once the published state shows the effect. The loop never
     /// waits for the receiver.
     pub answer: Option<cc::Sender<CommandAnswer>>,
+    /// Time of the event that asked for it, on the clock of the samples, in microseconds: older
+    /// samples are stepped before it, newer ones after it. `None`: it is carried out at once.
+    pub t_us: Option<u64>,
 }
 
 /// Result of a command, and the tick of its effect.
@@ -48,7 +52,7 @@ pub enum NoAnswer {
 
 impl From<Command> for QueuedCommand {
     fn from(command: Command) -> Self {
-        QueuedCommand { command, payload: None, answer: None }
+        QueuedCommand { command, payload: None, answer: None, t_us: None }
     }
 }
 
@@ -79,18 +83,22 @@ pub struct CommandSender {
     queue: cc::Sender<QueuedCommand>,
     /// Channel for the answers that no caller waits for.
     answers: Option<cc::Sender<CommandAnswer>>,
+    /// Gives commands the times of the events that asked for them.
+    clock: Option<EventClock>,
 }
 
 impl CommandSender {
-    /// Returns a sender whose commands report their results to `answers`, so that no refusal is
-    /// lost if the caller does not wait.
-    pub fn reporting_to(&self, answers: cc::Sender<CommandAnswer>) -> CommandSender {
-        CommandSender { answers: Some(answers), ..self.clone() }
+    /// Returns the sender of a window. Its commands report their results to `answers`, so that no
+    /// refusal is lost if the caller does not wait, and have the times of `clock`, so that they are
+    /// carried out between the samples before and after them.
+    pub fn of_window(&self, answers: cc::Sender<CommandAnswer>, clock: EventClock) -> Self {
+        CommandSender { answers: Some(answers), clock: Some(clock), ..self.clone() }
     }
 
     fn with_answer(&self, command: impl Into<QueuedCommand>) -> QueuedCommand {
         let mut queued = command.into();
         queued.answer = queued.answer.or_else(|| self.answers.clone());
+        queued.t_us = queued.t_us.or_else(|| Some(self.clock.as_ref()?.now_us()));
         queued
     }
 
@@ -113,7 +121,7 @@ impl CommandSender {
         patience: Duration,
     ) -> Result<CommandAnswer, NoAnswer> {
         let (answer, answered) = cc::bounded(1);
-        let queued = QueuedCommand { answer: Some(answer), ..command.into() };
+        let queued = QueuedCommand { answer: Some(answer), ..self.with_answer(command) };
         self.queue.send_timeout(queued, patience).map_err(|e| match e {
             cc::SendTimeoutError::Timeout(_) => NoAnswer::Full,
             cc::SendTimeoutError::Disconnected(_) => NoAnswer::Ended,
@@ -153,5 +161,5 @@ impl CommandSender {
 /// A queue for at most `capacity` commands: the senders' end and the loop's.
 pub fn command_queue(capacity: usize) -> (CommandSender, cc::Receiver<QueuedCommand>) {
     let (sender, receiver) = cc::bounded(capacity);
-    (CommandSender { queue: sender, answers: None }, receiver)
+    (CommandSender { queue: sender, answers: None, clock: None }, receiver)
 }

@@ -19,6 +19,7 @@ pub mod decimate_job;
 pub mod demo_devices;
 pub mod disk_space;
 pub mod doctor;
+pub mod event_clock;
 pub mod face_set_jobs;
 pub mod garbage_thread;
 pub mod hand_jobs;

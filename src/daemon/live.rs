@@ -191,6 +191,8 @@ type AnswerSender = Option<cc::Sender<CommandAnswer>>;
 /// State that the loop keeps between ticks.
 struct TickBuffers {
     samples: Vec<Sample>,
+    /// Samples newer than a command that waits for the older ones; the next tick has them.
+    later: Vec<Sample>,
     commands: Vec<Command>,
     /// Channel for the answer of each command of this tick.
     senders: Vec<AnswerSender>,
@@ -220,6 +222,7 @@ impl Ticking {
         let sleeper = spin_sleep::SpinSleeper::default();
         let mut now = TickBuffers {
             samples: Vec::with_capacity(self.drain_per_tick),
+            later: Vec::with_capacity(self.drain_per_tick),
             commands: Vec::with_capacity(COMMANDS_PER_TICK),
             senders: Vec::with_capacity(COMMANDS_PER_TICK),
             late: None,
@@ -234,7 +237,9 @@ impl Ticking {
         let mut tick = self.world.tick();
         let mut last = LAST_TICKS;
         let mut quiet = 0;
-        while !self.is_stopped() || (last > 0 && self.receiver.waiting() > 0) {
+        while !self.is_stopped()
+            || (last > 0 && self.receiver.waiting() + now.later.len() + now.held.len() > 0)
+        {
             if self.is_stopped() {
                 last -= 1;
             }
@@ -245,9 +250,10 @@ impl Ticking {
             }
             pacer.wait(&self.clock, &sleeper);
             now.samples.clear();
-            self.receiver.drain(self.drain_per_tick, &mut now.samples);
+            now.samples.append(&mut now.later);
+            let room = self.drain_per_tick.saturating_sub(now.samples.len());
+            self.receiver.drain(room, &mut now.samples);
             in_order_of_time(&mut now.samples);
-            self.trail.send(&now.samples);
             // A command that needs the surface would finish the whole pending edit within this
             // tick.
             let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
@@ -255,6 +261,10 @@ impl Ticking {
             for _ in 0..COMMANDS_PER_TICK {
                 let next = now.held.pop_front().or_else(|| self.inbox.try_recv().ok());
                 let Some(mut queued) = next else { break };
+                if now.puts_off(&mut queued, self.receiver.waiting() > 0) {
+                    now.held.push_front(queued);
+                    break;
+                }
                 // An edit that begins in this tick can be undone in the next one.
                 if edits && !begins && self.world.is_taken_back_by(&queued.command) {
                     edits = false;
@@ -280,6 +290,7 @@ impl Ticking {
                 now.senders.push(queued.answer.take());
                 now.commands.push(queued.deliver(&mut self.world));
             }
+            self.trail.send(&now.samples);
             if let Some(actions) = &mut self.actions {
                 let first = now.commands.len();
                 actions.take(&mut now.samples, &self.world, &mut now.commands);
@@ -338,7 +349,8 @@ impl Ticking {
     /// Returns true while ticks without input change something, or something waits for a tick.
     fn has_work(&self, now: &TickBuffers) -> bool {
         let report = self.world.report();
-        let waits = now.late.is_some() || !now.held.is_empty() || !now.answers.is_empty();
+        let waits = now.late.is_some() || !now.answers.is_empty();
+        let waits = waits || !now.held.is_empty() || !now.later.is_empty();
         self.shared.is_some()
             || matches!(self.clock, Clock::Manual(_))
             || waits
@@ -457,6 +469,23 @@ impl Ticking {
 }
 
 impl TickBuffers {
+    /// Returns true if samples older than the command are still to be stepped: then this tick
+    /// steps only those. `more`: the channel holds samples that did not fit this tick.
+    fn puts_off(&mut self, queued: &mut QueuedCommand, more: bool) -> bool {
+        let Some(t_us) = queued.t_us else { return false };
+        let older = self.samples.partition_point(|s| s.t_us < t_us);
+        if older == 0 {
+            return false;
+        }
+        let more = more && older == self.samples.len();
+        self.later.extend(self.samples.drain(older..));
+        if !more {
+            // A device whose clock is late must not put it off for ever.
+            queued.t_us = None;
+        }
+        true
+    }
+
     /// Keeps an answer until its effect is published.
     fn answer(&mut self, sender: AnswerSender, tick: u64, result: CommandResult) {
         self.answers.extend(sender.map(|sender| (sender, CommandAnswer { tick, result })));

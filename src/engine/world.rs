@@ -426,8 +426,8 @@ impl World {
                 match index {
                     Some(i) => {
                         let on = (&self.desktop, self.desktop.place(sample.device));
-                        let (path, aspect) = (&self.brush.path, self.camera.aspect);
-                        self.pens[i].track.take(pen, path, aspect, on);
+                        let (brush, aspect) = (&self.brush, self.camera.aspect);
+                        self.pens[i].track.take(pen, brush, aspect, on);
                     }
                     None => self.report.ignored += 1,
                 }
@@ -491,7 +491,7 @@ impl World {
             workers: &self.workers,
             scratch: &mut self.scratch,
             stroke: Stroke::default(),
-            brush: &self.brush,
+            brush: self.brush,
             report: &mut self.report,
             left: budget,
             topology: &mut self.topology,
@@ -507,11 +507,10 @@ impl World {
             if shared {
                 clay.mesh.set_author(Author::Person(person));
             }
-            clay.brush = other.map_or(&self.brush, |o| &o.brush);
+            let now = other.map_or(&self.brush, |o| &o.brush);
+            clay.brush = *seat.track.brush(now);
             let camera = other.map_or(&self.camera, |o| &o.camera);
             clay.camera = LocalCamera::new(camera, &transform);
-            let goes_on = goes_on_by_time(clay.brush);
-            let every = clay.brush.path.every_ticks as u32;
             clay.stroke = seat.stroke;
             clay.stroke.rested += 1;
             while let Some(walked) = seat.track.walk_one(clay.camera.aspect(), &mut clay) {
@@ -523,7 +522,10 @@ impl World {
                     self.strokes = self.strokes.wrapping_add(1);
                     clay.stroke.begin(self.strokes);
                 }
+                clay.brush = *seat.track.brush(now);
             }
+            let goes_on = goes_on_by_time(&clay.brush);
+            let every = clay.brush.path.every_ticks as u32;
             if goes_on && seat.track.is_open() {
                 clay.report.resting = true;
                 if seat.track.is_idle() && clay.stroke.rested >= every {

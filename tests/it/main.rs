@@ -42,6 +42,7 @@ mod remesh_live;
 mod retopology_live;
 #[cfg(unix)]
 mod scene;
+mod seeded;
 mod service;
 mod sessions;
 #[cfg(all(unix, feature = "network"))]

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::{Value, json};
 
+use crate::seeded::Random;
 use crate::waiting::until;
 use sculptd_control::METHODS;
 use sculptd_daemon::config::{Config, LoopConfig};
@@ -26,26 +27,6 @@ use sculptd_geometry::shapes;
 const LEFT_OUT: [&str; 3] = ["subscribe", "window", "shutdown"];
 /// Ticks after which whatever a request began late would be seen.
 const LATER: u64 = 6;
-
-/// Marsaglia's xorshift.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) % n
-    }
-
-    fn part(&mut self) -> f64 {
-        self.below(1 << 20) as f64 / f64::from(1 << 20)
-    }
-
-    fn of<'a>(&mut self, names: &[&'a str]) -> &'a str {
-        names[self.below(names.len() as u64) as usize]
-    }
-}
 
 /// Everything that a client can read of the sculpture and its settings.
 fn state(host: &Host) -> Value {

@@ -4,7 +4,6 @@
 mod beside;
 mod brush_panel;
 mod four_views;
-mod heard;
 mod kiosk;
 mod languages;
 mod layers;
@@ -19,6 +18,7 @@ mod preferences;
 mod regions;
 mod scene;
 mod stall;
+mod stall_order;
 mod versions;
 
 use std::sync::OnceLock;

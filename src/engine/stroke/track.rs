@@ -12,7 +12,7 @@ use super::surface::{Flow, PenPoint, StrokeMethod, Surface};
 use crate::desktop_layout::{DesktopLayout, PenPlace};
 use crate::stroke::curve_stroke::CurveStroke;
 use crate::stroke::stabilizer::Stabilizer;
-use sculptd_clay::brush::PathSettings;
+use sculptd_clay::brush::{BrushSettings, Method};
 use sculptd_devices::{Pen, Tool};
 use sculptd_geometry::portable::PortableMath;
 
@@ -76,7 +76,14 @@ pub struct PenTrack {
     /// Point of the stroke with the greatest pressure.
     #[serde(default)]
     firmest: PenPoint,
+    /// Brushes of the contacts that are not walked to their end yet, oldest first: a stroke keeps
+    /// the brush that it began with. Empty when a world is saved, which has no open stroke.
+    #[serde(skip)]
+    brushes: VecDeque<BrushSettings>,
 }
+
+/// Contacts whose brushes fit without an allocation.
+const CONTACTS: usize = 8;
 
 impl Default for PenTrack {
     fn default() -> Self {
@@ -101,6 +108,7 @@ impl Default for PenTrack {
             on_tablet: None,
             refused: false,
             firmest: PenPoint::default(),
+            brushes: VecDeque::with_capacity(CONTACTS),
         }
     }
 }
@@ -131,7 +139,7 @@ impl PenTrack {
     pub fn take(
         &mut self,
         pen: &Pen,
-        path: &PathSettings,
+        brush: &BrushSettings,
         aspect: f32,
         (desktop, place): (&DesktopLayout, Option<PenPlace>),
     ) {
@@ -152,10 +160,12 @@ impl PenTrack {
         match (self.down, touches) {
             (false, true) => {
                 self.steady.begin(&at);
+                self.brushes.push_back(*brush);
                 self.push(PenEvent::Down(at));
             }
             (true, true) => {
-                let at = self.steady.follow(&at, path, aspect);
+                let path = self.brushes.back().unwrap_or(brush).path;
+                let at = self.steady.follow(&at, &path, aspect);
                 self.push(PenEvent::Move(at));
             }
             (true, false) => self.up(),
@@ -210,6 +220,14 @@ impl PenTrack {
             Some(PenEvent::Draw) => !self.drawing,
             _ => false,
         }
+    }
+
+    /// Returns the brush of what is walked next: the one that its stroke began with, or `now` for
+    /// a curve, which follows the settings until it is drawn.
+    pub fn brush<'a>(&'a self, now: &'a BrushSettings) -> &'a BrushSettings {
+        let draws = self.waiting.front() == Some(&PenEvent::Draw);
+        let kept = self.brushes.front().filter(|b| !draws && b.path.method != Method::Curve);
+        kept.unwrap_or(now)
     }
 
     /// The curve that is being laid; empty: none is.
@@ -375,7 +393,9 @@ impl PenTrack {
         };
         walked.paused = flow == Flow::Pause;
         self.share = 0.0;
-        self.waiting.pop_front();
+        if self.waiting.pop_front() == Some(PenEvent::Up) {
+            self.brushes.pop_front();
+        }
         Some(walked)
     }
 

@@ -127,7 +127,8 @@ pub(super) struct StrokeContext<'a> {
     pub(super) camera: LocalCamera<'a>,
     /// Strokes reach the object: it is neither hidden nor locked.
     pub(super) editable: bool,
-    pub(super) brush: &'a BrushSettings,
+    /// The brush that the stroke began with.
+    pub(super) brush: BrushSettings,
     pub(super) middle: Vec3,
     pub(super) extent: f32,
     pub(super) report: &'a mut StepReport,
@@ -188,7 +189,7 @@ impl StrokeContext<'_> {
     /// The face set that the stroke draws, if its brush does: found at its first dab, `hit`. A new
     /// one has a number above those of all others, so that no stroke joins another by chance.
     fn drawn_set(&mut self, at: &PenPoint, hit: &Hit) -> Option<u16> {
-        let s = self.brush;
+        let s = &self.brush;
         if s.kind != BrushKind::DrawFaceSets {
             return None;
         }
@@ -203,7 +204,7 @@ impl StrokeContext<'_> {
     /// The stroke goes on to a dab at `centre`: its direction, the pressure that counts, and the
     /// way that the dab stands for, in fifths of the radius.
     fn go_on(&mut self, at: &PenPoint, centre: Vec3, radius: f32, share: f32) -> f32 {
-        let s = self.brush;
+        let s = &self.brush;
         let stroke = &mut self.stroke;
         let step = stroke.last_measured.map_or(Vec3::ZERO, |last| centre - last);
         stroke.last_measured = Some(centre);
@@ -236,7 +237,8 @@ impl StrokeContext<'_> {
         drag: Option<(Vec3, Vec3)>,
     ) {
         self.mesh.begin_step();
-        let s = self.brush;
+        let brush = self.brush;
+        let s = &brush;
         let cuts = s.topology.by != Measure::Off && s.kind.cuts() && self.mesh.layer_count() == 0;
         let found = s.kind.found() && !s.accumulate && !cuts;
         let (centre, normal) = if found { self.as_found(hit) } else { (hit.position, hit.normal) };
@@ -397,7 +399,7 @@ impl StrokeContext<'_> {
     /// Takes back the dab that is not final, and all its images.
     fn take_back(&mut self, held: &mut HeldStroke) {
         let Some((centre, radius)) = held.shown.take() else { return };
-        for image in Images::of(self.brush, self.middle, self.extent).each() {
+        for image in Images::of(&self.brush, self.middle, self.extent).each() {
             let centre = image.at(centre);
             let reach = Reach::Sphere { centre, radius: radius * 2.5 };
             let done =

@@ -108,7 +108,7 @@ impl WindowState {
 
     /// A press beside the clay: whether it is the second one, which shows the view alone.
     pub(super) fn is_double_press(&mut self, wiring: &Wiring) -> bool {
-        let (now, at) = (wiring.clock.now_us(), self.pointer.at);
+        let (now, at) = (wiring.events.now_us(), self.pointer.at);
         let near = DOUBLE.1 * self.egui.egui_ctx().pixels_per_point();
         let before = self.pointer.beside.replace((now, at));
         let double = before.is_some_and(|(us, place)| {

@@ -26,7 +26,7 @@ pub(super) fn takes_presses(layer: egui::LayerId) -> bool {
 impl WindowState {
     /// The pointer as a pen: it says all that a pen says.
     fn sample(&mut self, tip: bool, wiring: &mut Wiring) {
-        let t_us = self.pointer.t_us.unwrap_or_else(|| wiring.clock.now_us());
+        let t_us = self.pointer.t_us.unwrap_or_else(|| wiring.events.now_us());
         let by_speed = self.pointer.speed.pressure(t_us, self.pointer.at / self.view_rect().1.y);
         let felt = self.pen_at_pointer(wiring);
         let pressure = match self.pointer.force.or(felt.map(|pen| pen.pressure)) {
@@ -240,7 +240,7 @@ impl WindowState {
         };
         self.set_up_fingers(wiring);
         let force = touch.force.map(|f| f.normalized() as f32);
-        let contact = Contact { id: touch.id, t_us: wiring.clock.now_us(), at, force };
+        let contact = Contact { id: touch.id, t_us: wiring.events.now_us(), at, force };
         self.fingers.touch(step, contact);
         self.follow_fingers(wiring);
     }

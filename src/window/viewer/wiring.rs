@@ -10,6 +10,7 @@ use crossbeam_channel as cc;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::{CommandAnswer, CommandSender};
+use sculptd_daemon::event_clock::EventClock;
 use sculptd_daemon::pen_trail::PenTrail;
 use sculptd_daemon::tablet_controls::TabletControls;
 use sculptd_daemon::window_link::WindowLink;
@@ -37,6 +38,8 @@ pub struct Wiring {
     /// Limits of wall thickness by process and material, for the panel of walls.
     pub thickness_presets: Vec<Preset>,
     pub clock: Clock,
+    /// The same clock; while an event is handled, the time of the event.
+    pub events: EventClock,
     /// Raised from outside, or by closing the window.
     pub stop: Arc<AtomicBool>,
     /// One line a device; asked for once a second.

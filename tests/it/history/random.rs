@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2};
 
 use super::{Studio, both_ways};
+use crate::seeded::Random;
 use sculptd_clay::brush::{BrushKind, MaskAction, Measure};
 use sculptd_clay::face_sets::SetsEdit;
 use sculptd_clay::{LayerEdit, LayerId, Workers};
@@ -20,24 +21,9 @@ use sculptd_engine::scene::{
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
-/// Marsaglia's xorshift: the seed alone decides the sequence.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) % n
-    }
-
-    fn part(&mut self) -> f32 {
-        self.below(1 << 20) as f32 / (1 << 20) as f32
-    }
-
-    fn at(&mut self) -> Vec2 {
-        Vec2::new(self.part() - 0.5, self.part() - 0.5) * 0.3
-    }
+/// Returns a random place near the middle of the view.
+fn place(r: &mut Random) -> Vec2 {
+    Vec2::new(r.part() as f32 - 0.5, r.part() as f32 - 0.5) * 0.3
 }
 
 fn object(r: &mut Random, s: &Studio) -> ObjectId {
@@ -61,7 +47,7 @@ fn layer_edit(r: &mut Random, s: &Studio) -> LayerEdit {
         4 => LayerEdit::Move(id, r.below(3) as u32),
         5 | 6 => LayerEdit::Set {
             id,
-            intensity: Some(r.part() * 2.0),
+            intensity: Some(r.part() as f32 * 2.0),
             visible: None,
             live: r.below(2) == 0,
         },
@@ -98,7 +84,7 @@ fn mask_action(r: &mut Random) -> MaskAction {
         4 => MaskAction::Sharpen,
         5 => MaskAction::Grow,
         6 => MaskAction::Shrink,
-        _ => MaskAction::Cavity(r.part() * 0.05),
+        _ => MaskAction::Cavity(r.part() as f32 * 0.05),
     }
 }
 
@@ -114,7 +100,7 @@ fn scene_command(r: &mut Random, s: &Studio) -> SceneCommand {
         3 => SceneCommand::Duplicate(id),
         4 => SceneCommand::Rename(id, format!("object {}", r.below(100))),
         5 | 6 => {
-            let shift = DVec3::new(f64::from(r.part()), f64::from(r.part()), 0.0) * 0.2;
+            let shift = DVec3::new(r.part(), r.part(), 0.0) * 0.2;
             let transform = ObjectTransform { shift, ..ObjectTransform::NONE };
             match r.below(2) {
                 0 => SceneCommand::Transform(id, transform),
@@ -133,7 +119,7 @@ fn scene_command(r: &mut Random, s: &Studio) -> SceneCommand {
 fn act(r: &mut Random, s: &mut Studio) {
     match r.below(24) {
         0..8 => {
-            let at = r.at();
+            let at = place(r);
             s.stroke(at);
         }
         8..12 => {
