@@ -3,6 +3,7 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -11,6 +12,21 @@ import sculptd
 from sculptd import control
 
 BINARY = os.environ.get("SCULPTD_BINARY")
+
+
+class WithoutTheNativeModule(unittest.TestCase):
+    """The client is pure Python."""
+
+    def test_the_client_is_imported_where_no_native_module_is(self):
+        script = (
+            "import sys; sys.modules['sculptd._native'] = None\n"
+            "from sculptd import control; print(control.Client.__name__)\n"
+            "import sculptd\n"
+            "try: sculptd.Mesh\n"
+            "except ImportError as e: print('ImportError')\n"
+        )
+        out = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertEqual((out.stdout.split(), out.stderr), (["Client", "ImportError"], ""))
 
 
 class Absent(unittest.TestCase):

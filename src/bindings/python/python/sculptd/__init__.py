@@ -22,34 +22,51 @@ raises cancels the work.
 Booleans.
 """
 
-from ._native import (
-    BooleanFailed,
-    BooleanResult,
-    EmptyResult,
-    FileFormatError,
-    JobCancelled,
-    Mesh,
-    Projection,
-    SculptdError,
-    Solid,
-    Thickness,
-    __version__,
-    boolean,
-    boolean_all,
-    check,
-    decimate,
-    hollow,
-    measure,
-    offset,
-    picture,
-    project,
-    read,
-    remesh,
-    repair,
-    slices,
-    subdivide,
-    thickness,
-)
+import importlib
+import typing
+
+if typing.TYPE_CHECKING:
+    from ._native import (
+        BooleanFailed,
+        BooleanResult,
+        EmptyResult,
+        FileFormatError,
+        JobCancelled,
+        Mesh,
+        Projection,
+        SculptdError,
+        Solid,
+        Thickness,
+        __version__,
+        boolean,
+        boolean_all,
+        check,
+        decimate,
+        hollow,
+        measure,
+        offset,
+        picture,
+        project,
+        read,
+        remesh,
+        repair,
+        slices,
+        subdivide,
+        thickness,
+    )
+else:
+
+    def __getattr__(name):
+        # On first use, so that `sculptd.control` works without the native module.
+        if name not in __all__:
+            raise AttributeError(f"module 'sculptd' has no attribute {name!r}")
+        value = getattr(importlib.import_module("._native", __name__), name)
+        globals()[name] = value
+        return value
+
+    def __dir__():
+        return sorted([*globals(), *__all__])
+
 
 __all__ = [
     "BooleanFailed",
@@ -87,4 +104,6 @@ def signed_distance(mesh, points, *, progress=None):
 
     For several questions of one mesh make a `Solid` once.
     """
+    from ._native import Solid
+
     return Solid(mesh).signed_distance(points, progress=progress)
