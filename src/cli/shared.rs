@@ -153,10 +153,12 @@ impl SharedArgs {
         let mut entropy = system_entropy();
         let (keyring, made) =
             Keyring::of_folder(&folder, &mut entropy).map_err(|e| Fail::Config(e.to_string()))?;
-        let own = keyring.0.iter().find(|i| i.role == Role::Sculptor).cloned();
-        let own = own.ok_or_else(|| {
-            let text = format!("{}: no invitation is for a sculptor", folder.display());
-            Fail::Config(text)
+        let own = keyring.of_host().cloned().ok_or_else(|| {
+            Fail::Config(format!(
+                "{}: every sculptor's invitation is for one person, and none for the host. Make \
+                 one with: sculptd invite {name}",
+                folder.display()
+            ))
         })?;
         if made {
             eprintln!("sculptd: invitations were made in {}", folder.display());

@@ -177,6 +177,12 @@ impl Keyring {
         self.0.iter().find(|i| i.secret.name() == *name)
     }
 
+    /// Returns the invitation with which the host takes part itself: a sculptor's that is for
+    /// nobody by name. One that is for another person would give the host that person's identity.
+    pub fn of_host(&self) -> Option<&Invitation> {
+        self.0.iter().find(|i| i.role == Role::Sculptor && i.name.is_none())
+    }
+
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let carried = |i: &Invitation| Carried(i.role, i.name.clone(), i.secret.0);
         let all: Vec<_> = self.0.iter().map(carried).collect();
@@ -234,6 +240,21 @@ mod tests {
             .expect("written");
         let e = Keyring::of_folder(folder.path(), &mut counting()).expect_err("too short");
         assert!(e.to_string().contains("64 hexadecimal digits"), "{e}");
+    }
+
+    #[test]
+    fn the_host_never_takes_an_invitation_that_names_a_person() {
+        let of = |role, name: Option<&str>, key| Invitation {
+            role,
+            name: name.map(String::from),
+            secret: Secret([key; KEY]),
+        };
+        let named = of(Role::Sculptor, Some("Bob"), 1);
+        let viewer = of(Role::Viewer, None, 2);
+        let anyone = of(Role::Sculptor, None, 3);
+        assert_eq!(Keyring(vec![named.clone(), viewer.clone()]).of_host(), None);
+        let keyring = Keyring(vec![named, viewer, anyone.clone()]);
+        assert_eq!(keyring.of_host(), Some(&anyone));
     }
 
     #[test]

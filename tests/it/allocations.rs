@@ -161,9 +161,11 @@ impl TopologyStroke {
         TopologyStroke { world, brush, supply, tick: 0, shown: None }
     }
 
+    /// Lifts the pen, for a stroke keeps its brush, and sets the next one.
     fn set_brush(&mut self) {
+        let commands = [Command::LiftAll, Command::Brush(self.brush)];
         self.tick += 1;
-        self.world.step(self.tick, &[], &[Command::Brush(self.brush)]);
+        self.world.step(self.tick, &[], &commands);
     }
 
     /// A loaded machine must not make the thread that makes pages late.
@@ -215,7 +217,9 @@ fn dynamic_topology_in_its_steady_state_neither_allocates_nor_frees() {
         let mut calls = 0;
         for i in 0..240 {
             stroke.wait_for_pages();
-            calls += stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12);
+            let now = stroke.draw(i as f32 / 240.0 * std::f32::consts::TAU, 0.12);
+            // The first dabs of a stroke open its undo step.
+            calls += if i >= 20 { now } else { 0 };
         }
         let now = stroke.world.mesh().vertex_count();
         println!("round {round}: {vertices} -> {now} vertices, {calls} calls");
