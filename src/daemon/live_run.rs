@@ -14,6 +14,7 @@ use crate::brush_folder::BrushFolder;
 use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::settings::LanguageTexts;
+use crate::kiosk::unrecorded::WithoutFilms;
 use crate::kiosk::{KioskConfig, keeper};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
@@ -167,11 +168,15 @@ impl LiveRun {
             plain: Arc::new(begun.world.mesh().to_tri()),
             camera: config.camera.camera(),
             brush: first_brush(&options, *begun.world.brush()),
+            film: Arc::default(),
         });
         let (writer, writing) = begun.journal.unzip();
         let health = writing.as_ref().map(|t| t.health.clone());
         let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
-        let journal = writer.map(|w| Box::new(w) as Box<dyn Journal>);
+        let journal = writer.map(|w| match &first {
+            Some(first) => Box::new(WithoutFilms::new(w, first.film.clone())) as Box<dyn Journal>,
+            None => Box::new(w),
+        });
         let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
             .with_controls(options.controls.clone())
             .with_models(models.of(adaptors.clone()));

@@ -1,15 +1,21 @@
 //! Thirty visitors in a row: each finds what the first found.
 
 use glam::Vec2;
-use sculptd_clay::Clay;
+use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::{LoopConfig, Resolved};
+use sculptd_daemon::kiosk::unrecorded::WithoutFilms;
 use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
 use sculptd_daemon::live::Live;
+use sculptd_daemon::session;
+use sculptd_daemon::session::format::Settings;
+use sculptd_daemon::session::replay::replay;
 use sculptd_daemon::startup;
+use sculptd_daemon::tick::Journal;
 use sculptd_devices::{Body, Clock, DeviceId, Pen, Sample, queue};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Beginning, Command, NewClay};
 use sculptd_engine::payload::Payload;
+use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::shapes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -19,7 +25,7 @@ use crate::allocations::{live_bytes, passed_alone};
 use crate::waiting::until;
 
 /// One visit of strokes, brushes, views, undo and a thing in the hands, different for each visitor.
-fn visit(world: &mut sculptd_engine::world::World, visitor: u64, tick: &mut u64) {
+fn visit(world: &mut World, visitor: u64, tick: &mut u64) {
     let mut brush = *world.brush();
     brush.radius = 0.1 + visitor as f32 * 0.005;
     let thing = Arc::new(shapes::sphere_of_about(500));
@@ -100,6 +106,77 @@ fn after_thirty_visitors_nothing_of_them_is_left() {
     }
 }
 
+/// A hundred films between two visits: the session has the visits alone, and replays to the last
+/// one's bits, numbers of the clay included.
+#[test]
+fn a_session_leaves_out_the_films_between_visits() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let config = Resolved::defaults(sculptd::presets()).config;
+    let plain = shapes::sphere_of_about(5_000);
+    let path = dir.path().join("kiosk.sculpt");
+    let settings = Settings {
+        rate_hz: 120,
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: 1 << 30,
+        camera: config.camera.camera(),
+        brush: config.brush,
+        hands: config.hand,
+    };
+    let (writer, thread) = session::create(&path, &plain, &settings).expect("created");
+    let film = Arc::new(AtomicBool::new(false));
+    let mut journal = WithoutFilms::new(writer, film.clone());
+    let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
+    let options = WorldOptions {
+        dab_budget: settings.dab_budget,
+        undo_bytes: settings.undo_bytes,
+        hands: settings.hands,
+    };
+    let workers = Workers::new(1);
+    let mut world = World::new(mesh, settings.camera, settings.brush, workers, options);
+    let plain = Arc::new(plain);
+    let mut tick = 0;
+    let mut run = |is_film: bool, strokes: u64| {
+        film.store(is_film, Relaxed);
+        let clay = NewClay::new(plain.clone(), false);
+        let beginning = Beginning { clay, camera: settings.camera, brush: settings.brush };
+        for i in 0..=strokes * 12 {
+            tick += 1;
+            let pen = Pen {
+                in_range: true,
+                tip: i % 12 < 10,
+                pos_mm: Vec2::new(45.0 + (i % 37) as f32 * 0.2, 50.0),
+                area_mm: Vec2::splat(100.0),
+                pressure: Some(0.6),
+                ..Pen::default()
+            };
+            let (t_us, body) = (tick * 8333, Body::Pen(pen));
+            let sample = Sample { device: DeviceId(0), t_us, device_t_us: None, body };
+            let (begin, given) = ([Command::Begin(Box::new(beginning.clone()))], [sample]);
+            let (samples, commands) = match i {
+                0 => (&[][..], &begin[..]),
+                _ => (&given[..], &[][..]),
+            };
+            world.step(tick, samples, commands);
+            journal.tick(tick, samples, commands, &mut world);
+        }
+        (world.hash(), world.mesh().object_id())
+    };
+    (0..50).for_each(|_| _ = run(true, 1));
+    run(false, 2);
+    (0..50).for_each(|_| _ = run(true, 1));
+    let live = run(false, 3);
+    run(true, 1);
+    drop(journal);
+    assert_eq!(thread.finish(), None);
+    let opened = session::open(&path).expect("opens");
+    let samples: usize = opened.input.iter().map(|t| t.samples.len()).sum();
+    assert_eq!(samples, 5 * 12, "the visits' alone");
+    let size = path.metadata().expect("a file").len();
+    assert!(size < 1 << 20, "{size} bytes for two visits");
+    let replayed = replay(&opened, None, Workers::new(2), &Default::default()).expect("replays");
+    assert_eq!((replayed.world.hash(), replayed.world.mesh().object_id()), live);
+}
+
 #[test]
 fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -108,7 +185,8 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
     let world = startup::world(mesh, &config);
     let clean = world.hash();
-    let start = keeper::Start { plain, camera: config.camera.camera(), brush: config.brush };
+    let camera = config.camera.camera();
+    let start = keeper::Start { plain, camera, brush: config.brush, film: Arc::default() };
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
     let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)

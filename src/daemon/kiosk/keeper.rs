@@ -43,6 +43,8 @@ pub struct Start {
     pub plain: Arc<TriMesh>,
     pub camera: Camera,
     pub brush: BrushSettings,
+    /// Set while a reset begins an attract film, which no session records; cleared for a visit.
+    pub film: Arc<AtomicBool>,
 }
 
 impl Start {
@@ -232,7 +234,7 @@ impl KioskThread {
                 #[cfg(unix)]
                 self.show_link(None);
                 self.dabs_before = self.published.load().figures.dabs;
-                self.put_back();
+                self.put_back(false);
             }
             Some(KioskAct::End { seconds }) => {
                 let state = self.published.load_full();
@@ -254,7 +256,7 @@ impl KioskThread {
                 {
                     tracing::error!("{}: {e}", file.display());
                 }
-                self.put_back();
+                self.put_back(false);
             }
         }
     }
@@ -292,7 +294,9 @@ impl KioskThread {
         }
     }
 
-    fn put_back(&self) {
+    /// Resets everything, for a film or for a visit.
+    fn put_back(&self, film: bool) {
+        self.start.film.store(film, Relaxed);
         let command = self.start.command(&self.built);
         // The loop takes 64 commands a tick: it has room again before long.
         if self.commands.send_timeout(command, Duration::from_secs(2)).is_err() {
@@ -303,7 +307,7 @@ impl KioskThread {
     fn attract(&mut self) {
         if !self.playing {
             // Each film begins on clean clay.
-            self.put_back();
+            self.put_back(true);
             self.films[self.film].rewind();
             (self.playing, self.began_us) = (true, self.clock.now_us());
         }

@@ -19,6 +19,7 @@ pub mod settings;
 pub mod share;
 mod speech;
 pub mod spool;
+pub mod unrecorded;
 
 pub use cycle::{Cycle, KioskAct, Stage, View};
 pub use settings::{FleetSettings, KioskConfig, Language, ScreenSettings};
