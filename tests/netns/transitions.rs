@@ -1,4 +1,4 @@
-//! Prints the contents of a session's file by device: `transitions FILE`. One line of JSON: samples,
+//! Prints the contents of a session file by device: `transitions FILE`. One line of JSON: samples,
 //! and samples that did more than move, by the device's number. A person of a shared sculpture has
 //! the numbers from 256 times the person's number.
 

@@ -2,8 +2,8 @@
 //! with the whole start mesh.
 //!
 //! A visit begins with a reset, so nothing that a film did outlives it, except that each reset
-//! gives the clay a new number. The resets of the films are recorded as resets to a tiny mesh, right
-//! before that of the visit: a replay then gives the same numbers and the same bits.
+//! gives the clay a new number. The resets of the films are recorded as resets to a tiny mesh,
+//! right before that of the visit: a replay then gives the same numbers and the same bits.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

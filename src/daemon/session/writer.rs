@@ -480,7 +480,8 @@ impl JournalThread {
                 to.display()
             ),
             Ok(to) => format!(
-                "{} was deleted or replaced: the session up to tick {} is in {}; later input is lost",
+                "{} was deleted or replaced: the session up to tick {} is in {}; later input is \
+                 lost",
                 path.display(),
                 self.end.tick,
                 to.display()

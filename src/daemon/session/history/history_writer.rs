@@ -331,12 +331,10 @@ impl HistoryWriter {
         let same = same_scene(self.tree.scene_at(self.tree.cursor), scene.as_ref());
         (self.view, self.scene) = (moment.scene.clone(), scene.clone());
         let leads_here = |tree: &Tree, id: u64| same_scene(tree.scene_at(id), scene.as_ref());
+        let fits = |n: &&Node| n.object_id == work.object_id() && leads_here(&self.tree, n.id);
         let known = match moment.deed {
             // A scene that changed on the way makes it another place.
-            HistoryEvent::Jump(id) => self.tree.node(id).map(|n| n.id).filter(|id| {
-                leads_here(&self.tree, *id)
-                    && self.tree.node(*id).is_some_and(|n| n.object_id == work.object_id())
-            }),
+            HistoryEvent::Jump(id) => self.tree.node(id).filter(fits).map(|n| n.id),
             _ if same && changes.as_ref().is_some_and(|c| c.is_empty()) => Some(self.tree.cursor),
             HistoryEvent::Undo => self.tree.here().and_then(|here| {
                 let back = |c: &Change| (c.0, c.2, c.1);
