@@ -68,7 +68,7 @@ impl Marks {
 }
 
 /// Returns what of `old`, from which `solid` was built, the new vertices are nowhere near.
-pub(super) fn lost_parts(
+pub(crate) fn lost_parts(
     old: &TriMesh,
     solid: &DistanceSolid,
     new: &[Vec3],
