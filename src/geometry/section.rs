@@ -3,9 +3,9 @@
 //! Which side of the plane a vertex is on is decided once a vertex, and a vertex in the plane
 //! counts as above it: the simulation of simplicity (Edelsbrunner and Mücke 1990). So an edge
 //! either crosses the plane in one point or not at all, and the contours of a closed mesh are
-//! closed wherever the plane passes: through faces, edges or vertices. What a plane through a face
-//! gives is what the mesh has just below it. A shell whose lowest points lie in the plane has
-//! nothing there: it is cut just above the plane.
+//! closed wherever the plane passes: through faces, edges or vertices. A plane through a face gives
+//! the section just below it. A shell whose lowest points are in the plane has nothing below: it is
+//! cut just above the plane.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,7 +30,7 @@ pub struct Contour {
     /// The solid is to the left, seen against the normal. A closed contour names its first point
     /// again at the end.
     pub points: Vec<DVec3>,
-    /// Whether the mesh closes it: an open mesh has contours with two ends.
+    /// True where the mesh closes it: an open mesh has contours with two ends.
     pub closed: bool,
 }
 
@@ -126,7 +126,7 @@ impl<'a> Slicer<'a> {
         Section::of(cut.trace(&ends), self.normal)
     }
 
-    /// Where the edge from `a` to `b` meets the plane.
+    /// The place at which the edge from `a` to `b` meets the plane.
     fn crossing(&self, a: u32, b: u32, offset: f64, slack: f64) -> DVec3 {
         let height = |v: u32| self.heights[v as usize] - offset;
         let (p, q) = (self.positions[a as usize], self.positions[b as usize]);
@@ -227,7 +227,7 @@ impl Cut {
         let mut done = vec![false; self.pieces.len()];
         let mut out = Vec::new();
         let open = (0..partner.len() as u32).filter(|&e| partner[e as usize] == OPEN);
-        // Where a piece starts before where one ends, so that contours keep their direction.
+        // Starts of pieces before ends, so that contours keep their direction.
         let (starts, ends): (Vec<u32>, Vec<u32>) = open.partition(|e| e % 2 == 0);
         let rest = (0..self.pieces.len() as u32).map(|i| 2 * i);
         for first in starts.into_iter().chain(ends).chain(rest) {
