@@ -6,8 +6,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use sculptd_daemon::startup::StartupError;
 pub use sculptd_mesh_commands::{Fail, Outcome, answer};
 use sculptd_mesh_commands::{
-    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh,
-    slice, subdivide, thickness,
+    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh, slice,
+    subdivide, thickness,
 };
 
 pub mod bench;

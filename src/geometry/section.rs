@@ -13,6 +13,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::PolyMesh;
+use crate::aabb::Aabb;
 use crate::disjoint_sets::DisjointSets;
 use crate::job::{Cancelled, Job};
 
@@ -198,7 +199,10 @@ impl Cut {
 
     /// Joins loose ends that are within `reach`, the nearest first.
     fn close_cracks(&self, loose: &mut [u32], reach: f64, join: &mut impl FnMut(u32, u32)) {
-        let x = |end: &u32| self.end(*end).x;
+        // Along the axis in which they spread most, so that few are near each other.
+        let all = Aabb::of(loose.iter().map(|e| self.end(*e)));
+        let axis = (all.max - all.min).max_position();
+        let x = |end: &u32| self.end(*end)[axis];
         loose.sort_by(|a, b| x(a).total_cmp(&x(b)).then(a.cmp(b)));
         let mut near = Vec::new();
         for (i, &a) in loose.iter().enumerate() {

@@ -46,6 +46,7 @@ mod service;
 mod sessions;
 #[cfg(all(unix, feature = "network"))]
 mod shared;
+mod slices;
 mod soak;
 mod synthetic_hands;
 
