@@ -6,7 +6,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use sculptd_daemon::startup::StartupError;
 pub use sculptd_mesh_commands::{Fail, Outcome, answer};
 use sculptd_mesh_commands::{
-    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh,
+    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh, slice,
     subdivide, thickness,
 };
 
@@ -137,6 +137,8 @@ pub enum Command {
     Distance(distance::DistanceArgs),
     /// A part's shadow along a direction: area, outline, drawing.
     Project(project::ProjectArgs),
+    /// Sections of a part by planes: contours, area, perimeter, drawing.
+    Slice(slice::SliceArgs),
     /// One closed surface of even triangles out of any mesh.
     Remesh(remesh::RemeshArgs),
     /// Grow or shrink a solid, or melt it together with another.
@@ -199,6 +201,7 @@ pub fn run() -> u8 {
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Distance(args)) => distance::run(&args, cli.json),
         Some(Command::Project(args)) => project::run(&args, cli.json),
+        Some(Command::Slice(args)) => slice::run(&args, cli.json),
         Some(Command::Remesh(args)) => remesh::run(&args, cli.json),
         Some(Command::Offset(args)) => offset::run(&args, cli.json),
         Some(Command::Hollow(args)) => hollow::run(&args, cli.json),

@@ -13,6 +13,7 @@
 //! | union, intersection, difference | [`boolean`] |
 //! | how thick are the walls? | [`thickness`] |
 //! | volume, area, projected area | [`measure`], [`projection`] |
+//! | sections by planes | [`section`] |
 //! | how far, inside or outside? | [`distance`], [`grid`], [`winding`], [`march`] |
 //! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
 //! | quads that follow the shape | [`quads`] |
@@ -63,6 +64,7 @@ pub mod projection;
 pub mod quads;
 pub mod remesh;
 pub mod repair;
+pub mod section;
 pub mod self_intersection;
 pub mod shapes;
 pub mod silhouette;

@@ -9,7 +9,7 @@ use super::bvh::nearest_on_triangle;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
 use super::remesh::dual::extract;
-use super::remesh::{MARGIN, RemeshError, layout};
+use super::remesh::{LostParts, MARGIN, RemeshError, layout, lost_parts};
 use super::unfold::{even, settle_all};
 use crate::TriMesh;
 use crate::disjoint_sets::DisjointSets;
@@ -95,7 +95,7 @@ pub struct Offset {
 /// vertices are at one distance to about a ten-thousandth of the spacing except at creases. Where
 /// triangles cut across a bend they come nearer than their vertices, so the surface is made again,
 /// farther away by what is missing, until none of it is nearer than `distance`; [`Offset::least`]
-/// says what was reached. [`RemeshError::Empty`] where shrinking leaves nothing.
+/// says what was reached. [`RemeshError::TooDeep`] where shrinking leaves nothing.
 pub fn offset(
     solid: &DistanceSolid,
     distance: f64,
@@ -106,7 +106,11 @@ pub fn offset(
     let mut asked = wanted;
     let mut made = at_distance(solid, distance, side, job)?;
     if made.faces.is_empty() {
-        return Err(RemeshError::Empty);
+        return Err(if distance < 0.0 {
+            too_deep(solid, wanted, job)?
+        } else {
+            RemeshError::Empty
+        });
     }
     let mut least = least_wall(solid, &made, job)?;
     for _ in 0..ROUNDS {
@@ -153,6 +157,49 @@ fn cavity_at(
         return Err(RemeshError::Empty);
     }
     closed(deep, wall * 0.5, job)
+}
+
+/// The cavity at the depth that is asked for.
+fn first_cavity(
+    solid: &DistanceSolid,
+    wall: f64,
+    side: usize,
+    job: &Job,
+) -> Result<OffsetSurface, RemeshError> {
+    match cavity_at(solid, wall, wall, side, job) {
+        Err(RemeshError::Empty) => Err(too_deep(solid, wall, job)?),
+        made => made,
+    }
+}
+
+/// Samples along the longest side by which the deepest place is found.
+const DEPTH_SIDE: usize = 64;
+
+/// The error for a part that is nowhere `asked` deep. A part in which no sample is inside encloses
+/// nothing.
+fn too_deep(solid: &DistanceSolid, asked: f64, job: &Job) -> Result<RemeshError, RemeshError> {
+    let grid = DistanceGrid::sample(solid, layout(solid, 0.0, DEPTH_SIDE)?, job)?;
+    let deepest = -grid.values.iter().fold(0f32, |least, v| least.min(*v)) as f64;
+    Ok(if deepest > 0.0 { RemeshError::TooDeep { asked, deepest } } else { RemeshError::Empty })
+}
+
+/// A surface `depth` inside passes a flat or right-angled part of the old one within this many of
+/// it.
+const CORNER: f64 = 1.8;
+
+/// Returns the parts of `old` with no surface beneath them at about `depth`: there the solid is
+/// thinner than twice the depth. `solid` was built from `old`; `new` holds the vertices of the
+/// surface at that depth.
+pub fn too_thin(
+    old: &TriMesh,
+    solid: &DistanceSolid,
+    new: &[Vec3],
+    depth: f64,
+    side: usize,
+) -> Option<LostParts> {
+    let (lo, hi) = old.bounds();
+    let spacing = (hi - lo).max_element() as f64 / side.max(1) as f64;
+    lost_parts(old, solid, new, CORNER * depth + 2.0 * spacing)
 }
 
 /// Rounds after which the least distance is as it is: the second, as a rule, finds nothing.
@@ -209,8 +256,7 @@ fn least_wall(
 /// further than `wall` inside is cut out, together with every partition within it that is thinner
 /// than the wall. The wall is measured over each of the cavity's triangles, and the cavity is made
 /// again, deeper, until none is nearer than `wall`; [`Hollow::wall`] says what was reached.
-/// [`RemeshError::Empty`]
-/// where the solid is nowhere thick enough for a cavity.
+/// [`RemeshError::TooDeep`] where the solid is nowhere thick enough for a cavity.
 pub fn hollow(
     mesh: &TriMesh,
     solid: &DistanceSolid,
@@ -220,7 +266,7 @@ pub fn hollow(
 ) -> Result<Hollow, RemeshError> {
     // A cavity's chords come nearer to the old surface than its vertices do: what is missing of the
     // wall is measured and added until nothing is.
-    let (mut depth, mut cavity) = (wall, cavity_at(solid, wall, wall, side, job)?);
+    let (mut depth, mut cavity) = (wall, first_cavity(solid, wall, side, job)?);
     let mut least = least_wall(solid, &cavity, job)?;
     for _ in 0..ROUNDS {
         if least >= wall {
@@ -347,7 +393,8 @@ pub fn smooth_union(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::icosphere;
+    use crate::PolyMesh;
+    use crate::shapes::{cuboid, icosphere};
 
     #[test]
     fn the_wall_is_nowhere_thinner_than_asked() {
@@ -392,6 +439,39 @@ mod tests {
             assert!((1.5..1.7).contains(&least), "{least}");
             assert!(made.least >= 1.5 && made.least <= least + 1e-6, "{} {least}", made.least);
         }
+    }
+
+    #[test]
+    fn a_wall_thicker_than_half_of_the_part_is_an_error_with_figures() {
+        let plate = cuboid(DVec3::ZERO, DVec3::new(20.0, 20.0, 4.0)).triangulate().0;
+        let job = Job::default();
+        let solid = DistanceSolid::build(&plate, &job).unwrap();
+        for e in [
+            hollow(&plate, &solid, 2.5, 64, &job).unwrap_err(),
+            offset(&solid, -2.5, 64, &job).unwrap_err(),
+        ] {
+            let RemeshError::TooDeep { asked, deepest } = e else { panic!("{e}") };
+            assert!(asked == 2.5 && (deepest - 2.0).abs() < 0.35, "{deepest}");
+            assert!(e.to_string().contains("half of the part's greatest thickness"));
+        }
+    }
+
+    #[test]
+    fn a_fin_that_an_offset_takes_away_is_reported_and_a_block_is_not() {
+        let job = Job::default();
+        let mut part = cuboid(DVec3::ZERO, DVec3::new(20.0, 20.0, 8.0));
+        let lost = |part: &PolyMesh| {
+            let part = part.triangulate().0;
+            let solid = DistanceSolid::build(&part, &job).unwrap();
+            let made = offset(&solid, -1.0, 64, &job).unwrap();
+            too_thin(&part, &solid, &made.mesh.positions, 1.0, 64)
+        };
+        assert_eq!(lost(&part), None);
+        let fin = cuboid(DVec3::new(9.5, 2.0, 7.0), DVec3::new(10.5, 18.0, 20.0));
+        part.positions.extend(&fin.positions);
+        fin.faces().for_each(|f| part.push_face(&f.iter().map(|v| v + 8).collect::<Vec<_>>()));
+        let found = lost(&part).expect("the fin");
+        assert!(found.place.z > 8.0 && found.area > 300.0, "{found:?}");
     }
 
     #[test]

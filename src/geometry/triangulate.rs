@@ -194,6 +194,105 @@ fn flat_ear(points: &[Coord<f64>], i: usize, j: usize, k: usize, turn: f64) -> b
 /// beyond it crosses or repeats itself over and over.
 const MOST_CHECKS: u64 = 1_000_000_000;
 
+/// The corners of a polygon that are not convex, in a grid of square cells of about one each.
+struct ReflexCorners<'a> {
+    points: &'a [Coord<f64>],
+    live: Vec<bool>,
+    /// Those that are live, and some that were.
+    list: Vec<usize>,
+    count: usize,
+    low: Coord<f64>,
+    /// Cells a unit.
+    scale: f64,
+    /// Cells along each side; 0 where there are too few corners for a grid.
+    side: usize,
+    cells: Vec<Vec<u32>>,
+}
+
+/// Fewest corners that are put in a grid.
+const GRID_FROM: usize = 64;
+
+impl<'a> ReflexCorners<'a> {
+    fn new(points: &'a [Coord<f64>], list: Vec<usize>) -> Self {
+        let mut live = vec![false; points.len()];
+        list.iter().for_each(|&r| live[r] = true);
+        let mut low = Coord { x: f64::INFINITY, y: f64::INFINITY };
+        let mut high = Coord { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY };
+        for p in points {
+            low = Coord { x: low.x.min(p.x), y: low.y.min(p.y) };
+            high = Coord { x: high.x.max(p.x), y: high.y.max(p.y) };
+        }
+        let size = (high.x - low.x).max(high.y - low.y);
+        let grid = list.len() >= GRID_FROM && size > 0.0 && size.is_finite();
+        let side = if grid { (list.len() as f64).sqrt() as usize } else { 0 };
+        let (scale, count) = (side as f64 / size, list.len());
+        let mut out = ReflexCorners {
+            points,
+            live,
+            list,
+            count,
+            low,
+            scale,
+            side,
+            cells: vec![Vec::new(); side * side],
+        };
+        if side > 0 {
+            for i in 0..out.list.len() {
+                let r = out.list[i];
+                let (x, y) = out.cell(points[r]);
+                out.cells[y * side + x].push(r as u32);
+            }
+        }
+        out
+    }
+
+    /// Rounding keeps the order, so a corner within a box is in a cell within the box's cells.
+    fn cell(&self, p: Coord<f64>) -> (usize, usize) {
+        let along = |v: f64, low: f64| (((v - low) * self.scale) as usize).min(self.side - 1);
+        (along(p.x, self.low.x), along(p.y, self.low.y))
+    }
+
+    fn holds(&self, r: usize) -> bool {
+        self.live[r]
+    }
+
+    fn remove(&mut self, r: usize) {
+        self.count -= usize::from(std::mem::take(&mut self.live[r]));
+        if self.list.len() > 2 * self.count + GRID_FROM {
+            self.list.retain(|&r| self.live[r]);
+        }
+    }
+
+    /// Whether `test` says yes to a corner in the ear's box other than its own. Adds the corners
+    /// that were looked at to `checks`.
+    fn any(&mut self, ear: [usize; 3], checks: &mut u64, test: impl Fn(usize) -> bool) -> bool {
+        let live = &self.live;
+        let hit = |r: usize| live[r] && !ear.contains(&r) && test(r);
+        if self.side > 0 {
+            let cells = ear.map(|i| self.cell(self.points[i]));
+            let range = |of: fn(&(usize, usize)) -> usize| {
+                let (a, b, c) = (of(&cells[0]), of(&cells[1]), of(&cells[2]));
+                (a.min(b).min(c), a.max(b).max(c))
+            };
+            let ((x0, x1), (y0, y1)) = (range(|c| c.0), range(|c| c.1));
+            if (x1 - x0 + 1) * (y1 - y0 + 1) < self.list.len() {
+                for y in y0..=y1 {
+                    for cell in &mut self.cells[y * self.side + x0..=y * self.side + x1] {
+                        *checks += cell.len() as u64 + 1;
+                        cell.retain(|&r| live[r as usize]);
+                        if cell.iter().any(|&r| hit(r as usize)) {
+                            return true;
+                        }
+                    }
+                }
+                return false;
+            }
+        }
+        *checks += self.list.len() as u64 + 1;
+        self.list.iter().any(|&r| hit(r))
+    }
+}
+
 /// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left.
 fn ears(
     corners: &[u32],
@@ -206,7 +305,8 @@ fn ears(
     let mut next: Vec<usize> = (1..n).chain([0]).collect();
     let mut prev: Vec<usize> = [n - 1].into_iter().chain(0..n - 1).collect();
     // Only reflex corners can be inside an ear, and a corner that became convex stays so.
-    let mut reflex: Vec<usize> = (0..n).filter(|&i| turn(prev[i], i, next[i]) <= 0.0).collect();
+    let mut reflex =
+        ReflexCorners::new(points, (0..n).filter(|&i| turn(prev[i], i, next[i]) <= 0.0).collect());
     let inside = |p: usize, i: usize, q: usize, r: usize| {
         // A corner at the same place as one of the ear's is a touch, not a hindrance.
         [p, i, q].iter().all(|&c| (points[c].x, points[c].y) != (points[r].x, points[r].y))
@@ -223,20 +323,16 @@ fn ears(
         let (p, q) = (prev[at], next[at]);
         let bend = turn(p, at, q);
         let convex = bend > 0.0;
-        if demand < 3 {
-            checks += reflex.len() as u64 + 1;
-            if checks > MOST_CHECKS {
-                // Whatever it is: any corner, in order, which ends at once.
-                (demand, least) = (4, 4);
-                reflex.clear();
-            }
+        if demand < 3 && checks > MOST_CHECKS {
+            // Whatever it is: any corner, in order, which ends at once.
+            (demand, least) = (4, 4);
         }
         let good = match demand {
             0..=2 => {
                 (demand > 1 || allowed(p, q))
                     && convex
                     && (demand > 0 || !flat_ear(points, p, at, q, bend))
-                    && !reflex.iter().any(|&r| r != p && r != at && r != q && inside(p, at, q, r))
+                    && !reflex.any([p, at, q], &mut checks, |r| inside(p, at, q, r))
             }
             3 => convex,
             _ => true,
@@ -256,8 +352,12 @@ fn ears(
         left -= 1;
         tried = 0;
         demand = least;
-        let gone = at;
-        reflex.retain(|&r| r != gone && ((r != p && r != q) || turn(prev[r], r, next[r]) <= 0.0));
+        reflex.remove(at);
+        for r in [p, q] {
+            if reflex.holds(r) && turn(prev[r], r, next[r]) > 0.0 {
+                reflex.remove(r);
+            }
+        }
         // One on, so that a round polygon is not cut into a fan.
         at = next[q];
     }
@@ -344,6 +444,16 @@ mod tests {
         let m = polygon(&star);
         let (sum, least) = area(&m);
         assert!((sum - area_vector(&m.positions, m.face(0)).z / 2.0).abs() < 1e-9 && least > 0.0);
+        let wave: Vec<(f64, f64)> = (0..200_000)
+            .map(|i| {
+                let a = i as f64 * std::f64::consts::TAU / 200_000.0;
+                let r = 10.0 + (50.0 * a).sin();
+                (r * a.cos(), r * a.sin())
+            })
+            .collect();
+        let m = polygon(&wave);
+        let (sum, least) = area(&m);
+        assert!((sum - area_vector(&m.positions, m.face(0)).z / 2.0).abs() < 1e-6 && least >= 0.0);
         for crossed in [&[(0., 0.), (1., 1.), (1., 0.), (0., 1.), (0.5, 3.0)][..], &[(0., 0.); 7]] {
             assert_eq!(polygon(crossed).triangles().0.len(), crossed.len() - 2);
         }

@@ -1,5 +1,7 @@
 //! `sculptd boolean`: union, intersection and differences of solids.
 
+mod operands;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -7,18 +9,19 @@ use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
+use self::operands::{operand, solved};
 use super::convert::{FileFacts, ReadyMesh, write_checked, write_ready};
 use super::distance::warn;
 use super::info::interrupted;
 use super::{Fail, Outcome, answer};
+use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{
     BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, Precision, ResultFaces,
 };
-use sculptd_geometry::io::{read_mesh, writable_format};
+use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::written::KnownFaces;
-use sculptd_geometry::{PolyMesh, check, repair};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum What {
@@ -239,6 +242,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     let mut options =
         BooleanOptions { tolerance: args.tolerance, faces, keep_contact: args.keep_contact };
     let (mut best, blank) = (None::<ResultSet>, out);
+    let mut failed = None;
     for factor in SMALLER {
         let first = best.as_ref().map(|b| b.out.tolerance);
         if let Some(first) = first {
@@ -248,8 +252,10 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         let mut made =
             match ResultSet::of(&operands, &clean, args, &options, plane, out, &job, &now) {
                 Ok(made) => made,
-                Err(e) if best.is_none() => return Err(e),
-                Err(_) => break,
+                Err(e) => {
+                    failed = Some(e);
+                    break;
+                }
             };
         let again = made.crossings > 0 && made.out.contact.near_misses > 0;
         if best.as_ref().is_none_or(|b| made.crossings < b.crossings) {
@@ -267,7 +273,30 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             break;
         }
     }
-    let Some(ResultSet { mut out, solids, .. }) = best else {
+    // An operand that crosses itself has another meaning where the one as it is gives no result.
+    let troubled = best.as_ref().is_none_or(|b| b.crossings > 0);
+    let inconsistent = matches!(failed, None | Some(Fail::Check(_)));
+    if troubled
+        && inconsistent
+        && args.solve.is_none()
+        && !args.trust
+        && let Some((solids, notes)) = solved(&operands, &clean, args, &job)?
+    {
+        options.tolerance = args.tolerance;
+        let dirty = vec![false; solids.len()];
+        if let Ok(mut made) =
+            ResultSet::of(&solids, &dirty, args, &options, plane, blank, &job, &now)
+            && best.as_ref().is_none_or(|b| made.crossings < b.crossings)
+        {
+            made.out.warnings.extend(notes);
+            made.solved = true;
+            best = Some(made);
+        }
+    }
+    if let Some(e) = failed.filter(|_| best.is_none()) {
+        return Err(e);
+    }
+    let Some(ResultSet { mut out, solids, solved, .. }) = best else {
         return Err(Fail::Check("no result".into()));
     };
     out.seconds = now() - start;
@@ -278,7 +307,9 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         let written = write_ready(&file, &solid.mesh, written.as_ref(), &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
         let mut made = Made::of(&name, file, &written);
-        if args.details {
+        if args.details && solved {
+            out.warnings.push(format!("{name}: no origins are given: an operand was solved first"));
+        } else if args.details {
             let plain = || solid.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
             let all = origins.unwrap_or_else(plain);
             if all.len() == made.faces {
@@ -307,6 +338,8 @@ struct ResultSet {
     solids: Vec<ReadySolid>,
     /// Pairs of triangles that cross in them once they are rounded to the format.
     crossings: usize,
+    /// Whether operands were solved by winding first.
+    solved: bool,
 }
 
 struct ReadySolid {
@@ -368,7 +401,7 @@ impl ResultSet {
             ready.push(ReadySolid { name, file, solid, origins, written });
         }
         *out.phases.entry("crossings".into()).or_default() += now() - lap;
-        Ok(ResultSet { out, solids: ready, crossings })
+        Ok(ResultSet { out, solids: ready, crossings, solved: false })
     }
 }
 
@@ -510,78 +543,6 @@ fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
         }
         writeln!(w, "{:.4} s, tolerance {:.3e}", out.seconds, out.tolerance)
     });
-}
-
-/// Reads one operand, mends it where asked, and says what is wrong with it. And whether it is known
-/// to be closed and manifold, without triangles that cross.
-fn operand(
-    path: &Path,
-    args: &BooleanArgs,
-    job: &Job,
-    now: &impl Fn() -> f64,
-    out: &mut BooleanAnswer,
-) -> Result<(PolyMesh, bool), Fail> {
-    let mut lap = now();
-    let mut phase = |out: &mut BooleanAnswer, name: &str| {
-        let t = now();
-        *out.phases.entry(name.into()).or_default() += t - lap;
-        lap = t;
-    };
-    let loaded = read_mesh(path, job)?;
-    let mut mesh = loaded.mesh;
-    out.warnings.extend(loaded.warnings.iter().map(|w| format!("{}: {w}", path.display())));
-    phase(out, "read");
-    let stop = |e: sculptd_geometry::job::Cancelled| Fail::Input(e.to_string());
-    let mut facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
-    if !facts.closed {
-        // Triangle soups (STL) repeat their corners for each triangle.
-        repair::weld(&mut mesh, 0.0);
-        facts = check::report(&mesh, !args.trust, job).map_err(stop)?;
-    }
-    if args.solve.is_none() && !facts.closed {
-        // Said here, where the file's name is known and what helps.
-        if let Err(boolean::BooleanError::Open { edges, .. }) = boolean::check(&mesh, "", job) {
-            let first = args.meshes.first().is_some_and(|m| m == path);
-            return Err(Fail::Input(format!(
-                "{}: {} is open: {edges} edges lack a partner (--solve winding closes holes first)",
-                path.display(),
-                boolean::NAMES[usize::from(!first)]
-            )));
-        }
-    }
-    let crossed = facts.self_intersections.unwrap_or(0);
-    let mut clean = facts.closed && facts.manifold && facts.self_intersections == Some(0);
-    phase(out, "look");
-    // True if the faces' directions decide what is inside.
-    let directed = facts.closed && facts.oriented && facts.volume.is_some_and(|v| v > 0.0);
-    if args.solve.is_some() && (!directed || crossed > 0 || args.trust || facts.components > 1) {
-        let oriented = if directed { Default::default() } else { repair::orient_shells(&mut mesh) };
-        let turned = oriented.turned;
-        if oriented.guessed > 0 && oriented.crossing > 0 {
-            out.warnings.push(format!(
-                "{}: the direction of {} shells was guessed (outwards where shells cross)",
-                path.display(),
-                oriented.guessed
-            ));
-        }
-        let holes = repair::fill_holes(&mut mesh, usize::MAX);
-        let was = mesh.face_count();
-        mesh = boolean::solve(&mesh, job)?;
-        clean = false;
-        out.warnings.push(format!(
-            "{}: solved by winding: {turned} faces turned, {holes:?}, {was} faces became {}",
-            path.display(),
-            mesh.face_count()
-        ));
-        phase(out, "solve");
-    } else if crossed > 0 {
-        out.warnings.push(format!(
-            "{}: {crossed} pairs of triangles cross; what lies there is taken as it is (--solve \
-                winding mends it)",
-            path.display()
-        ));
-    }
-    Ok((mesh, clean))
 }
 
 fn named(out: &Path, name: &str) -> PathBuf {

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, timed, warn};
-use super::remesh::{RemeshHow, finish};
+use super::remesh::{RemeshHow, finish, place};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::offset::hollow;
+use sculptd_geometry::offset::{hollow, too_thin};
 
 #[derive(Debug, clap::Args)]
 pub struct HollowArgs {
@@ -42,6 +42,15 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
         warnings.push(format!(
             "the wall is {} at its thinnest place instead of {}: a larger --side keeps it",
             made.wall, args.wall
+        ));
+    }
+    let cavity = &made.mesh.positions[part.mesh.positions.len()..];
+    if let Some(lost) = too_thin(&part.mesh, &solid, cavity, args.wall, args.how.side) {
+        warnings.push(format!(
+            "{:.1} mm2 of the surface have no cavity beneath them, for instance at {}: the part is \
+             thinner than twice the wall there and stays solid",
+            lost.area,
+            place(&lost, part.centre)
         ));
     }
     warn(&args.mesh, &warnings);

@@ -23,6 +23,7 @@ pub mod offset;
 pub mod project;
 pub mod remesh;
 pub mod remesh_quads;
+pub mod slice;
 pub mod subdivide;
 pub mod thickness;
 

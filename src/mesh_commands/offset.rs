@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, solid_about, timed, warn};
-use super::remesh::{RemeshHow, finish};
+use super::remesh::{RemeshHow, finish, place};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::offset::{offset, smooth_union};
+use sculptd_geometry::measure::measures;
+use sculptd_geometry::offset::{offset, smooth_union, too_thin};
 
 #[derive(Debug, clap::Args)]
 #[command(group(clap::ArgGroup::new("what").required(true).args(["distance", "unite"])))]
@@ -54,6 +55,18 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
                      larger --side keeps it",
                     made.least,
                     wanted.abs()
+                ));
+            }
+            if wanted < 0.0
+                && let Some(lost) =
+                    too_thin(&part.mesh, &a, &made.mesh.positions, -wanted, args.how.side)
+            {
+                let before = measures(&part.mesh).volume;
+                warnings.push(format!(
+                    "{:.1} mm2 of the surface vanish with what is beneath them, for instance at \
+                     {}: the part is thinner than twice the offset there. Its volume was {before:.4}",
+                    lost.area,
+                    place(&lost, part.centre)
                 ));
             }
             (Ok(made.mesh), seconds)

@@ -12,7 +12,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{writable_format, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::remesh::{RemeshError, RemeshSettings, remesh};
+use sculptd_geometry::remesh::{LostParts, RemeshError, RemeshSettings, remesh};
 
 #[derive(Debug, clap::Args)]
 pub struct RemeshArgs {
@@ -88,6 +88,12 @@ pub fn finish(
     Ok(())
 }
 
+/// Where parts were lost, in the coordinates of the file.
+pub fn place(lost: &LostParts, centre: DVec3) -> String {
+    let [x, y, z] = (lost.place.as_dvec3() + centre).to_array();
+    format!("({x:.3}, {y:.3}, {z:.3})")
+}
+
 pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
     if let Some(quads) = args.quads.quads {
         return remesh_quads(&args.mesh, &args.out, quads, &args.quads, json);
@@ -102,11 +108,11 @@ pub fn run(args: &RemeshArgs, json: bool) -> Outcome {
         warnings.push(format!("the new mesh crosses itself {} times", made.crossings));
     }
     if let Some(lost) = made.lost {
-        let [x, y, z] = (lost.place.as_dvec3() + part.centre).to_array();
         warnings.push(format!(
-            "{:.1} mm2 of the surface are lost, for instance at ({x:.3}, {y:.3}, {z:.3}): parts \
-             there are thinner than the samples are apart. Use more of them, with --side",
-            lost.area
+            "{:.1} mm2 of the surface are lost, for instance at {}: parts there are thinner than \
+             the samples are apart. Use more of them, with --side",
+            lost.area,
+            place(&lost, part.centre)
         ));
     }
     warn(&args.mesh, &warnings);

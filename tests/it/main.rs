@@ -47,6 +47,7 @@ mod service;
 mod sessions;
 #[cfg(all(unix, feature = "network"))]
 mod shared;
+mod slices;
 mod soak;
 mod synthetic_hands;
 

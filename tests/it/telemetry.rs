@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use serde_json::Value;
 
 use crate::hostile::{Daemon, memory_kib};
-use crate::waiting::{PATIENCE, pause, until};
+use crate::waiting::{PATIENCE, until};
 use sculptd_daemon::telemetry::otlp::name_and_unit;
 
 /// Behaviour of a collector.

@@ -41,7 +41,7 @@ fn guarded<T>(what: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
 fn sound(m: Manifold) -> Result<Manifold, String> {
     match m.status() {
         Status::NoError => Ok(m),
-        bad => Err(format!("the global engine says {bad:?}")),
+        bad => Err(format!("the global engine rejects the mesh: {bad}")),
     }
 }
 

@@ -159,8 +159,8 @@ pub enum ResultFaces {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BooleanOptions {
     /// Length within which places are one, in the operands' unit. `None`: what the operands'
-    /// coordinates can resolve ([`default_tolerance`]). 0: only what rounding of computed points
-    /// needs.
+    /// coordinates can resolve ([`default_tolerance`]). A given length is a bound: no larger one is
+    /// used, except for what rounding of computed points needs, 2^-49 of the largest coordinate.
     pub tolerance: Option<f64>,
     /// The shape of the results' faces.
     pub faces: ResultFaces,
@@ -207,7 +207,10 @@ pub enum BooleanError {
         operand: &'static str,
     },
     /// No way led to a result that passes all checks; the text says what failed first.
-    #[error("no consistent result: {0}. Do the operands cross themselves?")]
+    #[error(
+        "no consistent result: {0}. Give a smaller tolerance, or mend operands that cross \
+         themselves (sculptd convert --mend)"
+    )]
     Inconsistent(String),
     /// The job was cancelled.
     #[error(transparent)]
@@ -282,7 +285,7 @@ pub fn compute(
     }
     // If the first tolerance falls between distances in contact and not in contact, another does
     // not.
-    if let Ok(solids) = task.within(&[0.125, 16.0, 1.0 / 64.0], default.precision, &mut report)? {
+    if let Ok(solids) = task.within(task.others(), default.precision, &mut report)? {
         report.warnings.push(format!(
             "tolerance {:.3e} taken instead of {wanted:.3e}: {why}",
             report.tolerance

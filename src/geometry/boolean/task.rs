@@ -28,6 +28,13 @@ pub(super) struct BooleanTask<'a, N> {
 }
 
 impl<N: Fn() -> f64> BooleanTask<'_, N> {
+    /// The tolerances to try after the wanted one, in units of it. One that the caller gave is a
+    /// bound.
+    pub fn others(&self) -> &'static [f64] {
+        let given = self.options.tolerance.is_some();
+        if given { &[0.125, 1.0 / 64.0, 0.0] } else { &[0.125, 16.0, 1.0 / 64.0] }
+    }
+
     /// The results with the first of the tolerances, in units of the wanted one, that gives some.
     /// The inner error says why the first one does not.
     pub fn within(
@@ -97,9 +104,11 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         };
         let task = BooleanTask { operands, volumes: [volume(0), volume(1)], ..*self };
         let mut made = BooleanReport { precision: report.precision, ..BooleanReport::default() };
-        let Ok(mut solids) = task.within(&[1.0, 0.125, 16.0], precision, &mut made)? else {
-            return Ok(None);
-        };
+        let mut solids = task.within(&[1.0], precision, &mut made)?;
+        if solids.is_err() {
+            solids = task.within(self.others(), precision, &mut made)?;
+        }
+        let Ok(mut solids) = solids else { return Ok(None) };
         for solid in &mut solids {
             for origin in &mut solid.origins {
                 if let Some((_, from)) = &solved[origin.operand as usize] {
@@ -311,8 +320,8 @@ fn doubt(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::boolean::solve;
-    use crate::shapes::{cuboid, icosphere};
+    use crate::boolean::{compute, solve};
+    use crate::shapes::{cuboid, cylinder, icosphere};
 
     #[test]
     fn an_operand_that_crosses_itself_is_the_solid_that_it_goes_around() {
@@ -356,5 +365,59 @@ mod tests {
                 assert!(face.iter().map(off).fold(0.0, f64::max) < 1e-13);
             }
         }
+    }
+
+    #[test]
+    fn a_tolerance_between_the_sides_of_a_drill_and_its_radius_still_drills() {
+        let block = cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 20.0));
+        let mut drill = cylinder(6.0, 60.0, 64);
+        drill.positions.iter_mut().for_each(|p| *p += DVec3::new(20.0, 15.0, 20.0));
+        let area = 32.0 * 36.0 * (std::f64::consts::TAU / 64.0).sin();
+        for given in [0.1, 0.3, 1.0] {
+            let options = BooleanOptions { tolerance: Some(given), ..Default::default() };
+            let (made, report) = compute(
+                [&block, &drill],
+                &[Operation::Difference],
+                &options,
+                &Job::default(),
+                || 0.0,
+            )
+            .expect("a result");
+            assert!(report.tolerance <= given, "{} for {given}", report.tolerance);
+            let gone = 24_000.0 - made[0].facts.volume;
+            assert!((gone - 20.0 * area).abs() < 800.0 * given.min(0.3), "{gone} at {given}");
+        }
+    }
+
+    #[test]
+    fn no_larger_tolerance_than_the_given_one_is_used() {
+        let mut seed = 7u64;
+        let mut unit = || {
+            seed = seed.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let cases = if std::env::var_os("SCULPTD_LONG").is_some() { 1000 } else { 200 };
+        let mut made = 0;
+        for case in 0..cases {
+            let a = cuboid(DVec3::ZERO, DVec3::new(9.0, 7.0, 5.0));
+            let mut b = match case % 3 {
+                0 => cylinder(1.0 + 2.0 * unit(), 12.0, 8 + (unit() * 40.0) as u32),
+                1 => icosphere(1.0 + 2.0 * unit() as f32, 3).to_poly(),
+                _ => cuboid(DVec3::splat(-2.0), DVec3::splat(1.0 + unit())),
+            };
+            let shift = DVec3::new(9.0 * unit(), 7.0 * unit(), (5.0 * unit()).round());
+            b.positions.iter_mut().for_each(|p| *p += shift);
+            let given = 10f64.powf(unit() * 6.0 - 5.0);
+            let options = BooleanOptions { tolerance: Some(given), ..Default::default() };
+            match compute([&a, &b], &Operation::ALL, &options, &Job::default(), || 0.0) {
+                Ok((solids, report)) => {
+                    made += 1;
+                    assert!(report.tolerance <= given, "{case}: {} for {given}", report.tolerance);
+                    assert!(solids.iter().all(|s| s.facts.closed), "{case} at {given}");
+                }
+                Err(e) => assert!(e.to_string().contains("smaller tolerance"), "{e}"),
+            }
+        }
+        assert!(made * 100 >= cases * 95, "{made} of {cases}");
     }
 }

@@ -48,11 +48,8 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
     }
     if length as usize > bytes.len() {
         let found = format!("the end of the file after {} bytes", bytes.len());
-        return Err(bad(
-            FilePlace::Byte(bytes.len() as u64),
-            format!("{length} bytes as the header states"),
-            found,
-        ));
+        let at = FilePlace::Byte(bytes.len() as u64);
+        return Err(bad(at, format!("{length} bytes as the header states"), found));
     }
     let (mut at, mut json, mut binary) = (12, None, None);
     while at + 8 <= length as usize {
@@ -85,6 +82,10 @@ pub(super) fn parse(
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let root: Root = serde_json::from_slice(json)
         .map_err(|e| bad(FilePlace::Line(e.line() as u64), "glTF 2.0 as JSON", format!("{e}")))?;
+    let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
+    if version.split('.').next() != Some("2") {
+        return Err(bad(FilePlace::File, "glTF version 2", format!("version {version}")));
+    }
     for needed in &root.extensions_required {
         if needed.contains("compression") || needed.contains("meshopt") {
             return Err(bad(

@@ -117,7 +117,7 @@ pub(super) fn parse(
         cursor.skip_line();
     }
     job.progress(0.5);
-    let mut short = 0u64;
+    let (mut short, mut painted) = (0u64, 0u64);
     for f in 0..faces {
         if f.is_multiple_of(1 << 14) {
             job.check()?;
@@ -160,11 +160,15 @@ pub(super) fn parse(
             short += 1;
         } else {
             mesh.face_starts.push(mesh.corners.len() as u32);
+            painted += u64::from(cursor.word().is_some_and(|w| w[0] != b'#'));
         }
         cursor.skip_line();
     }
     if short > 0 {
         warnings.push(format!("{short} faces of fewer than three corners left out"));
+    }
+    if painted > 0 {
+        warnings.push(format!("the colours of {painted} faces left out"));
     }
     mesh.colours = coloured.then_some(colours);
     Ok(mesh)

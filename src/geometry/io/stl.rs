@@ -122,6 +122,10 @@ pub(super) fn parse_binary(
             );
         }
     }
+    let painted = records.par_chunks_exact(RECORD).filter(|r| r[48..] != [0, 0]).count();
+    if painted > 0 || memchr::memmem::find(&bytes[..80], b"COLOR=").is_some() {
+        warnings.push(format!("colours left out: {painted} triangles have attribute bytes"));
+    }
     job.progress(0.3);
     let (positions, corners) =
         weld_keys(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;

@@ -148,6 +148,13 @@ impl<'a> TextCursor<'a> {
         }
     }
 
+    /// To the next word, on this line or a later one.
+    pub(super) fn skip_blanks(&mut self) {
+        while self.text.get(self.at).is_some_and(u8::is_ascii_whitespace) {
+            self.at += 1;
+        }
+    }
+
     /// To the start of the next line.
     #[inline]
     pub(super) fn skip_line(&mut self) {

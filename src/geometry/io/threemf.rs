@@ -35,7 +35,12 @@ struct ThreemfPackage {
     unit: f64,
     /// Groups of colours, materials and texture coordinates.
     properties: usize,
+    beams: usize,
 }
+
+/// Extensions that a file may require: their parts are read, or named in a warning.
+const EXTENSIONS: [&str; 5] =
+    ["/core/", "/material/", "/production/", "/trianglesets/", "/beamlattice/"];
 
 fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
     FileProblem::new(at, expected.into(), found.into()).into()
@@ -109,6 +114,9 @@ pub(super) fn parse(
             package.properties
         ));
     }
+    if package.beams > 0 {
+        warnings.push(format!("{} beams of beam lattices left out", package.beams));
+    }
     assemble(&package, job)
 }
 
@@ -127,6 +135,16 @@ fn model_of(rels: &[u8]) -> Option<String> {
             _ => {}
         }
     }
+}
+
+/// How the names of the 3MF Consortium's extensions begin.
+const NAMESPACES: &str = "http://schemas.microsoft.com/3dmanufacturing";
+
+/// The name of the extension that an element gives a prefix.
+fn namespace(e: &BytesStart, prefix: &str) -> Option<String> {
+    let key = format!("xmlns:{prefix}");
+    let found = e.attributes().filter_map(Result::ok).find(|a| a.key.as_ref() == key.as_str());
+    found.map(|a| a.value.to_string())
 }
 
 /// An attribute by its name without prefix.
@@ -202,7 +220,18 @@ fn model(
             Ok(((place, index("objectid")?), transform))
         };
         match e.local_name().as_ref() {
-            "model" if root => {
+            "model" => {
+                for prefix in get(&e, "requiredextensions").unwrap_or_default().split_whitespace() {
+                    let space = namespace(&e, prefix).unwrap_or_else(|| prefix.into());
+                    let known = space.starts_with(NAMESPACES)
+                        && EXTENSIONS.iter().any(|known| space.contains(known));
+                    if !known {
+                        return Err(wrong("required extensions that are known here", space));
+                    }
+                }
+                if !root {
+                    continue;
+                }
                 package.unit = match get(&e, "unit").as_deref() {
                     None | Some("millimeter") => 1.0,
                     Some("micron") => 1e-3,
@@ -248,6 +277,7 @@ fn model(
             }
             "basematerials" | "colorgroup" | "texture2dgroup" | "compositematerials"
             | "multiproperties" => package.properties += 1,
+            "beam" | "ball" => package.beams += 1,
             "component" => {
                 if let Some((_, o)) = &mut now {
                     o.components.push(target()?);

@@ -1,15 +1,25 @@
 //! Files that are valid or common and not what most programs write.
 
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use glam::DVec3;
+use zip::write::SimpleFileOptions;
 
+use super::problem::ParseError;
 use super::write_packed::base64;
 use super::{LoadedMesh, parse};
 use crate::job::Job;
 
 fn read(name: &str, bytes: &[u8]) -> LoadedMesh {
     parse(bytes, Path::new(name), &Job::default()).unwrap_or_else(|e| panic!("{name}: {e:?}"))
+}
+
+fn refused(name: &str, bytes: &[u8]) -> String {
+    match parse(bytes, Path::new(name), &Job::default()) {
+        Err(ParseError::Problem(problem)) => problem.to_string(),
+        other => panic!("{name}: {other:?}"),
+    }
 }
 
 const STL: &str = "solid a part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
@@ -103,4 +113,81 @@ fn sparse_positions_take_the_place_of_those_in_the_view_or_of_zeros() {
     let outside = sparse.replace("5121", "5125");
     let bytes = gltf(5126, false, &bytes, &outside, "");
     assert!(parse(&bytes, Path::new("a.gltf"), &Job::default()).is_err());
+}
+
+#[test]
+fn what_a_file_holds_and_is_not_read_is_named() {
+    let ply = PLY
+        .replace("float z\n", "float z\nproperty float s\nproperty float t\n")
+        .replace("indices\n", "indices\nproperty uchar red\nelement edge 1\nproperty int a\n")
+        .replace(
+            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+            "0 0 0 1 1\n1 0 0 1 1\n0 1 0 1 1\n3 0 1 2 9\n7\n",
+        );
+    let told = read("a.ply", ply.as_bytes()).warnings.join("; ");
+    for part in ["\"vertex\" left out: s, t", "\"face\" left out: red", "1 rows of \"edge\""] {
+        assert!(told.contains(part), "{told}");
+    }
+    let off = OFF.replace("3 0 1 2\n", "3 0 1 2 255 0 0\n");
+    assert_eq!(read("a.off", off.as_bytes()).warnings, ["the colours of 1 faces left out"]);
+    let mut stl = vec![0u8; 84 + 50];
+    stl[80] = 1;
+    for (corner, axis) in [(1, 0), (2, 1)] {
+        let at = 84 + 12 + corner * 12 + axis * 4;
+        stl[at..at + 4].copy_from_slice(&1f32.to_le_bytes());
+    }
+    assert!(read("a.stl", &stl).warnings.is_empty());
+    stl[84 + 48] = 31;
+    assert!(read("a.stl", &stl).warnings[0].starts_with("colours left out: 1 triangles"));
+    for (name, text) in [("a.ply", PLY), ("a.off", OFF), ("a.stl", STL), ("a.obj", OBJ)] {
+        assert!(read(name, text.as_bytes()).warnings.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_number_that_is_missing_or_too_many_in_text_ply_is_an_error_with_its_line() {
+    for (row, line) in [("1 0 0\n", 11), ("3 0 1 2\n", 13)] {
+        for other in [row.replacen("0 ", "", 1), row.replacen("0 ", "0 5 ", 1)] {
+            let text = PLY.replace(row, &other);
+            let told = refused("a.ply", text.as_bytes());
+            assert!(told.contains(&format!("line {line}")), "{other}: {told}");
+        }
+    }
+    // Rows over several lines, as some programs write them.
+    let wrapped = PLY.replace("1 0 0\n", "1\n0 0\n");
+    assert_eq!(read("a.ply", wrapped.as_bytes()).mesh.face_count(), 1);
+}
+
+#[test]
+fn a_gltf_of_another_version_is_refused() {
+    let text =
+        String::from_utf8(gltf(5126, false, &[0; 36], "", "\"bufferView\":0,")).expect("text");
+    for (version, least) in [("3.0", ""), ("2.9", ",\"minVersion\":\"3.0\"")] {
+        let other = text.replace("\"2.0\"", &format!("\"{version}\"{least}"));
+        let told = refused("a.gltf", other.as_bytes());
+        assert!(told.contains("glTF version 2"), "{version}: {told}");
+    }
+}
+
+#[test]
+fn what_a_3mf_requires_is_known_or_refused_by_its_name() {
+    let file = |space: &str| {
+        let text = format!(
+            r#"<model requiredextensions="b" xmlns:b="{space}"><resources><object id="1"><mesh>
+            <vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+            <vertex x="0" y="1" z="0"/></vertices>
+            <triangles><triangle v1="0" v2="1" v3="2"/></triangles>
+            <b:beamlattice><b:beams><b:beam v1="0" v2="1"/></b:beams></b:beamlattice>
+            </mesh></object></resources><build><item objectid="1"/></build></model>"#
+        );
+        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        zip.start_file("3D/3dmodel.model", SimpleFileOptions::default()).expect("a part");
+        zip.write_all(text.as_bytes()).expect("written");
+        zip.finish().expect("a zip").into_inner()
+    };
+    let beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+    let told = read("a.3mf", &file(beams)).warnings;
+    assert_eq!(told, ["1 beams of beam lattices left out"]);
+    let unknown = "http://example.com/beamlattice/1";
+    assert!(refused("a.3mf", &file(unknown)).contains(unknown));
 }

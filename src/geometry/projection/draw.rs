@@ -10,7 +10,8 @@ use super::{PlaneRegion, ProjectionSamples};
 fn frame(polygons: &[PlaneRegion]) -> (DVec2, DVec2) {
     let (lo, hi) = polygons
         .iter()
-        .flat_map(|p| &p.outer)
+        .flat_map(PlaneRegion::rings)
+        .flatten()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     if lo.x > hi.x { (DVec2::ZERO, DVec2::ONE) } else { (lo, hi) }
 }

@@ -68,7 +68,7 @@ impl Marks {
 }
 
 /// Returns the parts of `old`, from which `solid` was built, that are far from all new vertices.
-pub(super) fn lost_parts(
+pub(crate) fn lost_parts(
     old: &TriMesh,
     solid: &DistanceSolid,
     new: &[Vec3],

@@ -17,7 +17,7 @@ use crate::TriMesh;
 use crate::bvh::REACH;
 use crate::job::{Cancelled, Job};
 pub use lost::LostParts;
-use lost::lost_parts;
+pub(crate) use lost::lost_parts;
 use untangle::{CalmPlaces, untangle};
 
 /// The resolution of the new mesh, and the treatment of sharp edges.
@@ -37,7 +37,7 @@ impl Default for RemeshSettings {
 }
 
 /// The reason why there is no new mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum RemeshError {
     /// The job was cancelled.
     #[error("{0}")]
@@ -48,6 +48,19 @@ pub enum RemeshError {
          open. Use more samples a side"
     )]
     Empty,
+    /// Nothing of the part is so far inside.
+    #[error(
+        "nothing is left: {asked} is larger than half of the part's greatest thickness, which is \
+         about {:.3}. Use less than {deepest:.3}, or a larger --side if {asked} is only just below \
+         that",
+        deepest * 2.0
+    )]
+    TooDeep {
+        /// The wall or the offset, in the mesh's unit.
+        asked: f64,
+        /// The distance of the deepest place from the surface, to about a sample's spacing.
+        deepest: f64,
+    },
     /// The resolution is out of range, or the grid would have more than [`MAX_SAMPLES`] samples.
     #[error("expected 8 to 1024 samples a side, found {0}")]
     Side(usize),

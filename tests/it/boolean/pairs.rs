@@ -235,3 +235,23 @@ fn the_command_says_what_it_made_and_what_is_wrong() {
         "{volume}"
     );
 }
+
+#[test]
+fn an_operand_whose_own_pieces_cross_is_solved_where_the_result_does_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let put = |name: &str, mesh: &PolyMesh| {
+        write_mesh(&folder.path().join(name), mesh).expect("written");
+        path(name)
+    };
+    let goblet = cuboid([0.; 3], [2.; 3]).and(cuboid([0.5, 0.5, 1.], [1.5, 1.5, 4.])).mesh;
+    let a = put("a.obj", &goblet);
+    let b = put("b.obj", &cuboid([-1., -1., -1.], [3., 3., 0.]).mesh);
+    let out = path("out.obj");
+    let said = json(&cli(&["boolean", "all", &a, &b, "-o", &out, "--json"]));
+    let union = &said["results"][0];
+    assert_eq!((&union["components"], &union["self_intersections"]), (&1.into(), &0.into()));
+    assert!((union["volume"].as_f64().expect("a volume") - 26.0).abs() < 1e-9, "{said}");
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("solved by winding") && !warnings.contains("Filled"), "{warnings}");
+}

@@ -6,8 +6,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sculptd_geometry::boolean::{
-    BooleanFacts, BooleanOptions, BooleanReport, Operation, ResultFaces, compute, split,
+    BooleanFacts, BooleanOptions, BooleanReport, Operation, ResultFaces, compute,
 };
+use sculptd_geometry::section::{Section, Slicer};
 
 use crate::array::shared;
 use crate::errors;
@@ -211,9 +212,9 @@ fn boolean_all<'py>(
     Ok(out)
 }
 
-/// Sections of a closed solid by the planes `normal . p = offset`: for each offset a list of
-/// polylines, (n, 3) float64; a closed one ends with its first point. Each plane is cut by the same
-/// engine as a Boolean.
+/// Sections of a mesh by the planes `normal . p = offset`: for each offset a list of polylines,
+/// (n, 3) float64, the solid to the left seen against the normal. A closed one ends with its first
+/// point; a closed mesh gives closed ones only. A plane through a face gives what is just below it.
 #[pyfunction]
 #[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
 fn slices<'py>(
@@ -223,21 +224,23 @@ fn slices<'py>(
     offsets: Vec<f64>,
     progress: Progress,
 ) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
-    let options = BooleanOptions::default();
-    let mut out = Vec::with_capacity(offsets.len());
-    for offset in offsets {
-        let mesh = mesh.get().poly.clone();
-        let normal = glam::DVec3::from(normal);
-        let (_, report) =
-            watched(py, &progress, |job| split(&mesh, normal, offset, &options, job, || 0.0))?
-                .map_err(|e| errors::boolean(py, &e))?;
-        let report = Arc::new(report);
-        let line = |line: &Vec<glam::DVec3>| {
-            shared(py, report.clone(), bytemuck::cast_slice::<_, f64>(line), vec![line.len(), 3])
-        };
-        out.push(report.cut.iter().map(line).collect::<PyResult<Vec<_>>>()?);
-    }
-    Ok(out)
+    let finite = offsets.iter().all(|o| o.is_finite());
+    let mesh = mesh.get().poly.clone();
+    let sections = watched(py, &progress, |job| {
+        let slicer = Slicer::new(&mesh, glam::DVec3::from(normal)).filter(|_| finite)?;
+        Some(slicer.all(&offsets, job))
+    })?
+    .ok_or_else(|| {
+        PyValueError::new_err("normal, offsets: expected finite numbers, the normal not zero")
+    })?
+    .map_err(errors::cancelled)?;
+    let line = |points: Vec<glam::DVec3>| {
+        let shape = vec![points.len(), 3];
+        let points = Arc::new(points);
+        shared(py, points.clone(), bytemuck::cast_slice::<_, f64>(&points), shape)
+    };
+    let lines = |s: Section| s.contours.into_iter().map(|c| line(c.points)).collect();
+    sections.into_iter().map(lines).collect()
 }
 
 /// Adds what this file defines.

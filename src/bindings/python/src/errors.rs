@@ -140,7 +140,7 @@ pub fn thickness(e: &ThicknessError) -> PyErr {
 pub fn remesh(e: &RemeshError) -> PyErr {
     match e {
         RemeshError::Cancelled(c) => cancelled(*c),
-        RemeshError::Empty => EmptyResult::new_err(e.to_string()),
+        RemeshError::Empty | RemeshError::TooDeep { .. } => EmptyResult::new_err(e.to_string()),
         RemeshError::Side(_) => PyValueError::new_err(e.to_string()),
     }
 }

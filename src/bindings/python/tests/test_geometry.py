@@ -155,6 +155,13 @@ class Booleans(unittest.TestCase):
         np.testing.assert_allclose(radius, 5.0, atol=0.03)
         np.testing.assert_allclose(np.linalg.norm(high[:, :2], axis=1), 4.0, atol=0.03)
         self.assertEqual(none, [])
+        box = Mesh.box((0, 0, 0), (40, 30, 20))
+        for lines in sculptd.slices(box, (0, 0, 1), [0, 1e-9, 5, 20]):
+            (line,) = lines
+            np.testing.assert_array_equal(line[0], line[-1])
+            self.assertAlmostEqual(np.linalg.norm(np.diff(line, axis=0), axis=1).sum(), 140)
+        with self.assertRaisesRegex(ValueError, "the normal not zero"):
+            sculptd.slices(box, (0, 0, 0), [1])
 
 
 class Questions(unittest.TestCase):

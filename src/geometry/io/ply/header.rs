@@ -144,6 +144,29 @@ impl PlyHeader {
         })
     }
 
+    /// Names the data of the file that is not read, one sentence an element. Normals are not named:
+    /// they follow from the surface.
+    pub(super) fn unread(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        for e in self.elements.iter().filter(|e| e.count > 0) {
+            let (roles, corners) = (e.roles(), e.corners());
+            let read = |i: usize, name: &str| match e.role {
+                PlyRole::Vertex if roles[i].is_some_and(|r| r >= 3) => self.coloured(),
+                PlyRole::Vertex => roles[i].is_some() || matches!(name, "nx" | "ny" | "nz"),
+                PlyRole::Face | PlyRole::Strips => corners == Some(i),
+                PlyRole::Other => false,
+            };
+            let names = e.properties.iter().enumerate().filter(|(i, p)| !read(*i, &p.name));
+            let names: Vec<&str> = names.map(|(_, p)| p.name.as_str()).collect();
+            if e.role == PlyRole::Other {
+                out.push(format!("{} rows of \"{}\" left out", e.count, e.name));
+            } else if !names.is_empty() {
+                out.push(format!("properties of \"{}\" left out: {}", e.name, names.join(", ")));
+            }
+        }
+        out
+    }
+
     /// 255 over the colours' largest value.
     pub(super) fn colour_scale(&self) -> f64 {
         self.vertices()

@@ -42,6 +42,7 @@ pub(super) fn parse(
     if made.short > 0 {
         warnings.push(format!("{} faces of fewer than three corners left out", made.short));
     }
+    warnings.extend(header.unread());
     let mut mesh = made.mesh;
     if header.coloured() {
         mesh.colours = Some(made.colours);

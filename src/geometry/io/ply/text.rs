@@ -22,6 +22,11 @@ pub(super) fn read(
     let mut cursor = TextCursor::new(text);
     let (coloured, scale) = (header.coloured(), header.colour_scale());
     let mut list: Vec<i64> = Vec::new();
+    let rows: usize = header.elements.iter().map(|e| e.count).sum();
+    let filled = |line: &&[u8]| !line.trim_ascii().is_empty();
+    // Where there are as many lines as rows, a row is a line, and a number that is missing is not
+    // taken from the next one.
+    let by_line = text.split(|b| *b == b'\n').filter(filled).count() == rows;
     for element in &header.elements {
         let roles = element.roles();
         let corners = element.corners();
@@ -45,13 +50,20 @@ pub(super) fn read(
             }
             let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
             let first = made.mesh.corners.len();
+            if by_line {
+                cursor.skip_blanks();
+            }
             let row_at = cursor.at;
             for (p, property) in element.properties.iter().enumerate() {
                 let mut value = || -> Result<f64, ParseError> {
                     let at = cursor.at;
-                    cursor.word_anywhere(false).and_then(float).ok_or_else(|| {
+                    let word = if by_line { cursor.word() } else { cursor.word_anywhere(false) };
+                    word.and_then(float).ok_or_else(|| {
                         let expected =
                             format!("a number for \"{}\" of {} {row}", property.name, element.name);
+                        if by_line {
+                            return shift(unexpected(text, row_at, expected));
+                        }
                         // Past the blanks and line ends, so that the line named is that of the
                         // word.
                         let skip =
@@ -88,6 +100,14 @@ pub(super) fn read(
                 if made.mesh.corners.len() >= u32::MAX as usize {
                     return Err(too_many(header).into());
                 }
+            }
+            if by_line && let Some(word) = cursor.word() {
+                let (at, expected) = (cursor.at - word.len(), "the end of the line");
+                return Err(shift(unexpected(
+                    text,
+                    at,
+                    format!("{expected} after {} {row}", element.name),
+                )));
             }
             let line = || {
                 let skip = text[row_at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
