@@ -119,8 +119,8 @@ impl<'a> Slicer<'a> {
             let Some(k) = (0..3).find(|&k| sides[k] && !sides[(k + 1) % 3]) else { continue };
             let (top, low, third) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
             let up = if sides[(k + 2) % 3] { (low, third) } else { (third, top) };
-            let down = cut.point((top, low), |a, b| self.crossing(a, b, offset, slack));
-            let up = cut.point(up, |a, b| self.crossing(a, b, offset, slack));
+            let down = cut.point((top, low), |a, b| self.point_in_plane(a, b, offset, slack));
+            let up = cut.point(up, |a, b| self.point_in_plane(a, b, offset, slack));
             cut.pieces.push([down, up]);
         }
         let ends = cut.joined(CRACK * self.reach);
@@ -128,7 +128,7 @@ impl<'a> Slicer<'a> {
     }
 
     /// The place at which the edge from `a` to `b` meets the plane.
-    fn crossing(&self, a: u32, b: u32, offset: f64, slack: f64) -> DVec3 {
+    fn point_in_plane(&self, a: u32, b: u32, offset: f64, slack: f64) -> DVec3 {
         let height = |v: u32| self.heights[v as usize] - offset;
         let (p, q) = (self.positions[a as usize], self.positions[b as usize]);
         let (h, k) = (height(a), height(b));
