@@ -63,7 +63,7 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
             {
                 let before = measures(&part.mesh).volume;
                 warnings.push(format!(
-                    "{:.1} square units of the surface vanish with the solid beneath them, for \
+                    "{:.1} mm2 of the surface vanish with the solid beneath them, for \
                      instance at {}: the part is thinner than twice the offset there. Its volume \
                      was {before:.4}",
                     lost.area,
