@@ -280,15 +280,15 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         && inconsistent
         && args.solve.is_none()
         && !args.trust
-        && let Some((solids, notes)) = solved(&operands, &clean, args, &job)?
+        && let Some(solved) = solved(&operands, &clean, args, &job)?
     {
         options.tolerance = args.tolerance;
-        let dirty = vec![false; solids.len()];
+        let (solids, dirty) = (solved.meshes, vec![false; operands.len()]);
         if let Ok(mut made) =
             ResultSet::of(&solids, &dirty, args, &options, plane, blank, &job, &now)
             && best.as_ref().is_none_or(|b| made.crossings < b.crossings)
         {
-            made.out.warnings.extend(notes);
+            made.out.warnings.extend(solved.warnings);
             made.solved = true;
             best = Some(made);
         }

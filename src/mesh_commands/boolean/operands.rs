@@ -9,31 +9,39 @@ use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, repair};
 
-/// Each operand that is not clean as the solid that its surface goes around, with a sentence for
-/// each that became another. None: none did.
+/// Operands of which at least one was solved by winding.
+pub(super) struct SolvedOperands {
+    /// All operands, in their order.
+    pub meshes: Vec<PolyMesh>,
+    /// A warning for each that was solved.
+    pub warnings: Vec<String>,
+}
+
+/// Replaces each operand that is not clean by the solid that its surface encloses. Returns `None`
+/// if no operand could be replaced.
 pub(super) fn solved(
     operands: &[PolyMesh],
     clean: &[bool],
     args: &BooleanArgs,
     job: &Job,
-) -> Result<Option<(Vec<PolyMesh>, Vec<String>)>, Fail> {
-    let (mut made, mut notes) = (operands.to_vec(), Vec::new());
-    for (n, mesh) in made.iter_mut().enumerate().filter(|(n, _)| !clean[*n]) {
+) -> Result<Option<SolvedOperands>, Fail> {
+    let (mut meshes, mut warnings) = (operands.to_vec(), Vec::new());
+    for (n, mesh) in meshes.iter_mut().enumerate().filter(|(n, _)| !clean[*n]) {
         match boolean::solve(mesh, job) {
             Ok(solid) => *mesh = solid,
             Err(BooleanError::Inconsistent(_)) => continue,
             Err(e) => return Err(e.into()),
         }
-        notes.push(format!(
-            "{}: solved by winding, because it crosses itself and so did the result of it as it is",
+        warnings.push(format!(
+            "{}: solved by winding, because it crosses itself, and so did the result without that",
             args.meshes[n].display()
         ));
     }
-    Ok((!notes.is_empty()).then_some((made, notes)))
+    Ok((!warnings.is_empty()).then_some(SolvedOperands { meshes, warnings }))
 }
 
-/// Reads one operand, mends it where asked, and says what is wrong with it. And whether it is known
-/// to be closed and manifold, without triangles that cross.
+/// Reads one operand, repairs it if asked, and warns of its faults. The second value is true if it
+/// is known to be closed and manifold, without triangles that cross.
 pub(super) fn operand(
     path: &Path,
     args: &BooleanArgs,

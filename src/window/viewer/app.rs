@@ -148,13 +148,13 @@ impl App {
         let App { wiring, open: Some(open), times, .. } = self else { return };
         for (t_us, event) in times.take(wiring.clock.now_us()) {
             wiring.events.set_event(Some(t_us));
-            pointer_event(open, event, wiring);
+            pointer_event(open, &event, wiring);
         }
         wiring.events.set_event(None);
     }
 }
 
-fn pointer_event(open: &mut WindowState, event: WindowEvent, wiring: &mut Wiring) {
+fn pointer_event(open: &mut WindowState, event: &WindowEvent, wiring: &mut Wiring) {
     match event {
         WindowEvent::ModifiersChanged(m) => {
             open.mods = m.state();
@@ -165,20 +165,20 @@ fn pointer_event(open: &mut WindowState, event: WindowEvent, wiring: &mut Wiring
         }
         WindowEvent::CursorLeft { .. } => open.left(wiring),
         WindowEvent::MouseInput { state, button, .. } => {
-            open.mouse_button(button, state == ElementState::Pressed, wiring);
+            open.mouse_button(*button, *state == ElementState::Pressed, wiring);
         }
-        WindowEvent::Touch(touch) => open.touched(&touch, wiring),
+        WindowEvent::Touch(touch) => open.touched(touch, wiring),
         WindowEvent::MouseWheel { delta, .. }
             if !open.over_panel(open.pointer.at) || open.over_region(open.pointer.at) =>
         {
             let steps = match delta {
-                MouseScrollDelta::LineDelta(_, y) => y,
+                MouseScrollDelta::LineDelta(_, y) => *y,
                 MouseScrollDelta::PixelDelta(p) => p.y as f32 / 40.0,
             };
             open.zoom_to_pointer(1.12f32.powf(steps), wiring);
         }
         WindowEvent::PinchGesture { delta, .. } => {
-            open.zoom_to_pointer(1.0 + delta as f32, wiring);
+            open.zoom_to_pointer(1.0 + *delta as f32, wiring);
         }
         _ => {}
     }
