@@ -171,7 +171,10 @@ fn solids_grow_shrink_hollow_and_melt() {
             assert!((-1e-4..0.01).contains(&((found - d) * d.signum())), "{found} {d}");
         }
     }
-    assert_eq!(offset(&old, -11.0, 64, &job).err(), Some(RemeshError::Empty));
+    let Err(RemeshError::TooDeep { asked, deepest }) = offset(&old, -11.0, 64, &job) else {
+        panic!("nothing is left of a ball of radius 10");
+    };
+    assert!(asked == 11.0 && (9.5..=10.0).contains(&deepest), "{asked}, {deepest}");
 
     let hollowed = hollow(&ball, &old, 2.0, 64, &job).unwrap();
     assert!(manifold(&hollowed.mesh));
