@@ -15,9 +15,9 @@ fn folder() -> PathBuf {
 /// The text of `src/builtin.rs` for these files.
 fn list_of(files: &[PathBuf]) -> String {
     let mut out = String::from(
-        "//! The tablet files that are built in. A test holds this list to the folder, and writes \
-         it anew\n\
-         //! when `SCULPTD_BLESS` is set.\n\n\
+        "//! The built-in tablet files. A test compares this list with the folder, and rewrites it \
+         when\n\
+         //! `SCULPTD_BLESS` is set.\n\n\
          /// Name and text of the files of `tablets/` with these names.\n\
          macro_rules! tablets {\n    \
              ($($name:literal)*) => {\n        \
