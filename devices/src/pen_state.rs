@@ -26,7 +26,7 @@ const MOST_OFFSET: f32 = 0.5;
 
 /// Microseconds of silence after which a pen in contact was pulled away. The figure is libinput's.
 /// The rule applies where the pen cannot be resting: on tablets that repeat the reports of a
-/// resting pen, and after a movement faster than [`TOO_FAST_TO_REST`]. Other tablets send only
+/// resting pen, and after a movement faster than `TOO_FAST_TO_REST`. Other tablets send only
 /// changes, and recordings of them have pens that press for seconds without a report.
 pub const CONTACT_SILENCE_US: u64 = 50_000;
 /// No pen stops from this speed without slower reports in between, mm/s. In recordings of tablets
