@@ -1,8 +1,9 @@
 //! The start of a session: a mesh, or the world at the time when a person joined a shared
 //! sculpture.
 //!
-//! In the file, the world's checkpoint follows a placeholder mesh. So the start's checksum and
-//! second copy protect it too.
+//! The layout of the file begins a start with a mesh. A world's checkpoint is written after a ball
+//! of 12 vertices that is never shown, so older readers find a mesh, and the start's checksum and
+//! second copy protect the checkpoint too.
 
 use std::sync::Arc;
 
@@ -17,7 +18,7 @@ use sculptd_geometry::{TriMesh, shapes};
 /// A session's start.
 #[derive(Debug, Clone)]
 pub struct SessionStart {
-    /// The mesh; where there is a world, a small one in its place.
+    /// The mesh. If there is a world, a ball that is never shown.
     pub mesh: TriMesh,
     /// A world at rest, as [`checkpoint::Captured::to_bytes`] makes it, and its vertices.
     pub world: Option<(u64, Arc<[u8]>)>,
