@@ -1,9 +1,8 @@
 //! The start of a session: a mesh, or the world at the time when a person joined a shared
 //! sculpture.
 //!
-//! The layout of the file begins a start with a mesh. A world's checkpoint is written after a ball
-//! of 12 vertices that is never shown, so older readers find a mesh, and the start's checksum and
-//! second copy protect the checkpoint too.
+//! The layout of the file begins every start with a mesh. A world's checkpoint follows a ball of 12
+//! vertices that is never shown, so the start's checksum and second copy protect the checkpoint too.
 
 use std::sync::Arc;
 
