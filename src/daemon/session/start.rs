@@ -2,7 +2,7 @@
 //! sculpture.
 //!
 //! The layout of the file begins every start with a mesh. A world's checkpoint follows a ball of 12
-//! vertices that is never shown, so the start's checksum and second copy protect the checkpoint too.
+//! vertices that is never shown, so the start's checksum and second copy protect it too.
 
 use std::sync::Arc;
 
