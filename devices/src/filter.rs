@@ -116,8 +116,14 @@ impl HandsFilter {
             filter.apply(&self.figures, hand, t_us);
             *slot = Some(filter);
         }
-        for slot in &mut self.hands[count..] {
-            *slot = None;
+        // A hand that one frame has lost goes on where it was.
+        let missed = before.into_iter().flatten().filter(|f| {
+            t_us.saturating_sub(f.t_us) <= STALE_US
+                && !hands.hands[..count].iter().any(|h| h.id == f.id)
+        });
+        self.hands[count..].fill(None);
+        for (slot, filter) in self.hands[count..].iter_mut().zip(missed) {
+            *slot = Some(filter);
         }
     }
 }

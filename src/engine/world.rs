@@ -559,6 +559,8 @@ mod checkpoint_tests;
 #[cfg(test)]
 mod face_set_tests;
 #[cfg(test)]
+mod hand_damage_tests;
+#[cfg(test)]
 mod layer_tests;
 #[cfg(test)]
 mod local_remesh_tests;

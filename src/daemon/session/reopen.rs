@@ -88,14 +88,15 @@ pub(super) fn from_checkpoint(
     match &list {
         None => clays.push(whole(&active, &names, None, empty)?),
         Some(list) => {
-            let stored = tree.scene_at(at).ok_or_else(|| damaged("a list of objects"))?;
+            // One object, as a session begins, has no list in the tree.
+            let stored = tree.scene_at(at);
             for (i, object) in list.objects.iter().enumerate() {
                 let rest = &object.rest;
                 if i == list.active as usize {
                     clays.push(whole(&active, &names, None, empty.clone())?);
                     continue;
                 }
-                let clay = stored.object(object.id).and_then(|o| o.clay.as_ref());
+                let clay = stored.and_then(|s| s.object(object.id)?.clay.as_ref());
                 let clay = clay.filter(|c| c.number == rest.object_id);
                 let clay = clay.ok_or_else(|| damaged("an object of a list"))?;
                 clays.push(whole(rest, &clay.pages, clay.levels, rest.empty.clone())?);

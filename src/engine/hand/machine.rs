@@ -101,6 +101,15 @@ impl Track {
         false
     }
 
+    /// Ends a pinch whose fingers parted while the hand was unseen. The next frames decide the
+    /// pose anew.
+    pub fn open_unseen(&mut self, t_us: u64) {
+        if self.pose == Pose::Pinch {
+            (self.pose, self.pose_us) = (Pose::Neutral, t_us);
+            (self.candidate, self.candidate_us) = (Pose::Neutral, t_us);
+        }
+    }
+
     /// Returns true if this may be the same hand that another track lost: the same side, and near
     /// enough for the time elapsed.
     pub fn may_continue(&self, t_us: u64, hand: &Hand, s: &HandSettings) -> bool {

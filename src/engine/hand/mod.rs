@@ -8,11 +8,13 @@
 //!   [`Volume::edge_fade`]).
 //! * A hand that is lost for [`HandSettings::bridge_ms`] is the same hand; one lost for longer has
 //!   let go.
+//! * [`gate`] drops what a tracker cannot have seen, before anything acts on it.
 //! * Every joint is steadied before anything looks at it, the same in a replay as live.
 //! * The view does not move within [`HandSettings::view_rest_ms`] of sculpting.
 
 pub mod acts;
 pub mod comfort;
+pub mod gate;
 pub mod held_object;
 pub mod machine;
 pub mod menu;
@@ -23,6 +25,7 @@ mod volume;
 
 pub use acts::{Act, Drag, PalmPress, Push};
 pub use comfort::{Calibrated, Fatigue, ReachCalibration};
+pub use gate::HandGate;
 pub use held_object::{HeldObject, Similarity};
 pub use machine::Track;
 pub use menu::{Menu, MenuItem};
@@ -36,6 +39,7 @@ use std::collections::VecDeque;
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+use self::pose::Features;
 use self::reach_box::BOX_HALF_MM;
 use sculptd_devices::filter::HandsFilter;
 use sculptd_devices::{DeviceId, Hands};
@@ -43,8 +47,29 @@ use sculptd_geometry::portable::turn_about;
 
 /// Acts waiting for the tick's budget; beyond it the newest sweep is joined to the one before.
 const MAX_WAITING: usize = 256;
+/// Longest gap between two frames of a slow tracker, in microseconds; in a longer one it missed
+/// frames.
+const GAP_US: u64 = 40_000;
+/// Fingers of a pinch that parted by more than this while the hand was unseen may have let go, mm.
+const PARTED_MM: f32 = 3.0;
+/// Time that the fingers of a pinch need to close after it is recognised, in microseconds.
+const CLOSES_US: u64 = 250_000;
+/// Step in which missed motion is made up for, in microseconds.
+const STEP_US: u64 = 10_000;
 /// Hands followed at a time, over all trackers.
 const MAX_TRACKS: usize = 16;
+
+/// Returns the number of frames over which to spread the motion of a hand that was last seen
+/// `unseen_us` ago: 1, or more if it was missed. `frame_us` is the tracker's time between frames.
+fn frames_in(unseen_us: u64, frame_us: u64) -> u64 {
+    if unseen_us * 2 >= frame_us * 3 && frame_us > 0 {
+        ((unseen_us + frame_us / 2) / frame_us).clamp(1, 32)
+    } else if unseen_us > GAP_US {
+        unseen_us.div_ceil(STEP_US).min(32)
+    } else {
+        1
+    }
+}
 
 /// A hand as it was one frame ago, in the world.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -86,7 +111,13 @@ pub struct HandTools {
     now_us: u64,
     /// One for each tracker.
     steady: Vec<(DeviceId, HandsFilter)>,
+    /// One for each tracker. A saved world stores them after its other parts, see [`Gates`].
+    #[serde(skip)]
+    gates: Gates,
 }
+
+/// The state of each tracker's gate.
+pub(crate) type Gates = Vec<(DeviceId, HandGate)>;
 
 impl HandTools {
     /// No hands yet.
@@ -107,6 +138,7 @@ impl HandTools {
             sculpted_us: None,
             now_us: 0,
             steady: Vec::new(),
+            gates: Vec::new(),
         }
     }
 
@@ -142,6 +174,30 @@ impl HandTools {
         }
     }
 
+    /// Returns the gates, or `None` if no gate knows a hand.
+    pub(crate) fn gates(&self) -> Option<&Gates> {
+        self.gates.iter().any(|(_, gate)| !gate.is_empty()).then_some(&self.gates)
+    }
+
+    /// Restores the gates of a saved world.
+    pub(crate) fn set_gates(&mut self, gates: Gates) {
+        self.gates = gates;
+    }
+
+    /// Returns the hands of a frame that can be true.
+    fn plausible(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
+        let at = self.gates.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
+            let mut gate = HandGate::default();
+            for held in self.held.iter().filter(|h| h.track.device == device) {
+                let track = &held.track;
+                gate.follow(track.id, track.left, track.palm, track.seen_us);
+            }
+            self.gates.push((device, gate));
+            self.gates.len() - 1
+        });
+        self.gates[at].1.pass(t_us, hands)
+    }
+
     /// A frame with the tremble taken out of it.
     fn steadied(&mut self, device: DeviceId, t_us: u64, hands: &Hands) -> Hands {
         let at = self.steady.iter().position(|(d, _)| *d == device).unwrap_or_else(|| {
@@ -158,7 +214,9 @@ impl HandTools {
     /// Takes one frame of one tracker.
     pub fn take(&mut self, device: DeviceId, t_us: u64, hands: &Hands) {
         let s = self.settings;
-        let hands = &self.steadied(device, t_us, hands);
+        let frame_us = t_us.saturating_sub(self.now_us);
+        let hands = self.plausible(device, t_us, hands);
+        let hands = &self.steadied(device, t_us, &hands);
         self.now_us = t_us;
         self.forget(t_us);
         self.fatigue.take(t_us, hands.as_slice());
@@ -169,6 +227,8 @@ impl HandTools {
                 Calibrated::Done(found) => (self.settings.reach, self.reach) = (found, None),
             }
         }
+        // The number of frames over which each hand's motion is spread.
+        let mut frames = [1; MAX_TRACKS];
         for hand in hands.as_slice() {
             let known = self
                 .held
@@ -186,6 +246,13 @@ impl HandTools {
             match known {
                 Some(i) => {
                     let held = &mut self.held[i];
+                    frames[i] = frames_in(t_us.saturating_sub(held.track.seen_us), frame_us);
+                    let gaps = held.track.pinch_mm.zip(Features::of(hand).pinch_mm);
+                    if frames[i] > 1 && gaps.is_some_and(|(was, now)| now > was + PARTED_MM) {
+                        // Nobody saw where the fingers parted: the clay stays where it was.
+                        held.track.open_unseen(t_us);
+                        (held.tool, held.grip) = (None, None);
+                    }
                     let changed = held.track.take(t_us, hand, &s);
                     if changed {
                         (held.tool, held.turn, held.grip) = (None, None, None);
@@ -209,7 +276,7 @@ impl HandTools {
         if let Some(choice) = self.menu.take(tip, t_us, self.carrying, &s) {
             self.chosen = Some(choice);
         }
-        self.act(t_us);
+        self.act(t_us, &frames);
     }
 
     /// Takes the menu choice made since the last call.
@@ -245,7 +312,17 @@ impl HandTools {
         self.held.retain(|h| t_us.saturating_sub(h.track.seen_us) <= bridge_us);
     }
 
-    fn act(&mut self, t_us: u64) {
+    /// Returns true if two hands act together and this frame shows only one of them. They continue
+    /// when both are seen again.
+    fn waits_for_second(&self, t_us: u64) -> bool {
+        let together = self.pair.is_some() || self.apart_mm.is_some();
+        together && self.held.len() > 1 && self.held.iter().any(|h| h.track.seen_us != t_us)
+    }
+
+    fn act(&mut self, t_us: u64, frames: &[u64; MAX_TRACKS]) {
+        if self.waits_for_second(t_us) {
+            return;
+        }
         let mut posed = self.held.iter().filter(|h| h.track.seen_us == t_us);
         let two = posed.next().zip(posed.next()).map(|(a, b)| [a.track, b.track]);
         let both = |pose: Pose| two.filter(|p| p.iter().all(|t| t.pose == pose));
@@ -261,7 +338,7 @@ impl HandTools {
         self.apart_mm = None;
         for i in 0..self.held.len() {
             if self.held[i].track.seen_us == t_us {
-                self.one_hand(i, t_us);
+                self.one_hand(i, t_us, frames[i]);
             }
         }
     }
@@ -315,6 +392,21 @@ impl HandTools {
         Some(track.palm + turn * grip)
     }
 
+    /// Moves the grip with the fingers while they close, so that neither the moment of recognition
+    /// nor the fingers' own motion moves clay.
+    fn close_grip(&mut self, i: usize, t_us: u64) {
+        let scale = self.volume;
+        let held = &mut self.held[i];
+        let (track, turn) = (held.track, held.track.orientation.unwrap_or(Quat::IDENTITY));
+        let Some((was, point)) = held.grip.zip(track.pinch_point) else { return };
+        if t_us.saturating_sub(track.pose_us) < CLOSES_US {
+            let now = turn.inverse() * (point - track.palm);
+            held.grip = Some(now);
+            let by = scale.to_world(turn * (now - was)) - scale.to_world(Vec3::ZERO);
+            held.tool = held.tool.map(|tool| tool + by);
+        }
+    }
+
     fn zoom_between(&mut self, a: Track, b: Track, t_us: u64) {
         let apart = (a.palm - b.palm).length();
         if let Some(before) = self.apart_mm
@@ -337,14 +429,14 @@ impl HandTools {
         self.volume.scale * (self.settings.reach.half_mm / BOX_HALF_MM)
     }
 
-    fn one_hand(&mut self, i: usize, t_us: u64) {
+    fn one_hand(&mut self, i: usize, t_us: u64, frames: u64) {
         let s = self.settings;
-        let TrackedHand { track, tool, turn, .. } = self.held[i];
+        let TrackedHand { track, turn, .. } = self.held[i];
         let v = self.volume;
         if self.carrying && track.pose == Pose::Pinch {
             let now = track.orientation.map(|q| (v.turn * q).normalize());
             let to = self.grip_mm(i).map(|p| v.to_world(p));
-            if let Some((from, to)) = tool.zip(to) {
+            if let Some((from, to)) = self.held[i].tool.zip(to) {
                 let turned =
                     turn.zip(now).map_or(Quat::IDENTITY, |(a, b)| (b * a.inverse()).normalize());
                 self.wait(Act::Carry(Similarity::carried(from, to, turned)));
@@ -356,34 +448,43 @@ impl HandTools {
         let at_mm = match track.pose {
             Pose::Point => track.index_tip,
             Pose::Pinch if track.lets_go(&s) => None,
-            Pose::Pinch => track.pinch_point,
+            // Held clay follows the palm: fingers that close or open carry nothing.
+            Pose::Pinch => {
+                self.close_grip(i, t_us);
+                self.grip_mm(i)
+            }
             Pose::Flat => Some(track.palm),
             Pose::Neutral | Pose::Grab | Pose::Open => None,
         };
         if let Some(mm) = at_mm {
             let tool_scale = self.tool_scale();
             let to = v.to_world(mm);
-            let strength = strength * Volume::edge_fade(mm);
-            if let Some(from) = tool.filter(|_| strength > 0.0) {
-                match track.pose {
-                    Pose::Point => self.wait(Act::Push(Push {
-                        from,
-                        to,
-                        radius: s.tip_radius_mm * tool_scale,
-                        strength,
-                    })),
-                    Pose::Pinch => {
-                        self.wait(Act::Drag(Drag {
+            let strength = strength * Volume::edge_fade(mm, &s.reach);
+            if let Some(start) = self.held[i].tool.filter(|_| strength > 0.0) {
+                // Missed motion is made up for step by step, as it would have been seen.
+                for k in 0..frames {
+                    let part = |k: u64| start.lerp(to, k as f32 / frames as f32);
+                    let (from, to) = if frames == 1 { (start, to) } else { (part(k), part(k + 1)) };
+                    match track.pose {
+                        Pose::Point => self.wait(Act::Push(Push {
                             from,
                             to,
-                            radius: s.pinch_radius_mm * tool_scale,
+                            radius: s.tip_radius_mm * tool_scale,
                             strength,
-                        }));
-                    }
-                    _ => {
-                        let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
-                        let radius = s.palm_radius_mm * tool_scale;
-                        self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
+                        })),
+                        Pose::Pinch => {
+                            self.wait(Act::Drag(Drag {
+                                from,
+                                to,
+                                radius: s.pinch_radius_mm * tool_scale,
+                                strength,
+                            }));
+                        }
+                        _ => {
+                            let normal = track.palm_normal.map_or(-Vec3::Y, |n| v.direction(n));
+                            let radius = s.palm_radius_mm * tool_scale;
+                            self.wait(Act::Palm(PalmPress { from, to, normal, radius, strength }));
+                        }
                     }
                 }
             }

@@ -51,6 +51,18 @@ pub struct Features {
 /// Palm width if the tracker reports none: an adult's palm, in mm.
 const PALM_WIDTH_MM: f32 = 85.0;
 
+/// A finger less straight than this is bent, whatever its flag says. In recordings of real hands
+/// 99 of 100 stretched fingers are straighter; the others belong to closing fists.
+const BENT: f32 = 0.75;
+/// A finger straighter than this, and farther out than [`STRETCHED_REACH`], is stretched.
+const STRAIGHT: f32 = 0.985;
+/// Tip to palm over the palm's width; bent fingers of real hands are nearer, up to 1.2, or less
+/// straight.
+const STRETCHED_REACH: f32 = 1.3;
+/// Tip to palm over the palm's width, below which a finger cannot be stretched; real stretched
+/// ones reach 0.85 and more.
+const CURLED_REACH: f32 = 0.7;
+
 impl Features {
     /// Measures one frame.
     pub fn of(hand: &Hand) -> Self {
@@ -120,7 +132,24 @@ impl Features {
     }
 }
 
-/// The tracker's word, else by how far the tip is from the palm.
+/// Returns the tracker's flag, unless the bones contradict it: it may be stuck. Without a flag, the
+/// distance of the tip from the palm decides.
 fn is_extended(finger: &Finger, palm: Vec3, width: f32) -> bool {
-    finger.extended.unwrap_or_else(|| (finger.tip - palm).length() > width * 0.95)
+    let reach = (finger.tip - palm).length() / width;
+    let Some(word) = finger.extended else { return reach > 0.95 };
+    match (word, straightness(finger)) {
+        (true, Some(straight)) => straight >= BENT,
+        (true, None) => reach >= CURLED_REACH,
+        (false, Some(straight)) => straight > STRAIGHT && reach > STRETCHED_REACH,
+        (false, None) => false,
+    }
+}
+
+/// Returns the distance from knuckle to tip as a share of the bones between them, or `None` if
+/// joints are missing.
+pub(super) fn straightness(finger: &Finger) -> Option<f32> {
+    let [_, knuckle, first, second, _] = finger.joints;
+    let (knuckle, first, second) = (knuckle?, first?, second?);
+    let bones = knuckle.distance(first) + first.distance(second) + second.distance(finger.tip);
+    (bones > 1.0).then(|| knuckle.distance(finger.tip) / bones)
 }

@@ -3,13 +3,14 @@
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::reach_box::{BOX_MIDDLE_MM, ReachBox};
+use super::reach_box::{BOX_HALF_MM, ReachBox};
 use sculptd_geometry::portable::turn_about;
 
 /// The work's bounding sphere takes this share of the cube, so that a hand can come from outside.
 const WORK_SHARE: f32 = 0.6;
-/// The tool fades out over the last 30 mm before the edge of what a Leap tracks well (about 250 mm
-/// from the middle).
+/// The tool fades out over the last 30 mm before the edge of the space that a Leap tracks well,
+/// about 250 mm from the middle of its interaction box. For another reach both distances grow or
+/// shrink with the mapped cube.
 const EDGE_MM: [f32; 2] = [220.0, 250.0];
 
 /// `world = origin + turn * (mm * scale)`.
@@ -42,9 +43,9 @@ impl Volume {
         self.turn * d
     }
 
-    /// 1 well inside the tracked volume, 0 at its edge.
-    pub fn edge_fade(mm: Vec3) -> f32 {
-        let off = (mm - BOX_MIDDLE_MM).abs().max_element();
+    /// Returns 1 well inside the part of the tracked space that is used, 0 at its edge.
+    pub fn edge_fade(mm: Vec3, reach: &ReachBox) -> f32 {
+        let off = (mm - reach.middle_mm).abs().max_element() - (reach.half_mm - BOX_HALF_MM);
         ((EDGE_MM[1] - off) / (EDGE_MM[1] - EDGE_MM[0])).clamp(0.0, 1.0)
     }
 
@@ -73,6 +74,22 @@ impl Volume {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tool_fades_at_the_edge_of_its_own_reach() {
+        let leap = ReachBox::default();
+        let at = |reach: &ReachBox, off: f32| {
+            Volume::edge_fade(reach.middle_mm + Vec3::new(0.0, off, 0.0), reach)
+        };
+        assert_eq!([0.0, 220.0, 250.0].map(|off| at(&leap, off)), [1.0, 1.0, 0.0]);
+        // A standing person's reach, and one that is larger than a Leap's box.
+        let high = ReachBox { middle_mm: Vec3::new(0.0, 460.0, 0.0), ..leap };
+        let wide = ReachBox { half_mm: 300.0, ..high };
+        assert_eq!([0.0, 100.0, 200.0].map(|off| at(&high, off)), [1.0; 3]);
+        assert_eq!([0.0, 300.0, 400.0].map(|off| at(&wide, off)), [1.0; 3]);
+        assert_eq!(at(&wide, 433.0), 0.0);
+        assert_eq!(Volume::edge_fade(leap.middle_mm, &high), 0.0, "too low for this reach");
+    }
 
     #[test]
     fn what_two_fingers_hold_stays_under_them_to_half_a_millimetre() {

@@ -17,7 +17,7 @@ use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
 use crate::command::Jump;
 use crate::desktop_layout::DesktopLayout;
-use crate::hand::{HandTools, HeldObject, Similarity};
+use crate::hand::{Gates, HandTools, HeldObject, Similarity};
 use crate::old_layout::{FieldCounts, take_from_bytes};
 use crate::payload::Payload;
 use crate::scene::{Object, ObjectId, ObjectSettings, Scene, SceneError, SceneEvent, SceneView};
@@ -139,6 +139,25 @@ pub struct SavedObject {
     pub rest: ObjectState,
 }
 
+/// The parts after the list of objects. Each is written only if it or a later part is not empty.
+#[derive(Default)]
+struct SavedRest {
+    people: People,
+    holding: SavedHolding,
+    /// `None`: the state is older than this part, or no gate knew a hand.
+    gates: Option<Gates>,
+}
+
+/// Returns the next part, or `None` if there are no more.
+fn next_part<T: serde::de::DeserializeOwned>(bytes: &mut &[u8]) -> Result<Option<T>, BadState> {
+    if bytes.is_empty() {
+        return Ok(None);
+    }
+    let (part, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
+    *bytes = rest;
+    Ok(Some(part))
+}
+
 impl SavedScene {
     fn of(scene: &Scene) -> SavedScene {
         let of = |o: &Object| SavedObject {
@@ -156,20 +175,15 @@ impl SavedScene {
     }
 
     /// Reads the data that follows the main part of a state; `None` if there is none.
-    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, People, SavedHolding)>, BadState> {
+    fn read(bytes: &[u8]) -> Result<Option<(SavedScene, SavedRest)>, BadState> {
         if bytes.is_empty() {
             return Ok(None);
         }
-        let (scene, rest) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
-        if rest.is_empty() {
-            return Ok(Some((scene, People::default(), SavedHolding::default())));
-        }
-        let (people, rest) = postcard::take_from_bytes(rest).map_err(|_| BadState)?;
-        let holding = match rest {
-            [] => SavedHolding::default(),
-            rest => postcard::from_bytes(rest).map_err(|_| BadState)?,
-        };
-        Ok(Some((scene, people, holding)))
+        let (scene, mut bytes) = postcard::take_from_bytes(bytes).map_err(|_| BadState)?;
+        let people = next_part(&mut bytes)?.unwrap_or_default();
+        let holding = next_part(&mut bytes)?.unwrap_or_default();
+        let gates = next_part(&mut bytes)?;
+        Ok(Some((scene, SavedRest { people, holding, gates })))
     }
 
     fn around(self, clays: &mut dyn Iterator<Item = Clay>) -> Result<Scene, BadState> {
@@ -191,7 +205,7 @@ impl Saved {
     pub fn scene(&self) -> Result<Option<SavedScene>, BadState> {
         let (_, rest): (Core, _) =
             take_from_bytes(&self.core, self.field_counts).map_err(|_| BadState)?;
-        Ok(SavedScene::read(rest)?.map(|(scene, ..)| scene))
+        Ok(SavedScene::read(rest)?.map(|(scene, _)| scene))
     }
 }
 
@@ -361,15 +375,20 @@ impl World {
         };
         let mut core = postcard::to_stdvec(&core).ok()?;
         let (alone, holding) = (self.people.is_nobody(), self.in_hand.saved());
-        if !self.scene.is_plain() || !alone || holding.picking {
+        let gates = self.hands.gates();
+        let holds = holding.picking || gates.is_some();
+        if !self.scene.is_plain() || !alone || holds {
             core = postcard::to_extend(&SavedScene::of(&self.scene), core).ok()?;
         }
-        if !alone || holding.picking {
+        if !alone || holds {
             // Behind the list of objects; a world of one person has nothing there.
             core = postcard::to_extend(&self.people, core).ok()?;
         }
-        if holding.picking {
+        if holds {
             core = postcard::to_extend(&holding, core).ok()?;
+        }
+        if let Some(gates) = gates {
+            core = postcard::to_extend(gates, core).ok()?;
         }
         Some(Saved {
             tick: self.tick,
@@ -400,8 +419,8 @@ impl World {
         if !core.camera.is_sane() || core.place.is_some() != saved.thing.is_some() {
             return Err(BadState);
         }
-        let (list, people, holding) = match SavedScene::read(rest)? {
-            Some((list, people, holding)) => (Some(list), people, holding),
+        let (list, rest) = match SavedScene::read(rest)? {
+            Some((list, rest)) => (Some(list), rest),
             None => Default::default(),
         };
         let mut clays = clays.into_iter();
@@ -424,14 +443,15 @@ impl World {
         world.pens = core.pens;
         world.strokes = core.strokes;
         world.hands = core.hands;
+        rest.gates.into_iter().for_each(|gates| world.hands.set_gates(gates));
         world.last_hands = core.last_hands;
         world.thing = saved.thing.zip(core.place).map(|(plain, place)| HeldObject { plain, place });
-        world.in_hand = ObjectsInHand::restored(holding);
+        world.in_hand = ObjectsInHand::restored(rest.holding);
         world.scratch.picture = saved.picture;
         world.lineages = core.lineages;
         world.desktop = core.desktop;
         world.kept_brushes = Arc::new(core.kept_brushes);
-        world.people = people;
+        world.people = rest.people;
         Ok(world)
     }
 }
