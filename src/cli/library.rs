@@ -97,6 +97,11 @@ pub fn folder() -> Option<PathBuf> {
     directories::ProjectDirs::from("", "", "sculptd").map(|d| d.data_dir().join("sessions"))
 }
 
+/// Returns the folder of an installation's visit in progress; `None` without a home folder.
+pub fn visits() -> Option<PathBuf> {
+    directories::ProjectDirs::from("", "", "sculptd").map(|d| d.data_dir().join("kiosk"))
+}
+
 /// Year, month, day, hour and minute in UTC. The civil date of a day number after Howard Hinnant,
 /// "chrono-compatible low-level date algorithms" (2013).
 fn civil(seconds: u64) -> (u64, u64, u64, u64, u64) {

@@ -210,6 +210,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             presets: crate::presets().clone(),
             brushes: own_brushes(args.brushes.as_deref())?,
             languages: LANGUAGES,
+            visits: (args.kiosk && session.is_none()).then(library::visits).flatten(),
             kiosk,
             demo_devices: false,
             devices: true,

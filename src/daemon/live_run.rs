@@ -7,6 +7,7 @@ use std::sync::Arc;
 #[cfg(unix)]
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::adaptors::{self, Adaptors};
@@ -15,7 +16,7 @@ use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::settings::LanguageTexts;
 use crate::kiosk::unrecorded::WithoutFilms;
-use crate::kiosk::{KioskConfig, keeper};
+use crate::kiosk::{KioskConfig, keeper, recovery};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
 use crate::session::Health;
@@ -49,6 +50,8 @@ pub struct LiveOptions {
     pub languages: LanguageTexts<'static>,
     /// Settings of an installation; `None`: no visitors.
     pub kiosk: Option<KioskConfig>,
+    /// Folder of the file of the visit in progress; `None`: visits are not recorded one by one.
+    pub visits: Option<PathBuf>,
     /// True if simulated devices perform the demo.
     pub demo_devices: bool,
     /// True to listen to real devices.
@@ -111,6 +114,10 @@ pub struct LiveRun {
     pub notices: Vec<String>,
     demo: Option<Playing>,
     writing: Option<WriterThread>,
+    /// The keeper of an installation, which puts the last visitor's work away at the end.
+    keeper: Option<JoinHandle<()>>,
+    /// The thread of the visits' files.
+    recording: Option<JoinHandle<()>>,
     #[cfg(unix)]
     _served: Served,
 }
@@ -163,20 +170,42 @@ impl LiveRun {
         let devices = if options.devices { &config.devices } else { &none };
         let models = ModelTables::new(&catalogue, &config.devices);
         let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
+        let mut notices = Vec::new();
         // As the world is now, so every visitor finds it.
-        let first = options.kiosk.is_some().then(|| keeper::Start {
+        let mut first = options.kiosk.is_some().then(|| keeper::Start {
             plain: Arc::new(begun.world.mesh().to_tri()),
             camera: config.camera.camera(),
             brush: first_brush(&options, *begun.world.brush()),
             film: Arc::default(),
+            interrupted: false,
+            put_away: None,
         });
+        let (begun, visits) = match (&options.visits, &mut first) {
+            (Some(folder), Some(first)) => {
+                recovery::begin(folder, first, begun, config, &mut notices)
+            }
+            _ => (begun, None),
+        };
         let (writer, writing) = begun.journal.unzip();
-        let health = writing.as_ref().map(|t| t.health.clone());
-        let history = writing.as_ref().and_then(|t| t.history.as_ref()).map(|k| k.handle.clone());
-        let journal = writer.map(|w| match &first {
-            Some(first) => Box::new(WithoutFilms::new(w, first.film.clone())) as Box<dyn Journal>,
-            None => Box::new(w),
-        });
+        let (mut health, mut history) = (None, None);
+        if let Some(thread) = &writing {
+            health = Some(thread.health.clone());
+            history = thread.history.as_ref().map(|k| k.handle.clone());
+        }
+        // The thread of a visit's file ends with the visit.
+        let watched = health.clone();
+        let (mut journal, mut recording, mut visit_history) = (None, None, None);
+        if let Some(visits) = visits {
+            health = Some(visits.health);
+            visit_history = visits.history;
+            recording = Some(visits.thread);
+            journal = Some(Box::new(visits.journal) as Box<dyn Journal>);
+        } else if let Some(writer) = writer {
+            journal = Some(match &first {
+                Some(first) => Box::new(WithoutFilms::new(writer, first.film.clone())),
+                None => Box::new(writer) as Box<dyn Journal>,
+            });
+        }
         let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
             .with_controls(options.controls.clone())
             .with_models(models.of(adaptors.clone()));
@@ -185,7 +214,7 @@ impl LiveRun {
         let followed = shared.is_none();
         let live =
             Live::start_shared(begun.world, receiver, clock.clone(), rate, drain, journal, shared)?;
-        if let Some(history) = &history {
+        for history in history.iter().chain(&visit_history) {
             history.connect(live.commands.clone());
         }
         if followed {
@@ -197,7 +226,6 @@ impl LiveRun {
                 source,
             })?;
         }
-        let mut notices = Vec::new();
         if let Some(folder) = options.brushes.take() {
             notices.extend(folder.problems().iter().map(|e| format!("brush not taken: {e}")));
             folder.watch(stop.clone()).map_err(|source| LiveRunError::Service {
@@ -210,7 +238,7 @@ impl LiveRun {
             let pen = crate::control::stroke::VirtualPen::new(&factory, clock.clone());
             let host = crate::control::Host {
                 stop: stop.clone(),
-                journal: health.clone(),
+                journal: health,
                 history: history.clone(),
                 pen: Some(Arc::new(Mutex::new(pen))),
                 window: options.window.clone(),
@@ -220,21 +248,21 @@ impl LiveRun {
                     options.presets.clone(),
                 )
             };
-            Served::start(&options, config, host, health, &mut notices)?
+            Served::start(&options, config, host, watched, &mut notices)?
         };
         #[cfg(not(unix))]
-        let _: Option<Health> = health;
+        let _: [Option<Health>; 2] = [health, watched];
         let window = options.window.clone();
         let demo = match options.demo_devices {
             true => Some(demo_devices::playing(&clock, &factory)?),
             false => None,
         };
         play(options.players, &clock, &factory, &stop)?;
-        let kiosk = match options.kiosk.zip(first) {
+        let (kiosk, keeper) = match options.kiosk.zip(first) {
             Some((kiosk, first)) => {
-                Some(screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?)
+                screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?
             }
-            None => None,
+            None => (None, None),
         };
         if let Some(seconds) = options.limit_s {
             end_after(seconds, &stop)?;
@@ -252,6 +280,8 @@ impl LiveRun {
             notices,
             demo,
             writing,
+            keeper,
+            recording,
             #[cfg(unix)]
             _served,
         })
@@ -300,7 +330,14 @@ impl LiveRun {
     /// Returns an error if the tick thread panicked.
     pub fn finish(self) -> Result<FinishedRun, LiveError> {
         drop((self.demo, self.adaptors));
+        if let Some(keeper) = self.keeper {
+            self.stop.store(true, Relaxed);
+            let _ = keeper.join();
+        }
         let ended = self.live.stop()?;
+        if let Some(recording) = self.recording {
+            let _ = recording.join();
+        }
         let mut summary = summary(&ended.figures, &ended.world, &ended.receiver, None);
         summary.sample_to_present = self.window.present_latency().summary();
         Ok(FinishedRun {
@@ -386,7 +423,7 @@ fn screen(
     factory: &SenderFactory,
     clock: &Clock,
     stop: &Arc<AtomicBool>,
-) -> Result<keeper::Screen, LiveRunError> {
+) -> Result<(Option<keeper::Screen>, Option<JoinHandle<()>>), LiveRunError> {
     let words = kiosk.every_language(languages).map_err(LiveRunError::Kiosk)?;
     let (staff, show) = (!kiosk.staff_pin.is_empty(), kiosk.screen.clone());
     let (published, commands) = (live.published.clone(), live.commands.clone());
@@ -394,7 +431,8 @@ fn screen(
     let settings = (kiosk, &words[0]);
     let keeper = keeper::start(settings, first, published, commands, factory, clock, stop)
         .map_err(LiveRunError::Kiosk)?;
-    Ok(keeper::Screen { desk: keeper.desk, words, staff, show })
+    let screen = keeper::Screen { desk: keeper.desk, words, staff, show };
+    Ok((Some(screen), Some(keeper.thread)))
 }
 
 /// Returns the brush that visitors start with: that of the installation's settings, or the world's.

@@ -1,6 +1,7 @@
-//! Daemons as processes of their own, for tests over a network.
+//! Daemons as processes of their own, for tests over a network and of kills.
 
 use std::io::{BufRead, BufReader};
+#[cfg(feature = "network")]
 use std::net::TcpListener;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -23,6 +24,7 @@ impl Drop for Daemon {
 
 impl Daemon {
     /// `sculptd run --headless` with more arguments.
+    #[cfg(feature = "network")]
     pub fn run(args: &[&str]) -> Daemon {
         Daemon::run_in(tempfile::tempdir().expect("a folder"), args)
     }
@@ -62,6 +64,7 @@ impl Daemon {
 }
 
 /// An endpoint on the loopback that nobody listens at.
+#[cfg(feature = "network")]
 pub fn free_endpoint() -> String {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     format!("tcp/{}", listener.local_addr().expect("bound"))

@@ -194,6 +194,7 @@ fn visitor(n: u32) -> sculptd_geometry::PolyMesh {
 /// below runs it in a separate process, whose disk fails.
 #[test]
 fn gallery_day() {
+    use sculptd_daemon::kiosk::gallery::VisitLine;
     use sculptd_daemon::kiosk::{gallery, spool::Spool};
     let Some(folder) = std::env::var_os(GALLERY_DAY).map(PathBuf::from) else {
         println!("skipped: it is run with a disk that fails");
@@ -213,7 +214,8 @@ fn gallery_day() {
             }
             Err(e) => println!("refused {n}: {e}"),
         }
-        if let Err(e) = gallery::audit(&folder.join("works/audit.jsonl"), 1, 2, 3, true) {
+        let line = VisitLine { visit: 1, seconds: 2, dabs: 3, kept: true, interrupted: false };
+        if let Err(e) = gallery::audit(&folder.join("works/audit.jsonl"), &line) {
             println!("no audit: {e}");
         }
     }

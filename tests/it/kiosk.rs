@@ -186,7 +186,14 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let world = startup::world(mesh, &config);
     let clean = world.hash();
     let camera = config.camera.camera();
-    let start = keeper::Start { plain, camera, brush: config.brush, film: Arc::default() };
+    let start = keeper::Start {
+        plain,
+        camera,
+        brush: config.brush,
+        film: Arc::default(),
+        interrupted: false,
+        put_away: None,
+    };
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
     let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)

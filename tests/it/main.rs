@@ -8,7 +8,7 @@ mod brushes;
 mod clay;
 #[cfg(unix)]
 mod control;
-#[cfg(all(unix, feature = "network"))]
+#[cfg(unix)]
 mod daemon_process;
 #[cfg(target_os = "linux")]
 mod faulty_disk;
@@ -31,6 +31,8 @@ mod http_server;
 mod io;
 mod io_files;
 mod kiosk;
+#[cfg(unix)]
+mod kiosk_kills;
 mod mesh_craft;
 #[cfg(unix)]
 mod mutations;

@@ -69,6 +69,16 @@ impl Cycle {
         }
     }
 
+    /// A cycle that begins within a visit, as if the visitor had touched something just now.
+    pub fn resumed(self) -> Self {
+        Cycle { stage: Stage::Working, ..self }
+    }
+
+    /// Ends a visit that is in progress.
+    pub fn interrupt(&mut self) -> Option<KioskAct> {
+        (self.stage != Stage::Attract).then(|| self.end())
+    }
+
     /// One tick. `touched`: a visitor's pen or hand was felt in it. `done`: the visitor pressed
     /// "finished".
     pub fn step(&mut self, touched: bool, done: bool) -> Option<KioskAct> {

@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 pub use super::names::works;
 use super::names::{number, sent};
 use sculptd_geometry::PolyMesh;
@@ -45,13 +47,31 @@ pub fn page(folder: &Path) -> std::io::Result<()> {
     })
 }
 
-/// One line a visit: numbers only, nothing of the person.
-pub fn audit(file: &Path, visit: u64, seconds: u64, dabs: u64, kept: bool) -> std::io::Result<()> {
-    let line =
-        serde_json::json!({ "visit": visit, "seconds": seconds, "dabs": dabs, "kept": kept });
+/// One visit, as the audit file has it: numbers only, nothing of the person.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct VisitLine {
+    /// Number of the visit since the program started.
+    pub visit: u64,
+    pub seconds: u64,
+    pub dabs: u64,
+    /// True if the work is in the gallery.
+    pub kept: bool,
+    /// True if the program was killed during the visit. `seconds` and `dabs` count from the next
+    /// start.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub interrupted: bool,
+}
+
+/// Appends a line for a visit.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn audit(file: &Path, line: &VisitLine) -> std::io::Result<()> {
+    let mut text = serde_json::to_string(line).map_err(std::io::Error::other)?;
+    text.push('\n');
     let mut out = std::fs::OpenOptions::new().append(true).create(true).open(file)?;
     // In one call: lines of two writers do not mix.
-    out.write_all(format!("{line}\n").as_bytes())?;
+    out.write_all(text.as_bytes())?;
     out.sync_data()
 }
 

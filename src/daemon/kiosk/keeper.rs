@@ -10,11 +10,13 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::film::AttractRecording;
+use super::gallery::{self, VisitLine};
 #[cfg(unix)]
 use super::share;
 use super::speech::Speech;
 use super::spool::Spool;
-use super::{Cycle, KioskAct, KioskConfig, Language, ScreenSettings, Stage, View, gallery};
+use super::visit_journal::PutAway;
+use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, ScreenSettings, Stage, View};
 use crate::Published;
 use crate::adaptors::RECORDING_IDS;
 use crate::command_queue::{CommandSender, QueuedCommand};
@@ -45,6 +47,12 @@ pub struct Start {
     pub brush: BrushSettings,
     /// Set while a reset begins an attract film, which no session records; cleared for a visit.
     pub film: Arc<AtomicBool>,
+    /// A visit that the last run did not end; its work is in the world.
+    pub interrupted: bool,
+    /// See [`VisitRecording::put_away`]; `None`: visits are not recorded one by one.
+    ///
+    /// [`VisitRecording::put_away`]: super::visit_journal::VisitRecording::put_away
+    pub put_away: Option<cc::Sender<PutAway>>,
 }
 
 impl Start {
@@ -190,6 +198,13 @@ pub fn start(
 impl KioskThread {
     fn run(&mut self) {
         let mut cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
+        if self.start.interrupted {
+            cycle = cycle.resumed();
+            if self.config.interrupted == Interrupted::Gallery {
+                let act = cycle.interrupt();
+                self.carry_out(act, &cycle);
+            }
+        }
         let mut felt = None;
         let (_keep, quiet) = cc::bounded::<()>(1);
         while !self.stop.load(Relaxed) {
@@ -221,6 +236,9 @@ impl KioskThread {
             }
             let _ = quiet.recv_timeout(Duration::from_secs_f64(1.0 / RATE_HZ));
         }
+        // The program ends, the visitor's work is put away.
+        let act = cycle.interrupt();
+        self.carry_out(act, &cycle);
     }
 
     fn carry_out(&mut self, act: Option<KioskAct>, cycle: &Cycle) {
@@ -238,9 +256,12 @@ impl KioskThread {
             }
             Some(KioskAct::End { seconds }) => {
                 let state = self.published.load_full();
+                let interrupted = std::mem::take(&mut self.start.interrupted);
                 let dabs = state.figures.dabs.saturating_sub(self.dabs_before);
                 let mut kept = false;
-                if dabs > 0 && !self.config.gallery.as_os_str().is_empty() {
+                let keeps = !self.config.gallery.as_os_str().is_empty();
+                let keeps = keeps && (dabs > 0 || interrupted);
+                if keeps {
                     let mesh = state.mesh.to_tri().to_poly();
                     match gallery::keep(&self.config.gallery, &mesh) {
                         Ok(path) => {
@@ -251,12 +272,18 @@ impl KioskThread {
                     }
                 }
                 let file = &self.config.audit;
+                let visit = cycle.view().visits;
+                let line = VisitLine { visit, seconds, dabs, kept, interrupted };
                 if !file.as_os_str().is_empty()
-                    && let Err(e) = gallery::audit(file, cycle.view().visits, seconds, dabs, kept)
+                    && let Err(e) = gallery::audit(file, &line)
                 {
                     tracing::error!("{}: {e}", file.display());
                 }
-                self.put_back(false);
+                // The attract film that follows begins with a reset.
+                if let Some(put_away) = &self.start.put_away {
+                    let refused = keeps && !kept;
+                    let _ = put_away.send(if refused { PutAway::Refused } else { PutAway::Done });
+                }
             }
         }
     }

@@ -6,6 +6,8 @@
 //! * A reset removes everything of the previous visitor:
 //!   [`sculptd_engine::command::Command::Begin`] replaces the world.
 //! * Files (gallery, audit) appear complete or not at all, and contain nothing about the visitors.
+//! * A visit that a kill or a power cut interrupts goes on at the next start, or its work goes to
+//!   the gallery ([`visit_journal`]).
 
 #[cfg(feature = "s3")]
 pub mod bucket;
@@ -14,12 +16,14 @@ pub mod film;
 pub mod gallery;
 pub mod keeper;
 pub mod names;
+pub mod recovery;
 pub mod settings;
 #[cfg(unix)]
 pub mod share;
 mod speech;
 pub mod spool;
 pub mod unrecorded;
+pub mod visit_journal;
 
 pub use cycle::{Cycle, KioskAct, Stage, View};
-pub use settings::{FleetSettings, KioskConfig, Language, ScreenSettings};
+pub use settings::{FleetSettings, Interrupted, KioskConfig, Language, ScreenSettings};

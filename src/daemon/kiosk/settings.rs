@@ -25,6 +25,8 @@ pub struct KioskConfig {
     pub share_name: String,
     pub share_minutes: f64,
     pub audit: PathBuf,
+    /// What becomes of a visit that a kill or a power cut interrupted.
+    pub interrupted: Interrupted,
     pub attract: Vec<PathBuf>,
     /// The brush that every visitor begins with; empty: that of the configuration.
     pub brush: String,
@@ -35,6 +37,17 @@ pub struct KioskConfig {
     pub speak: Vec<String>,
     /// The fleet that manages this installation remotely.
     pub fleet: FleetSettings,
+}
+
+/// What becomes of a visit that a kill or a power cut interrupted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interrupted {
+    /// The next start shows the work, and the visit goes on.
+    #[default]
+    Resume,
+    /// The next start puts the work into the gallery.
+    Gallery,
 }
 
 /// The fleet that an installation belongs to (programs with the feature `network`).
@@ -100,6 +113,7 @@ impl Default for KioskConfig {
             share_name: String::new(),
             share_minutes: 30.0,
             audit: PathBuf::new(),
+            interrupted: Interrupted::default(),
             attract: vec![],
             brush: String::new(),
             radius: 0.0,
@@ -148,6 +162,9 @@ impl KioskConfig {
                 "share_minutes = {}: expected a number from 1 to 1440",
                 self.share_minutes
             ));
+        }
+        if self.gallery.as_os_str().is_empty() && self.interrupted == Interrupted::Gallery {
+            return Err("interrupted = \"gallery\" needs a gallery".into());
         }
         if self.gallery.as_os_str().is_empty()
             && !(self.gallery_store.is_empty() && self.share.is_empty())

@@ -37,7 +37,7 @@ pub use reader::{Loss, OpenError, Opened, open};
 pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
 pub use start::SessionStart;
-pub use writer::{Fault, Health, SessionWriter, create, resume};
+pub use writer::{Fault, Health, SessionWriter, create, create_with, resume};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms
 /// that a crash may cost.

@@ -136,12 +136,25 @@ pub fn create(
     start: impl Into<SessionStart>,
     settings: &Settings,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
+    create_with(path, start, settings, Health::default())
+}
+
+/// As [`create`]; `health` shows the state of this session from now on.
+///
+/// # Errors
+/// [`CreateError`]
+pub fn create_with(
+    path: &Path,
+    start: impl Into<SessionStart>,
+    settings: &Settings,
+    health: Health,
+) -> Result<(SessionWriter, WriterThread), CreateError> {
     let over = path.exists();
     if over && !is_half_made(path) {
         return Err(CreateError::Exists { path: path.display().to_string() });
     }
     SessionDraft::begin(path, &start.into(), settings)?.publish(path, over)?;
-    resume(path)
+    resume_with(path, health)
 }
 
 /// Keeps a second daemon from writing the same session. Given back when the file is closed, also by
@@ -165,6 +178,10 @@ fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
 /// # Errors
 /// [`CreateError`]
 pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
+    resume_with(path, Health::default())
+}
+
+fn resume_with(path: &Path, health: Health) -> Result<(SessionWriter, WriterThread), CreateError> {
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     let io = |source| CreateError::Io { path: path.display().to_string(), source };
     let lock = lock(path)?;
@@ -176,7 +193,7 @@ pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError>
     let mut db = Connection::open(path).map_err(store)?;
     tune(&db).map_err(store)?;
     upgrade(&mut db).map_err(store)?;
-    start_thread(db, lock, path)
+    start_thread(db, lock, path, health)
 }
 
 /// Write-ahead log, every group synced by [`Syncer`]: a kill costs what was not committed, a power
@@ -193,13 +210,15 @@ fn start_thread(
     db: Connection,
     lock: Arc<File>,
     path: &Path,
+    health: Health,
 ) -> Result<(SessionWriter, WriterThread), CreateError> {
     let (full, inbox) = cc::bounded(BUFFERS);
     let (recycle, empty) = cc::bounded(BUFFERS);
     for _ in 0..BUFFERS {
         let _ = recycle.try_send(Vec::with_capacity(BUFFER_BYTES));
     }
-    let health = Health::default();
+    health.lost.store(0, Relaxed);
+    health.written.store(0, Relaxed);
     let sql = |source| CreateError::Store { path: path.display().to_string(), source };
     let io = |source| CreateError::Io { path: path.display().to_string(), source };
     let (end, tail) = begin_log(&db, path).map_err(sql)?;

@@ -1,0 +1,246 @@
+//! The input of a visit in a session file of its own, from the visitor's first touch until the work
+//! is put away: a program that is killed in between goes on with the visit.
+//!
+//! A visit begins with a reset to the start clay, so its file holds that clay once and the visit's
+//! input alone. Of everything before the visit only the layout of the desktop outlives the reset;
+//! the file begins with it. Attract films are not recorded.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+
+use crossbeam_channel as cc;
+
+use crate::session::format::Settings;
+use crate::session::history::Handle;
+use crate::session::writer::WriterThread;
+use crate::session::{self, Health, SessionWriter, catalog};
+use crate::tick::Journal;
+use sculptd_devices::Sample;
+use sculptd_engine::command::Command;
+use sculptd_engine::world::World;
+use sculptd_geometry::TriMesh;
+
+/// Name of the file of the visit in progress.
+pub const VISIT_FILE: &str = "visit.sculpt";
+
+/// The tick thread's end: records the visit in progress.
+#[derive(Debug)]
+pub struct VisitJournal {
+    /// Set while a reset begins an attract film, and not a visit.
+    film: Arc<AtomicBool>,
+    /// The file of the visit in progress.
+    now: Option<SessionWriter>,
+    visiting: bool,
+    prepared: cc::Receiver<SessionWriter>,
+    /// Takes the file of each visit that ended; `None` if the visit was not recorded.
+    ended: cc::Sender<Option<SessionWriter>>,
+    desktop: Option<Command>,
+}
+
+impl VisitJournal {
+    fn end(&mut self) {
+        if std::mem::take(&mut self.visiting) {
+            // One visit at a time is under way, so there is room.
+            let _ = self.ended.try_send(self.now.take());
+        }
+    }
+
+    /// Begins a visit with the commands that follow the reset.
+    fn begin(&mut self, tick: u64, samples: &[Sample], after: &[Command], world: &mut World) {
+        self.visiting = true;
+        if let Ok(mut next) = self.prepared.try_recv() {
+            let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
+            next.tick(tick, samples, &first, world);
+            self.now = Some(next);
+        }
+    }
+}
+
+impl Journal for VisitJournal {
+    fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World) {
+        let layout = commands.iter().rfind(|c| matches!(c, Command::DesktopLayout(_)));
+        let reset = commands.iter().rposition(|c| matches!(c, Command::Begin(_)));
+        match reset {
+            None => {
+                if let Some(now) = &mut self.now {
+                    now.tick(tick, samples, commands, world);
+                }
+            }
+            Some(at) => {
+                self.end();
+                if !self.film.load(Relaxed) {
+                    self.begin(tick, samples, &commands[at + 1..], world);
+                }
+            }
+        }
+        if let Some(layout) = layout {
+            self.desktop = Some(layout.clone());
+        }
+    }
+
+    fn has_waiting(&self) -> bool {
+        self.now.as_ref().is_some_and(Journal::has_waiting)
+    }
+}
+
+/// Start of every visit's file.
+#[derive(Debug, Clone)]
+pub struct VisitStart {
+    /// The start clay.
+    pub plain: Arc<TriMesh>,
+    /// The camera and the brush are those of a reset.
+    pub settings: Settings,
+    /// See [`super::keeper::Start::film`].
+    pub film: Arc<AtomicBool>,
+}
+
+/// What became of a visit's work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PutAway {
+    /// The file of the visit is of no use any more.
+    Done,
+    /// The gallery could not take the work: the file is renamed and stays.
+    Refused,
+}
+
+/// The recording of visits.
+#[derive(Debug)]
+pub struct VisitRecording {
+    /// The tick thread's end.
+    pub journal: VisitJournal,
+    /// Takes a message after each visit; then the next visit's file is made.
+    pub put_away: cc::Sender<PutAway>,
+    /// The state of the file of the visit in progress.
+    pub health: Health,
+    /// The history of a resumed visit, for undo beyond the resumption.
+    pub history: Option<Handle>,
+    /// Ends after the loop and every sender of `put_away` have gone.
+    pub thread: JoinHandle<()>,
+}
+
+/// Starts to record visits into `folder`. `resumed`: the file of a visit that goes on.
+///
+/// # Errors
+/// Returns an error if the thread cannot be started.
+pub fn start(
+    folder: &Path,
+    start: VisitStart,
+    resumed: Option<(SessionWriter, WriterThread)>,
+) -> std::io::Result<VisitRecording> {
+    let (prepare, prepared) = cc::bounded(1);
+    let (end, ended) = cc::bounded(2);
+    let (put_away, calls) = cc::unbounded();
+    let (now, open) = resumed.unzip();
+    let history = open.as_ref().and_then(|t| Some(t.history.as_ref()?.handle.clone()));
+    let health = open.as_ref().map(|t| t.health.clone()).unwrap_or_default();
+    let (visiting, film, desktop) = (now.is_some(), start.film.clone(), None);
+    let path = folder.join(VISIT_FILE);
+    let prepare = Some(prepare);
+    let mut files = VisitFolder { path, start, health: health.clone(), prepare, ended, open };
+    let thread = std::thread::Builder::new()
+        .name("sculptd-visits".into())
+        .spawn(move || files.run(&calls))?;
+    let journal = VisitJournal { film, now, visiting, prepared, ended: end, desktop };
+    Ok(VisitRecording { journal, put_away, health, history, thread })
+}
+
+/// Renames a visit's file to `NAME-1.sculpt` or the next free number, and returns its new path.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn set_aside(file: &Path, name: &str) -> std::io::Result<PathBuf> {
+    let mut names = (1..).map(|n| file.with_file_name(format!("{name}-{n}.sculpt")));
+    let to = names.find(|p| !p.exists()).unwrap_or_default();
+    std::fs::rename(file, &to)?;
+    Ok(to)
+}
+
+/// The thread that makes and removes the files, for those who must not wait for a disk.
+
+struct VisitFolder {
+    path: PathBuf,
+    start: VisitStart,
+    health: Health,
+    /// `None` once the loop has ended. A channel keeps what nobody took for as long as this lives.
+    prepare: Option<cc::Sender<SessionWriter>>,
+    ended: cc::Receiver<Option<SessionWriter>>,
+    /// The file of the visit in progress or of the next one.
+    open: Option<WriterThread>,
+}
+
+impl VisitFolder {
+    fn run(&mut self, calls: &cc::Receiver<PutAway>) {
+        if self.open.is_none() {
+            self.make();
+        }
+        while let Ok(work) = calls.recv() {
+            // The tick thread hands the file over with the reset that follows the visit.
+            match self.ended.recv() {
+                // The visit was not recorded: the file is the next one's.
+                Ok(None) if self.open.is_some() => {}
+                Ok(_) => {
+                    self.close(Some(work));
+                    self.make();
+                }
+                // The loop has ended with the visit.
+                Err(_) => {
+                    self.prepare = None;
+                    return self.close(Some(work));
+                }
+            }
+        }
+        self.prepare = None;
+        // A file in which nobody sculpted is of no use to the next start.
+        let unused = self.health.written.load(Relaxed) == 0;
+        self.close(unused.then_some(PutAway::Done));
+    }
+
+    /// Makes the next visit's file.
+    fn make(&mut self) {
+        let (start, health) = (&self.start, self.health.clone());
+        match session::create_with(&self.path, &*start.plain, &start.settings, health) {
+            Ok((writer, thread)) => {
+                // The tick thread takes one at a time, so there is room.
+                if let Some(prepare) = &self.prepare {
+                    let _ = prepare.try_send(writer);
+                }
+                self.open = Some(thread);
+                self.show(None);
+            }
+            Err(e) => {
+                let text = format!("the next visit is not recorded: {e}");
+                tracing::error!("kiosk: {text}");
+                self.show(Some(text));
+            }
+        }
+    }
+
+    /// Closes the file; `None`: it stays, for the visit to go on at the next start.
+    fn close(&mut self, work: Option<PutAway>) {
+        let Some(thread) = self.open.take() else { return };
+        let path = thread.path.get();
+        let trouble = thread.finish();
+        if let Some(why) = &trouble {
+            tracing::error!("kiosk: {}: {why}", path.display());
+        }
+        let done = match work {
+            None => Ok(()),
+            Some(PutAway::Done) => catalog::remove(&path),
+            Some(PutAway::Refused) => set_aside(&path, "visit-not-kept").map(|to| {
+                tracing::error!("kiosk: the gallery took no work: it is in {}", to.display());
+            }),
+        };
+        if let Err(e) = done {
+            tracing::error!("kiosk: {}: {e}", path.display());
+        }
+        self.show(trouble);
+    }
+
+    fn show(&self, text: Option<String>) {
+        if let Ok(mut fault) = self.health.fault.lock() {
+            *fault = text;
+        }
+    }
+}

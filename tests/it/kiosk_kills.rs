@@ -1,0 +1,108 @@
+//! Visits that a kill interrupts, in real processes.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::daemon_process::Daemon;
+use crate::waiting::{pause, until};
+
+const STROKE: &str = r#"{"points": [[0.4, 0.5, 0.8, 0], [0.5, 0.55, 0.8, 100], [0.6, 0.5, 0.8, 200]], "space": "view"}"#;
+
+/// An installation whose settings have these lines, in a home folder that stays.
+fn installation(home: tempfile::TempDir, lines: &str) -> Daemon {
+    let file = home.path().join("kiosk.toml");
+    let works = home.path().join("works");
+    let audit = home.path().join("visits.log");
+    let text = format!("gallery = {works:?}\naudit = {audit:?}\nidle_s = 3600\n{lines}\n");
+    #[allow(clippy::disallowed_methods)] // Settings of a test.
+    std::fs::write(&file, text).expect("written");
+    let file = file.display().to_string();
+    let daemon = Daemon::run_in(home, &["--kiosk", "--kiosk-config", &file]);
+    until("it answers", || daemon.ctl("status", None).is_some());
+    daemon
+}
+
+/// Ends a daemon with this signal and returns its home.
+fn ended(mut daemon: Daemon, signal: rustix::process::Signal) -> tempfile::TempDir {
+    let child = rustix::process::Pid::from_child(&daemon.child);
+    rustix::process::kill_process(child, signal).expect("it runs");
+    daemon.child.wait().expect("it ends");
+    std::mem::replace(&mut daemon.home, tempfile::tempdir().expect("a folder"))
+}
+
+fn hash(daemon: &Daemon) -> String {
+    let answer = daemon.ctl("hash", None).expect("an answer");
+    answer["hash"].as_str().expect("a hash").to_owned()
+}
+
+fn sculpt(daemon: &Daemon) {
+    let before = hash(daemon);
+    daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+    until("the stroke sculpts", || hash(daemon) != before);
+}
+
+/// Strokes until a visit has begun and the clay holds still but for them: the film has stopped.
+fn visit(daemon: &Daemon) {
+    daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+    let still = || {
+        let before = hash(daemon);
+        pause(300);
+        hash(daemon) == before
+    };
+    until("the film has stopped", still);
+    sculpt(daemon);
+    until("the stroke is over", still);
+}
+
+fn audit(home: &Path) -> Vec<serde_json::Value> {
+    let text = std::fs::read_to_string(home.join("visits.log")).unwrap_or_default();
+    text.lines().map(|l| serde_json::from_str(l).expect("a line of JSON")).collect()
+}
+
+fn works(home: &Path) -> usize {
+    sculptd_daemon::kiosk::names::works(&home.join("works")).map_or(0, |w| w.len())
+}
+
+#[test]
+fn a_visit_goes_on_after_a_kill_and_its_work_comes_to_the_gallery() {
+    let mut daemon = installation(tempfile::tempdir().expect("a folder"), "");
+    visit(&daemon);
+    for round in 0..3 {
+        let before = hash(&daemon);
+        daemon = installation(ended(daemon, rustix::process::Signal::KILL), "");
+        until("it says so", || daemon.has_told("the last visit was interrupted"));
+        assert_eq!(hash(&daemon), before, "round {round}");
+        sculpt(&daemon);
+        pause(500);
+    }
+    let home = ended(daemon, rustix::process::Signal::TERM);
+    assert_eq!(works(home.path()), 1);
+    let lines = audit(home.path());
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert_eq!((&lines[0]["kept"], &lines[0]["interrupted"]), (&json!(true), &json!(true)));
+    assert!(!home.path().join("sculptd/kiosk/visit.sculpt").exists(), "its work was put away");
+    // Nothing of the visit is left.
+    let daemon = installation(home, "");
+    until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+    assert!(!daemon.has_told("interrupted"));
+    let home = ended(daemon, rustix::process::Signal::KILL);
+    let daemon = installation(home, "");
+    until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+    assert!(!daemon.has_told("interrupted"), "nobody came");
+    assert_eq!(audit(daemon.home.path()).len(), 1);
+}
+
+#[test]
+fn an_interrupted_visit_comes_to_the_gallery_where_the_settings_say_so() {
+    let lines = "interrupted = \"gallery\"";
+    let daemon = installation(tempfile::tempdir().expect("a folder"), lines);
+    visit(&daemon);
+    let daemon = installation(ended(daemon, rustix::process::Signal::KILL), lines);
+    let home = daemon.home.path();
+    until("the work is in the gallery", || works(home) == 1);
+    until("there is a line", || audit(home).len() == 1);
+    assert_eq!(audit(home)[0]["interrupted"], json!(true));
+    let home = ended(daemon, rustix::process::Signal::TERM);
+    assert_eq!((works(home.path()), audit(home.path()).len()), (1, 1), "no visit was under way");
+}
