@@ -140,6 +140,8 @@
 //!   for: time, a signal.
 //! * `sculptd-kiosk`, made by `daemon::kiosk::keeper`: the cycle of an installation: attract,
 //!   sculpt, reset. Waits for: time, the published state.
+//! * `sculptd-visits`, made by `daemon::kiosk::visit_journal`: makes the session file of the next
+//!   visit, and removes it once the visit's work was put away.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: sends finished sculptures to their
 //!   destination. Waits for: the disk, the network.
 //! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the

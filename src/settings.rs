@@ -8,8 +8,13 @@ pub const KIOSK: &str = include_str!("../config/kiosk.toml");
 /// Texts of an installation's screen, by language code.
 pub const LANGUAGES: &[(&str, &str)] = &[
     ("en", include_str!("../config/languages/en.toml")),
-    ("it", include_str!("../config/languages/it.toml")),
+    ("de", include_str!("../config/languages/de.toml")),
     ("el", include_str!("../config/languages/el.toml")),
+    ("es", include_str!("../config/languages/es.toml")),
+    ("fr", include_str!("../config/languages/fr.toml")),
+    ("it", include_str!("../config/languages/it.toml")),
+    ("ja", include_str!("../config/languages/ja.toml")),
+    ("zh", include_str!("../config/languages/zh.toml")),
 ];
 
 macro_rules! window_texts {
@@ -64,6 +69,6 @@ mod tests {
             let words = config.words(LANGUAGES).expect("whole");
             assert!(words.countdown.contains("{seconds}"), "{language}");
         }
-        assert_eq!(KioskConfig::default().every_language(LANGUAGES).expect("whole").len(), 3);
+        assert_eq!(KioskConfig::default().every_language(LANGUAGES).expect("whole").len(), 8);
     }
 }

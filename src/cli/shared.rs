@@ -231,7 +231,10 @@ impl SharedArgs {
             // It stands still.
             None => (alone(config)?.world, None),
         };
-        Ok((Begun { world, journal, warnings: Vec::new() }, Box::new(shared.link)))
+        Ok((
+            Begun { world, journal, warnings: Vec::new(), started_with: None },
+            Box::new(shared.link),
+        ))
     }
 }
 

@@ -171,9 +171,10 @@ impl LiveRun {
         let models = ModelTables::new(&catalogue, &config.devices);
         let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
         let mut notices = Vec::new();
-        // As the world is now, so every visitor finds it.
+        // Every visitor finds what the first one found.
+        let plain = || begun.started_with.clone().unwrap_or_else(|| begun.world.mesh().to_tri());
         let mut first = options.kiosk.is_some().then(|| keeper::Start {
-            plain: Arc::new(begun.world.mesh().to_tri()),
+            plain: Arc::new(plain()),
             camera: config.camera.camera(),
             brush: first_brush(&options, *begun.world.brush()),
             film: Arc::default(),

@@ -122,6 +122,8 @@ pub struct Begun {
     pub world: World,
     pub journal: Option<(SessionWriter, WriterThread)>,
     pub warnings: Vec<String>,
+    /// The mesh that a reopened session started with; `None`: the world is as it starts.
+    pub started_with: Option<TriMesh>,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -237,7 +239,9 @@ pub fn begin_with(
             Keeper::start(thread.path.clone(), world, purge, node, config.undo.history_bytes);
         keep(keeper, &mut writer, &mut thread, &mut warnings);
         writer.tick(tick, &[], &reopened, world);
-        return Ok(Begun { world: replayed.world, journal: Some((writer, thread)), warnings });
+        let started_with = opened.start.world.is_none().then_some(opened.start.mesh);
+        let journal = Some((writer, thread));
+        return Ok(Begun { world: replayed.world, journal, warnings, started_with });
     }
     let loaded = load(meshes.first().map(PathBuf::as_path), job)?;
     let mut warnings = loaded.warnings;
@@ -269,7 +273,7 @@ pub fn begin_with(
         let name = meshes.first().map(|p| object_name(p)).unwrap_or_default();
         add_others(&mut world, name, others, journal.as_mut().map(|j| &mut j.0));
     }
-    Ok(Begun { world, journal, warnings })
+    Ok(Begun { world, journal, warnings, started_with: None })
 }
 
 /// Adds the objects after the first, by commands in the first tick, so that a replay does the same;

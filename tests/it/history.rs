@@ -85,7 +85,10 @@ impl Studio {
         let keeper = Keeper::start(path.as_path(), &mut world, 0, None, most).expect("a history");
         writer.keep(keeper.handle.clone());
         thread.history = Some(keeper);
-        Studio::of(path, Begun { world, journal: Some((writer, thread)), warnings: vec![] })
+        Studio::of(
+            path,
+            Begun { world, journal: Some((writer, thread)), warnings: vec![], started_with: None },
+        )
     }
 
     fn of(path: PathBuf, begun: Begun) -> Studio {

@@ -7,7 +7,10 @@ use serde_json::json;
 use crate::daemon_process::Daemon;
 use crate::waiting::{pause, until};
 
-const STROKE: &str = r#"{"points": [[0.4, 0.5, 0.8, 0], [0.5, 0.55, 0.8, 100], [0.6, 0.5, 0.8, 200]], "space": "view"}"#;
+const STROKE: &str = r#"{
+    "points": [[0.4, 0.5, 0.8, 0], [0.5, 0.55, 0.8, 100], [0.6, 0.5, 0.8, 200]],
+    "space": "view"
+}"#;
 
 /// An installation whose settings have these lines, in a home folder that stays.
 fn installation(home: tempfile::TempDir, lines: &str) -> Daemon {

@@ -35,6 +35,8 @@ pub struct View {
     pub visits: u64,
     /// The keypad takes no number now.
     pub locked: bool,
+    /// Wrong numbers that were typed so far.
+    pub wrong: u64,
 }
 
 #[derive(Debug)]
@@ -47,7 +49,9 @@ pub struct Cycle {
     begun: u64,
     touched: u64,
     visits: u64,
+    /// Wrong numbers in a row, and all of them.
     wrong: u32,
+    all_wrong: u64,
     locked_until: u64,
 }
 
@@ -65,6 +69,7 @@ impl Cycle {
             touched: 0,
             visits: 0,
             wrong: 0,
+            all_wrong: 0,
             locked_until: 0,
         }
     }
@@ -121,6 +126,7 @@ impl Cycle {
             return Some(KioskAct::Quit);
         }
         self.wrong += 1;
+        self.all_wrong += 1;
         if self.wrong >= TRIES {
             self.wrong = 0;
             self.locked_until = self.now + (LOCKED_S * self.rate_hz) as u64;
@@ -139,6 +145,7 @@ impl Cycle {
             },
             visits: self.visits,
             locked: self.now < self.locked_until,
+            wrong: self.all_wrong,
         }
     }
 }
@@ -175,7 +182,7 @@ mod tests {
         for n in ["0000", "0001", "0002"] {
             assert_eq!(c.staff(n, "1234"), None);
         }
-        assert!(c.view().locked);
+        assert!(c.view().locked && c.view().wrong == 3);
         assert_eq!(c.staff("1234", "1234"), None);
         idle(&mut c, 600);
         assert_eq!(c.staff("1234", "1234"), Some(KioskAct::Quit));

@@ -1,14 +1,38 @@
-//! Finished works: a file each, a page that lists them, a line a visit.
+//! Finished works: a mesh and a picture each, a page that shows them, a line a visit.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
 use serde::Serialize;
 
 pub use super::names::works;
 use super::names::{number, sent};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::picture::{self, Camera};
+
+/// Size of a picture, pixels.
+const WIDTH: usize = 640;
+/// See [`WIDTH`].
+const HEIGHT: usize = 480;
+
+/// The page before its first work.
+const HEAD: &str = r#"<!doctype html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>sculptd gallery</title>
+<style>
+body { margin: 2rem; background: #1d1f21; color: #eceae4; font: 16px system-ui, sans-serif }
+h1 { font-weight: 500 }
+ul { display: grid; gap: 1rem; padding: 0 }
+ul { grid-template-columns: repeat(auto-fill, minmax(14rem, 1fr)) }
+li { list-style: none; background: #2a2c2f; border-radius: 8px; overflow: hidden }
+a { display: block; color: inherit; text-decoration: none }
+a:focus-visible { outline: 3px solid #e0a060 }
+img { display: block; width: 100% }
+b { display: block; padding: .75rem; font-weight: 500 }
+</style>
+"#;
 
 /// Adds a sculpture and rewrites the page. Each file is written under a temporary name and renamed.
 /// The page lists the folder, so the next call repairs an interruption between the two.
@@ -20,6 +44,9 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     write_mesh(&path, mesh).map_err(std::io::Error::other)?;
+    if let Err(e) = draw(&path.with_extension("png"), mesh) {
+        tracing::error!("{}: no picture of it is written: {e}", path.display());
+    }
     // The sculpture is kept, with or without the page that lists it.
     if let Err(e) = page(folder) {
         tracing::error!(
@@ -30,20 +57,36 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     Ok(path)
 }
 
-/// The page: plain HTML, no scripts, the newest first.
+/// Draws a work from its front, a little from the side and from above.
+fn draw(file: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
+    let (plain, _) = mesh.triangulate();
+    let from = Vec3::new(0.35, 0.3, 1.0);
+    let camera =
+        Camera { up: Vec3::Y, ..Camera::from_side(&plain, from, WIDTH as f32 / HEIGHT as f32) };
+    let colours = plain.colours.as_deref();
+    let colours: Option<Vec<[u8; 3]>> =
+        colours.map(|all| all.iter().map(|c| [c[0], c[1], c[2]]).collect());
+    let picture = picture::draw(&plain, colours.as_deref(), &camera, WIDTH, HEIGHT);
+    let png = picture.png().map_err(std::io::Error::other)?;
+    write_beside(file, |out| out.write_all(&png))
+}
+
+/// The page: plain HTML, no scripts, the newest work first.
 pub fn page(folder: &Path) -> std::io::Result<()> {
     let names = works(folder)?;
     write_beside(&folder.join("index.html"), |out| {
-        writeln!(
-            out,
-            "<!doctype html><meta charset=\"utf-8\"><title>sculptd</title><h1>{} works</h1><ul>",
-            names.len()
-        )?;
+        writeln!(out, "{HEAD}<h1>{} works</h1><ul>", names.len())?;
         for name in names.iter().rev() {
             // Names are digits and fixed letters: nothing to escape.
-            writeln!(out, "<li><a href=\"{name}\" download>{name}</a></li>")?;
+            let stem = name.strip_suffix(".glb").unwrap_or(name);
+            let number = number(name).unwrap_or_default();
+            let picture = match folder.join(format!("{stem}.png")).exists() {
+                true => format!("<img src=\"{stem}.png\" alt=\"\" loading=\"lazy\">"),
+                false => String::new(),
+            };
+            writeln!(out, "<li><a href=\"{name}\" download>{picture}<b>No. {number}</b></a></li>")?;
         }
-        writeln!(out, "</ul>")
+        writeln!(out, "</ul></html>")
     })
 }
 
@@ -97,6 +140,9 @@ mod tests {
         assert!(second.ends_with("work-000002.glb"));
         let text = std::fs::read_to_string(dir.path().join("index.html")).expect("the page");
         assert!(text.contains("2 works") && text.contains("work-000001.glb"));
+        assert!(text.contains("<img src=\"work-000002.png\""), "{text}");
+        let png = std::fs::read(dir.path().join("work-000002.png")).expect("a picture");
+        assert!(png.starts_with(b"\x89PNG"));
         assert_eq!(number("work-1.glb"), None);
         assert_eq!(number("work-00000x.glb"), None);
     }

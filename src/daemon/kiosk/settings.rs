@@ -268,6 +268,22 @@ pub struct Language {
     pub smooth: String,
     pub undo: String,
     pub staff: String,
+    /// How to turn the work and to come nearer.
+    pub turn: String,
+    pub wrong_pin: String,
+    /// Too many wrong PINs were entered.
+    pub locked: String,
+}
+
+impl Language {
+    /// Returns every text, for choosing a font that can draw them.
+    pub fn all(&self) -> String {
+        let Language { name, welcome, countdown, go_on, finish, kept, fetch, .. } = self;
+        let Language { too_large, draw, carve, smooth, undo, staff, turn, .. } = self;
+        let said = [name, welcome, countdown, go_on, finish, kept, fetch, too_large, turn];
+        let pressed = [draw, carve, smooth, undo, staff, &self.wrong_pin, &self.locked];
+        said.into_iter().chain(pressed).map(String::as_str).collect()
+    }
 }
 
 #[cfg(test)]

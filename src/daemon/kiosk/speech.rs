@@ -81,7 +81,8 @@ mod tests {
     #[test]
     fn each_stage_is_said_once_when_it_begins() {
         let mut speech = Speech::new(&[], "Touch", "Back in {seconds}");
-        let view = |stage, seconds_left| View { stage, seconds_left, visits: 0, locked: false };
+        let view =
+            |stage, seconds_left| View { stage, seconds_left, visits: 0, locked: false, wrong: 0 };
         let stages = [
             (Stage::Attract, 0, Some("Touch")),
             (Stage::Attract, 0, None),
@@ -104,7 +105,8 @@ mod tests {
         let script = format!("printf %s \"$0\" > {}", told.display());
         let program = ["sh", "-c", &script].map(String::from);
         let mut speech = Speech::new(&program, "Touch to sculpt", "");
-        let now = View { stage: Stage::Attract, seconds_left: 0, visits: 0, locked: false };
+        let now =
+            View { stage: Stage::Attract, seconds_left: 0, visits: 0, locked: false, wrong: 0 };
         speech.say(&now);
         let child = speech.saying.as_mut().expect("it speaks");
         assert!(child.wait().expect("it ends").success());

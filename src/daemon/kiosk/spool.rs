@@ -193,8 +193,11 @@ fn send_next(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<bool,
         Err(e) => return Err(e.to_string()),
     };
     to.put(name, &bytes, stop)?;
-    if let Ok(page) = std::fs::read(folder.join("index.html")) {
-        to.put("index.html", &page, stop)?;
+    // Its picture and the page are there if they could be written.
+    for beside in [name.replace(".glb", ".png"), "index.html".into()] {
+        if let Ok(bytes) = std::fs::read(folder.join(&beside)) {
+            to.put(&beside, &bytes, stop)?;
+        }
     }
     let number = number(name).unwrap_or(0).max(sent(folder));
     let noted = write_beside(&folder.join(OUTGOING).join(SENT), |out| writeln!(out, "{number}"));

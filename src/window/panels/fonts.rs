@@ -72,6 +72,20 @@ fn prepare(ctx: &egui::Context, translation: &Translation) -> bool {
     true
 }
 
+/// Loads fonts of the system for languages whose own names the fonts in use cannot draw.
+pub fn load_for<'a>(
+    ctx: &egui::Context,
+    translations: &Translations,
+    names: impl Iterator<Item = &'a str>,
+) {
+    let all = translations.all();
+    for name in names.filter(|name| !can_draw(ctx, name)) {
+        if let Some(translation) = all.iter().find(|t| t.names().0 == name) {
+            prepare(ctx, translation);
+        }
+    }
+}
+
 /// Returns true if the fonts in use have every letter of a text.
 pub fn can_draw(ctx: &egui::Context, text: &str) -> bool {
     ctx.fonts_mut(|f| f.has_glyphs(&FontId::proportional(14.0), text))

@@ -10,7 +10,7 @@ use super::{fonts, theme};
 use crate::language::ENGLISH;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
-use sculptd_daemon::kiosk::{Language, Stage};
+use sculptd_daemon::kiosk::{Language, Stage, View as KioskView};
 use sculptd_engine::command::Command;
 
 /// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about
@@ -34,6 +34,7 @@ pub fn ui(
             theme::strong(&ctx);
         }
         ctx.set_zoom_factor(screen.show.text);
+        fonts::load_for(&ctx, view.translations, screen.words.iter().map(|w| w.name.as_str()));
         ui_state.applied = Some((ui_state.prefs.light, 100));
     }
     // The menu of the hands speaks the language of the screen, where the window has it.
@@ -47,7 +48,7 @@ pub fn ui(
     if pad.visits != now.visits {
         *pad = KioskPad { visits: now.visits, ..KioskPad::default() };
     }
-    let Some(words) = screen.words.get(pad.language).or(screen.words.first()) else { return };
+    let Some(words) = shown_words(&ctx, screen, pad) else { return };
     let mut scan = Scan::begin(&ctx, screen, pad);
     if scan.pressed && now.stage == Stage::Attract {
         screen.desk.touched.store(true, Relaxed);
@@ -60,12 +61,12 @@ pub fn ui(
     }
     languages(&ctx, free, screen, pad, &mut scan);
     if screen.staff {
-        door(&ctx, free, words, now.locked, screen, pad, &mut scan);
+        door(&ctx, free, words, &now, screen, pad, &mut scan);
     }
     told_staff(&ctx, free, screen, &mut scan);
     match now.stage {
         Stage::Attract => {
-            said(&ctx, free, &words.welcome, 44.0);
+            said(&ctx, free, &words.welcome, &words.turn);
             #[cfg(unix)]
             if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
                 kept(&ctx, whole, words, &link);
@@ -78,6 +79,17 @@ pub fn ui(
         }
     }
     ui_state.pad.targets = scan.count;
+}
+
+/// Returns the words of the chosen language, or else of the first language that the fonts of this
+/// machine can draw.
+fn shown_words<'a>(
+    ctx: &egui::Context,
+    screen: &'a Screen,
+    pad: &KioskPad,
+) -> Option<&'a Language> {
+    let chosen = screen.words.get(pad.language).into_iter();
+    chosen.chain(&screen.words).find(|words| fonts::can_draw(ctx, &words.all()))
 }
 
 /// The buttons of one frame, each lit in turn for people who press one switch.
@@ -145,9 +157,13 @@ fn place(
     });
 }
 
-fn said(ctx: &egui::Context, free: egui::Rect, text: &str, size: f32) {
+fn said(ctx: &egui::Context, free: egui::Rect, text: &str, below: &str) {
     place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
-        ui.add(egui::Label::new(RichText::new(text).size(size)).extend());
+        ui.set_max_width(free.width() - 80.0);
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(RichText::new(text).size(44.0)).extend());
+            ui.label(RichText::new(below).size(20.0));
+        });
     });
 }
 
@@ -214,8 +230,11 @@ fn languages(
         return;
     }
     place(ctx, "languages", free, Align2::LEFT_TOP, |ui| {
-        ui.horizontal(|ui| {
-            for (i, l) in screen.words.iter().enumerate() {
+        ui.set_max_width(free.width() * 0.6);
+        ui.horizontal_wrapped(|ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            let shown = screen.words.iter().enumerate();
+            for (i, l) in shown.filter(|(_, l)| fonts::can_draw(ctx, &l.all())) {
                 let button = large(&l.name, 20.0, 130.0).selected(pad.language == i);
                 if scan.button(ui, true, button) {
                     pad.language = i;
@@ -294,18 +313,19 @@ fn door(
     ctx: &egui::Context,
     free: egui::Rect,
     words: &Language,
-    locked: bool,
+    now: &KioskView,
     screen: &Screen,
     pad: &mut KioskPad,
     scan: &mut Scan,
 ) {
+    let locked = now.locked;
     // Two areas: one that grows would be placed by its former size.
     let name = if pad.typed.is_some() { "keypad" } else { "door" };
     place(ctx, name, free, Align2::RIGHT_TOP, |ui| {
         let Some(typed) = &mut pad.typed else {
             // In a row, because in a column its text would be left-aligned.
             if ui.horizontal(|ui| scan.button(ui, true, large(&words.staff, 16.0, 90.0))).inner {
-                pad.typed = Some(String::new());
+                (pad.typed, pad.wrong_before) = (Some(String::new()), now.wrong);
             }
             return;
         };
@@ -314,6 +334,10 @@ fn door(
             // Never the number itself.
             let shown = if typed.is_empty() { "–".to_owned() } else { "•".repeat(typed.len()) };
             ui.label(RichText::new(shown).size(28.0));
+            if locked || now.wrong != pad.wrong_before {
+                let text = if locked { &words.locked } else { &words.wrong_pin };
+                ui.label(RichText::new(text).size(18.0).color(ui.visuals().warn_fg_color));
+            }
             for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["×", "0", "OK"]] {
                 ui.horizontal(|ui| {
                     for key in row {
@@ -326,7 +350,6 @@ fn door(
                                 if let Ok(mut line) = screen.desk.typed.lock() {
                                     *line = Some(std::mem::take(typed));
                                 }
-                                close = true;
                             }
                             digit if typed.len() < DIGITS => typed.push_str(digit),
                             _ => {}

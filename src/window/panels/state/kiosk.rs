@@ -7,6 +7,8 @@ pub struct KioskPad {
     pub language: usize,
     /// Digits that staff has typed so far, while the keypad is open.
     pub typed: Option<String>,
+    /// [`sculptd_daemon::kiosk::View::wrong`] when the keypad was opened.
+    pub(in crate::panels) wrong_before: u64,
     pub(in crate::panels) visits: u64,
     /// Buttons of the last frame that can be pressed.
     pub(in crate::panels) targets: usize,
