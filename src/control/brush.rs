@@ -14,7 +14,7 @@ use crate::wire::RpcError;
 /// The daemon knows the range of each number and refuses others with the name, the value and the
 /// range; the numbers here are as the configuration file documents them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct BrushSettings {
     /// The brush, by the name that `brushes` lists. A change of the brush restores that brush's
@@ -59,15 +59,15 @@ pub struct BrushSettings {
 
 /// A factor from pressure: `at_zero + (1 - at_zero) * pressure^gamma`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PressureCurve {
     /// The factor without pressure. 1: pressure does not matter.
-    #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))]
+    #[cfg_attr(test, schemars(range(min = SHARE.min, max = SHARE.max)))]
     #[serde(default)]
     pub at_zero: f32,
     /// Above 1 a light touch is finer, below 1 bolder.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.1, max = 10.0)))]
+    #[cfg_attr(test, schemars(range(min = 0.1, max = 10.0)))]
     #[serde(default = "one")]
     pub gamma: f32,
 }
@@ -81,7 +81,7 @@ pub type BrushesReply = Vec<BrushInfo>;
 
 /// A brush as `brushes` describes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BrushInfo {
     /// Its name, for [`BrushSettings::kind`].
     pub name: String,
@@ -99,17 +99,17 @@ pub struct BrushInfo {
 
 /// Parameters of a method that reads or writes one file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PathParams {
     /// An absolute path without `..`, not a symbolic link; to be read, a regular file.
-    #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
+    #[cfg_attr(test, schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: PathBuf,
 }
 
 /// Reply of `picture`: the size of the picture, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PictureReply {
     /// Pixels across.
     pub width: u32,
@@ -119,7 +119,7 @@ pub struct PictureReply {
 
 /// Parameters of `mask`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskParams {
     /// Change of the whole object's mask.
@@ -128,7 +128,7 @@ pub struct MaskParams {
 
 /// Change of the whole object's mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskAction {
     /// Nothing is protected.
@@ -147,12 +147,12 @@ pub enum MaskAction {
     Shrink,
     /// Protects what is hollow by at least so much: mean curvature, times a tenth of the object's
     /// bounding radius.
-    Cavity(#[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
+    Cavity(#[cfg_attr(test, schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
 }
 
 /// Parameters of `mask-measured`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskMeasuredParams {
     /// Measure to mask by.
@@ -161,21 +161,19 @@ pub struct MaskMeasuredParams {
 
 /// Measure of the whole object that decides the mask.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum MaskMeasure {
     /// Masks walls up to this thickness, in the unit of the scene; more than 0.
     Thin(f64),
     /// Masks places where the object blocks at least this share of an even sky's light: ambient
     /// occlusion. More than 0.
-    Occlusion(
-        #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))] f32,
-    ),
+    Occlusion(#[cfg_attr(test, schemars(range(min = SHARE.min, max = SHARE.max)))] f32),
 }
 
 /// Result of `mask-measured`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MaskMeasuredReply {
     /// Vertices that were measured to be protected by half or more.
     pub protected: u64,
@@ -183,13 +181,13 @@ pub struct MaskMeasuredReply {
 
 /// Parameters of `mask-region`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MaskRegionParams {
     /// Region to mask, all the way through.
     pub region: ViewRegion,
     /// The mask there: 1 protects, 0 frees.
-    #[cfg_attr(feature = "schema", schemars(range(min = SHARE.min, max = SHARE.max)))]
+    #[cfg_attr(test, schemars(range(min = SHARE.min, max = SHARE.max)))]
     #[serde(default = "one")]
     pub mask: f32,
     /// Only what faces the eye.
@@ -199,28 +197,22 @@ pub struct MaskRegionParams {
 
 /// A region of the view, (0, 0) top left to (1, 1) bottom right; [`crate::range::VIEW`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ViewRegion {
     /// Two opposite corners: x, y, x, y.
-    Box(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
-        [f32; 4],
-    ),
+    Box(#[cfg_attr(test, schemars(inner(range(min = VIEW.min, max = VIEW.max))))] [f32; 4]),
     /// Everything to the left of the line from the first point to the second: x, y, x, y.
-    Line(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
-        [f32; 4],
-    ),
+    Line(#[cfg_attr(test, schemars(inner(range(min = VIEW.min, max = VIEW.max))))] [f32; 4]),
     /// The corners of a closed polygon, as a lasso draws it freely or a polyline sets it point by
     /// point: x, y of each, 3 to 1000. Where it crosses itself, what lies inside an odd number of
     /// times.
-    Polygon(#[cfg_attr(feature = "schema", schemars(length(min = 3, max = 1000)))] Vec<[f32; 2]>),
+    Polygon(#[cfg_attr(test, schemars(length(min = 3, max = 1000)))] Vec<[f32; 2]>),
 }
 
 /// Parameters of `curve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CurveParams {
     /// Action on the curve.
@@ -229,7 +221,7 @@ pub struct CurveParams {
 
 /// Action on the curve that a pen has laid with the method `curve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CurveAction {
     /// Draws the brush along it, as one stroke.
@@ -237,12 +229,12 @@ pub enum CurveAction {
     /// It is discarded.
     Cancel,
     /// The handle of this number is removed; the first is 0.
-    Delete(#[cfg_attr(feature = "schema", schemars(range(min = 0, max = 65535)))] u32),
+    Delete(#[cfg_attr(test, schemars(range(min = 0, max = 65535)))] u32),
 }
 
 /// Reply of `curve`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CurveReply {
     /// Always true.
     pub sent: bool,
@@ -255,13 +247,13 @@ pub struct CurveReply {
 /// The points become samples of a virtual pen and take the same way as those of a tablet: they are
 /// recorded in the session, and a replay gives the same surface. One stroke is made at a time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StrokeParams {
     /// The points, 1 to 1000: `[x, y, pressure, t_ms]` in view coordinates, `[x, y, z, pressure,
     /// t_ms]` in world coordinates. Pressure is 0 to 1 (0 still touches); `t_ms` counts from the
     /// start of the stroke, 0 to 60,000, and rises by at least 1 from point to point.
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 1000)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 1000)))]
     pub points: Vec<StrokePoint>,
     /// Space of the points' coordinates.
     pub space: StrokeSpace,
@@ -329,18 +321,18 @@ pub const MIN_STROKE_STEP_MS: f64 = 1.0;
 
 /// One point of a stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(untagged)]
 pub enum StrokePoint {
     /// x, y of the view ([`crate::range::VIEW`]), pressure, milliseconds.
-    View(#[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 4]),
+    View(#[cfg_attr(test, schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 4]),
     /// x, y, z of space ([`crate::range::COORDINATE`]), pressure, milliseconds.
-    World(#[cfg_attr(feature = "schema", schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 5]),
+    World(#[cfg_attr(test, schemars(inner(range(min = -1e6, max = 1e6))))] [f64; 5]),
 }
 
 /// Space of the coordinates of a stroke's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum StrokeSpace {
     /// Of the view: (0, 0) top left to (1, 1) bottom right.
@@ -351,7 +343,7 @@ pub enum StrokeSpace {
 
 /// Reply of `stroke`, sent when the loop has taken the last sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StrokeReply {
     /// Samples that were sent: the points, and the lift.
     pub samples: u64,

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-#[cfg(feature = "schema")]
+#[cfg(test)]
 use crate::range::{COORDINATE, VIEW};
 
 /// A Boolean of the object (the first operand) and a tool (the second).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Operation {
     /// Everything that either covers. Version 1 calls it `add` in `join`.
@@ -28,7 +28,7 @@ pub enum Operation {
 
 /// Parameters of `join`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JoinParams {
     /// Of the object and what the hands hold.
@@ -37,18 +37,18 @@ pub struct JoinParams {
 
 /// Parameters of `boolean`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BooleanParams {
     /// Of the object and the mesh in the file.
     pub operation: Operation,
     /// The tool: an absolute path of a mesh file.
-    #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
+    #[cfg_attr(test, schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: PathBuf,
     /// The tool is moved by this, in the mesh's unit; [`crate::range::COORDINATE`].
     #[serde(default)]
     #[cfg_attr(
-        feature = "schema",
+        test,
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
     )]
     pub at: [f64; 3],
@@ -56,7 +56,7 @@ pub struct BooleanParams {
 
 /// Reply of `join`, `boolean` and `trim`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BooleanReply {
     /// Computed and written only around the tool.
     pub local: bool,
@@ -80,7 +80,7 @@ pub struct BooleanReply {
 
 /// Parameters of `trim`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrimParams {
     /// Part to cut off, all the way through.
@@ -89,24 +89,18 @@ pub struct TrimParams {
 
 /// A region of the view, (0, 0) top left to (1, 1) bottom right; [`crate::range::VIEW`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum TrimRegion {
     /// Two opposite corners: x, y, x, y.
-    Box(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
-        [f32; 4],
-    ),
+    Box(#[cfg_attr(test, schemars(inner(range(min = VIEW.min, max = VIEW.max))))] [f32; 4]),
     /// Everything to the left of the line from the first point to the second: x, y, x, y.
-    Line(
-        #[cfg_attr(feature = "schema", schemars(inner(range(min = VIEW.min, max = VIEW.max))))]
-        [f32; 4],
-    ),
+    Line(#[cfg_attr(test, schemars(inner(range(min = VIEW.min, max = VIEW.max))))] [f32; 4]),
 }
 
 /// Reply of `progress`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ProgressReply {
     /// True while a Boolean is under way.
     pub running: bool,
@@ -116,7 +110,7 @@ pub struct ProgressReply {
 
 /// Reply of `cancel`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CancelReply {
     /// True if a Boolean was cancelled.
     pub cancelled: bool,
@@ -124,7 +118,7 @@ pub struct CancelReply {
 
 /// Parameters of `level`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LevelParams {
     /// One level finer or coarser.
@@ -133,7 +127,7 @@ pub struct LevelParams {
 
 /// One level finer or coarser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum LevelStep {
     /// Finer.
@@ -144,7 +138,7 @@ pub enum LevelStep {
 
 /// Reply of `level`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LevelReply {
     /// The level that is shown from now on.
     pub level: u64,
@@ -161,13 +155,13 @@ pub struct LevelReply {
 
 /// Parameters of `remesh`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct RemeshParams {
     /// Edge of a voxel in the mesh's unit; without it the mean edge of the triangles as they are.
     /// At least 1/1024 and at most 1/8 of the object's longest side.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 1e-9, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 1e-9, max = COORDINATE.max)))]
     pub voxel: Option<f32>,
     /// Edges stay sharp.
     pub sharp: bool,
@@ -175,7 +169,7 @@ pub struct RemeshParams {
 
 /// Reply of `remesh`. Lengths and volumes are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RemeshReply {
     /// Edge of a voxel.
     pub voxel: f32,
@@ -206,17 +200,17 @@ pub struct RemeshReply {
 
 /// Parameters of `jump`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct JumpParams {
     /// A node of the history, as `history` lists them.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 9_007_199_254_740_992_u64)))]
+    #[cfg_attr(test, schemars(range(min = 0, max = 9_007_199_254_740_992_u64)))]
     pub node: u64,
 }
 
 /// Reply of `history`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HistoryReply {
     /// The node that the object is at.
     pub here: u64,
@@ -226,7 +220,7 @@ pub struct HistoryReply {
 
 /// A node of the history tree: the object as it was after one step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HistoryNode {
     /// Its number, for `jump`.
     pub node: u64,
@@ -249,7 +243,7 @@ pub struct HistoryNode {
 
 /// Reply of `load`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LoadReply {
     /// Vertices of the mesh.
     pub vertices: u64,
@@ -259,7 +253,7 @@ pub struct LoadReply {
 
 /// Reply of `take-up`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TakeUpReply {
     /// Triangles of the mesh.
     pub triangles: u64,
@@ -269,7 +263,7 @@ pub struct TakeUpReply {
 
 /// Reply of `export`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ExportReply {
     /// The file that was written.
     pub path: PathBuf,
@@ -284,7 +278,7 @@ pub struct ExportReply {
 
 /// Reply of `hash`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HashReply {
     /// The tick whose state was hashed.
     pub tick: u64,
@@ -294,7 +288,7 @@ pub struct HashReply {
 
 /// Definition of wall thickness; as `--method` of `sculptd thickness`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ThicknessDefinition {
     /// One ray along the normal.
@@ -307,19 +301,19 @@ pub enum ThicknessDefinition {
 
 /// Parameters of `thickness`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct ThicknessParams {
     /// The definition; `null`: a ray, or a cone where more than one ray is asked for.
     pub method: Option<ThicknessDefinition>,
     /// Rays of a cone.
-    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = 1000)))]
+    #[cfg_attr(test, schemars(range(min = 1, max = 1000)))]
     pub rays: u32,
     /// Walls below this are too thin, in the mesh's unit; `null`: no limit.
     pub limit: Option<f32>,
     /// Not used any more; [`crate::range::COORDINATE`].
     #[cfg_attr(
-        feature = "schema",
+        test,
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
     )]
     pub near: [f32; 3],
@@ -334,7 +328,7 @@ impl Default for ThicknessParams {
 /// Reply of `thickness`: what `sculptd thickness` says of the same mesh. Lengths are in the mesh's
 /// unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ThicknessReply {
     /// The revision of the mesh that was measured.
     pub revision: u64,

@@ -7,7 +7,7 @@ use crate::status::Losses;
 
 /// The name of an event, as `subscribe` lists it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum EventName {
     /// The mesh changed.
@@ -35,7 +35,7 @@ impl EventName {
 
 /// Reply of `subscribe`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SubscribeReply {
     /// The events that follow from now on.
     pub events: Vec<EventName>,
@@ -51,7 +51,7 @@ pub struct SubscribeReply {
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct EventNotice {
     /// The tick at which the change was seen.
     pub tick: u64,
@@ -62,7 +62,7 @@ pub struct EventNotice {
 
 /// Kind of a change, and the new state. Changes within 50 ms of each other are one event.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "event", content = "now", rename_all = "kebab-case")]
 pub enum Event {
     /// The mesh changed.
@@ -92,7 +92,7 @@ impl Event {
 
 /// The mesh, by its counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MeshState {
     /// Rises with every change.
     pub revision: u64,
@@ -104,7 +104,7 @@ pub struct MeshState {
 
 /// Reach of `undo` and `redo`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HistoryState {
     /// Number of steps that `undo` can reach.
     pub undo_steps: u64,
@@ -114,7 +114,7 @@ pub struct HistoryState {
 
 /// State of the session file's writes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JournalState {
     /// The fault; `null` while all is well, or if no session is recorded.
     pub fault: Option<String>,

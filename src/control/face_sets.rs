@@ -7,7 +7,7 @@ use crate::brush::ViewRegion;
 
 /// Reply of `sets.list`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FaceSetsReply {
     /// The active object.
     pub object: u32,
@@ -19,7 +19,7 @@ pub struct FaceSetsReply {
 
 /// A face set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FaceSetInfo {
     /// Its number.
     pub set: u16,
@@ -34,21 +34,21 @@ pub struct FaceSetInfo {
 
 /// Parameters of `sets.rename`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FaceSetNameParams {
     /// Its number.
-    #[cfg_attr(feature = "schema", schemars(range(min = 1, max = 32767)))]
+    #[cfg_attr(test, schemars(range(min = 1, max = 32767)))]
     pub set: u16,
     /// Its name from now on; without it it has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
 }
 
 /// Source of a face set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceSetSource {
     /// The vertices masked by half or more become a new set.
@@ -65,29 +65,29 @@ pub enum FaceSetSource {
 
 /// Parameters of `sets.make`. Hidden vertices stay in their sets.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FaceSetMakeParams {
     /// Source of the sets.
     pub from: FaceSetSource,
     /// Of `normals` and `crease`; 0 to 180, without it 40.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = 180.0)))]
+    #[cfg_attr(test, schemars(range(min = 0.0, max = 180.0)))]
     pub degrees: Option<f32>,
 }
 
 /// Names a face set: by its number, by a place of the view, or as what is masked. Only one of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct FaceSetParams {
     /// Its number.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    #[cfg_attr(test, schemars(range(max = 32767)))]
     pub set: Option<u16>,
     /// The set that is seen at this place, x and y from 0 to 1, from the view's left upper corner.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(inner(range(min = 0.0, max = 1.0))))]
+    #[cfg_attr(test, schemars(inner(range(min = 0.0, max = 1.0))))]
     pub at: Option<[f32; 2]>,
     /// Acts on the vertices masked by half or more, instead of a set.
     pub masked: bool,
@@ -95,36 +95,36 @@ pub struct FaceSetParams {
 
 /// Parameters of `sets.show`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct FaceSetShowParams {
     /// The set that is shown; without it everything is.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    #[cfg_attr(test, schemars(range(max = 32767)))]
     pub set: Option<u16>,
 }
 
 /// Parameters of `sets.extract`: a set as [`FaceSetParams`] names one, and how thick the solid is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FaceSetExtractParams {
     /// Laid on along the normals, in the unit of the scene: outwards, or negative inwards; not 0.
-    #[cfg_attr(feature = "schema", schemars(range(min = -1e6, max = 1e6)))]
+    #[cfg_attr(test, schemars(range(min = -1e6, max = 1e6)))]
     pub thickness: f64,
     /// The number of the set; without it what is masked by half or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(max = 32767)))]
+    #[cfg_attr(test, schemars(range(max = 32767)))]
     pub set: Option<u16>,
     /// The name of the new object; without one `extract`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
 }
 
 /// Action on the faces seen in a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceSetRegionAction {
     /// Its visible part becomes a new face set.
@@ -137,7 +137,7 @@ pub enum FaceSetRegionAction {
 
 /// Parameters of `sets.region`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FaceSetRegionParams {
     /// Where, all the way through.
@@ -151,7 +151,7 @@ pub struct FaceSetRegionParams {
 
 /// Reply of a method that changes face sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FaceSetReply {
     /// The set that was made or that it was about; `null`: several, or none.
     pub set: Option<u16>,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Reply of `layers.list`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LayersReply {
     /// The active object.
     pub object: u32,
@@ -20,7 +20,7 @@ pub struct LayersReply {
 
 /// A layer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LayerInfo {
     /// Its name for programs: no other layer of the object ever has it.
     pub id: u32,
@@ -34,18 +34,18 @@ pub struct LayerInfo {
 
 /// Parameters of `layers.add`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct LayerAddParams {
     /// Its name; without it `layer` and a number.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
 }
 
 /// Parameters of a method about one layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LayerParams {
     /// The layer, as `layers.list` names it.
@@ -54,19 +54,19 @@ pub struct LayerParams {
 
 /// Parameters of `layers.rename`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LayerRenameParams {
     /// The layer.
     pub layer: u32,
     /// Its new name; several layers may have the same.
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: String,
 }
 
 /// Parameters of `layers.move`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LayerMoveParams {
     /// The layer.
@@ -77,14 +77,14 @@ pub struct LayerMoveParams {
 
 /// Parameters of `layers.set`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LayerSetParams {
     /// The layer.
     pub layer: u32,
     /// New factor of its offsets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = -2.0, max = 2.0)))]
+    #[cfg_attr(test, schemars(range(min = -2.0, max = 2.0)))]
     pub intensity: Option<f32>,
     /// New visibility.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,7 +97,7 @@ pub struct LayerSetParams {
 
 /// Parameters of `layers.activate`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct LayerActivateParams {
     /// The layer that strokes change from now on; without it the base.
@@ -107,7 +107,7 @@ pub struct LayerActivateParams {
 
 /// Reply of a method that makes a layer or changes one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LayerReply {
     /// The layer that was made, or that it was about; of `layers.merge` the one below. `null`: the
     /// base.

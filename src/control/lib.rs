@@ -41,7 +41,7 @@ pub mod people;
 pub mod range;
 pub mod retopology;
 pub mod scene;
-#[cfg(feature = "schema")]
+#[cfg(test)]
 pub mod schema;
 pub mod snap;
 pub mod status;

@@ -164,7 +164,7 @@ macro_rules! methods {
         }
 
         /// The schema of every method's parameters and reply, by its name.
-        #[cfg(feature = "schema")]
+        #[cfg(test)]
         pub(crate) fn schemas(
             generator: &mut schemars::SchemaGenerator,
         ) -> Vec<(MethodInfo, schemars::Schema, schemars::Schema)> {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Reply of `people`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PeopleReply {
     /// True if the sculpture is shared: the daemon hosts one or has joined one.
     pub shared: bool,
@@ -23,7 +23,7 @@ pub struct PeopleReply {
 
 /// Counts of the local input: all of it is in the sculpture when `ordered` is `batches`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct OwnInput {
     /// Samples that did more than move.
     pub transitions: u64,
@@ -42,7 +42,7 @@ pub struct OwnInput {
 
 /// An undo or redo that was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct UndoRefused {
     /// The tick in which it was asked for.
     pub tick: u64,
@@ -54,7 +54,7 @@ pub struct UndoRefused {
 
 /// A person.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PersonInfo {
     /// From 1; a person who comes back has the same.
     pub number: u8,
@@ -74,7 +74,7 @@ pub struct PersonInfo {
 
 /// Permissions of a person.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PersonRole {
     /// Sculpts and sees.
@@ -87,7 +87,7 @@ pub enum PersonRole {
 
 /// A pen over the clay.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PersonPen {
     /// Position on the clay, in the world.
     pub position: [f32; 3],

@@ -3,35 +3,35 @@
 use serde::{Deserialize, Serialize};
 
 use crate::brush::ViewRegion;
-#[cfg(feature = "schema")]
+#[cfg(test)]
 use crate::range::COORDINATE;
 
 /// Parameters of `remesh.quads`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RemeshQuadsParams {
     /// About how many quads.
-    #[cfg_attr(feature = "schema", schemars(range(min = 6, max = 1_000_000)))]
+    #[cfg_attr(test, schemars(range(min = 6, max = 1_000_000)))]
     pub quads: u32,
     /// Edges whose faces turn by more than this many degrees are kept; without it none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = 180.0)))]
+    #[cfg_attr(test, schemars(range(min = 0.0, max = 180.0)))]
     pub creases: Option<f64>,
     /// Lines on the surface that the quads follow, each a list of points in the mesh's unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 0, max = 1000)))]
+    #[cfg_attr(test, schemars(length(min = 0, max = 1000)))]
     pub guides: Vec<Vec<[f64; 3]>>,
     /// The quads become the lowest level, with so many finer ones on which the detail of the old
     /// surface is; the finest is shown.
     #[serde(default)]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 6)))]
+    #[cfg_attr(test, schemars(range(min = 0, max = 6)))]
     pub levels: u32,
 }
 
 /// Reply of `remesh.quads`. Volumes are in the mesh's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RemeshQuadsReply {
     /// Quads, on the lowest level. Clay is made of triangles; without finer levels an export writes
     /// the quads as long as no triangle was changed.
@@ -60,13 +60,13 @@ pub struct RemeshQuadsReply {
 
 /// Parameters of `remesh.local`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct RemeshLocalParams {
     /// The wanted length of edges in the mesh's unit, between a 16th and 16 times of the usual
     /// one. Without it that one: the median of the object's edges.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 0.0, max = COORDINATE.max)))]
     pub edge: Option<f32>,
     /// Only edges that are too long are changed: where the surface was stretched.
     pub stretched_only: bool,
@@ -77,7 +77,7 @@ pub struct RemeshLocalParams {
 
 /// Reply of `remesh.local`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RemeshLocalReply {
     /// Edges that were split, drawn together or flipped; 0: the triangles had their size already.
     pub changed: u64,
@@ -85,21 +85,21 @@ pub struct RemeshLocalReply {
 
 /// Parameters of `decimate`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct DecimateParams {
     /// Stop at this many triangles; at least 4, or 0 with `max_error`.
-    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 67_108_864)))]
+    #[cfg_attr(test, schemars(range(min = 0, max = 67_108_864)))]
     pub triangles: u32,
     /// Stop before the surface moves by more than about this, in the mesh's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 0.0, max = COORDINATE.max)))]
     pub max_error: Option<f32>,
 }
 
 /// Reply of `decimate`. Volumes are in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DecimateReply {
     /// Vertices of the new mesh.
     pub vertices: u64,

@@ -5,25 +5,25 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::edit::Operation;
-#[cfg(feature = "schema")]
+#[cfg(test)]
 use crate::range::COORDINATE;
 
 /// Transform of an object: `world = shift + turn * (own * scale)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
     /// Position of the object's origin; [`crate::range::COORDINATE`].
     #[cfg_attr(
-        feature = "schema",
+        test,
         schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max)))
     )]
     pub shift: [f64; 3],
     /// A rotation as a quaternion: x, y, z, w. It is brought to unit length.
-    #[cfg_attr(feature = "schema", schemars(inner(range(min = -1.0, max = 1.0))))]
+    #[cfg_attr(test, schemars(inner(range(min = -1.0, max = 1.0))))]
     pub turn: [f64; 4],
     /// World units for a unit of the object.
-    #[cfg_attr(feature = "schema", schemars(range(min = 1e-6, max = 1e6)))]
+    #[cfg_attr(test, schemars(range(min = 1e-6, max = 1e6)))]
     pub scale: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for Placement {
 /// A primitive by its numbers, in the scene's unit, each above 0. Its middle is the origin; what
 /// has an axis stands along +y.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PrimitiveShape {
     /// A box of these sides.
@@ -57,7 +57,7 @@ pub enum PrimitiveShape {
 
 /// Parameters of `scene.add`: one of `primitive`, `path` and `held`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct AddParams {
     /// A primitive.
@@ -66,18 +66,18 @@ pub struct AddParams {
     /// The length of an edge of the primitive's triangles; without it, one that gives about 20,000
     /// vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 1e-9, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 1e-9, max = COORDINATE.max)))]
     pub edge: Option<f64>,
     /// An absolute path of a mesh file of at most 1 GiB. It comes in its true size and place.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
+    #[cfg_attr(test, schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: Option<PathBuf>,
     /// Adds the held object, at its current place; the hands hold nothing afterwards.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub held: bool,
     /// Its name; without it that of the file or the primitive.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
     /// Its transform.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,7 +86,7 @@ pub struct AddParams {
 
 /// Parameters of a method about one object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ObjectParams {
     /// The object, as `scene.list` names it.
@@ -95,19 +95,19 @@ pub struct ObjectParams {
 
 /// Parameters of `scene.rename`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RenameParams {
     /// The object.
     pub id: u32,
     /// Its new name; several objects may have the same.
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: String,
 }
 
 /// Parameters of `scene.transform`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TransformParams {
     /// The object.
@@ -121,7 +121,7 @@ pub struct TransformParams {
 
 /// Parameters of `scene.show`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ShowParams {
     /// The object.
@@ -132,7 +132,7 @@ pub struct ShowParams {
 
 /// Parameters of `scene.lock`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LockParams {
     /// The object.
@@ -143,7 +143,7 @@ pub struct LockParams {
 
 /// Parameters of `scene.move`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MoveParams {
     /// The object.
@@ -154,21 +154,21 @@ pub struct MoveParams {
 
 /// Parameters of `scene.group`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GroupParams {
     /// The objects, one or more.
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 4096)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 4096)))]
     pub ids: Vec<u32>,
     /// The name of their group; without it they are in none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 128)))]
+    #[cfg_attr(test, schemars(length(min = 1, max = 128)))]
     pub name: Option<String>,
 }
 
 /// An axis of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum WorldAxis {
     /// To the right.
@@ -181,7 +181,7 @@ pub enum WorldAxis {
 
 /// Parameters of `scene.mirror`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MirrorParams {
     /// The object.
@@ -192,7 +192,7 @@ pub struct MirrorParams {
 
 /// Parameters of `scene.reshape`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ReshapeParams {
     /// An object that was added as a primitive and has not been changed since.
@@ -201,13 +201,13 @@ pub struct ReshapeParams {
     pub primitive: PrimitiveShape,
     /// As [`AddParams::edge`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 1e-9, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 1e-9, max = COORDINATE.max)))]
     pub edge: Option<f64>,
 }
 
 /// Parameters of `scene.boolean`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneBooleanParams {
     /// Operation that combines the two.
@@ -231,23 +231,23 @@ pub struct SceneBooleanParams {
     pub keep_contact: bool,
     /// Length in the world within which places are one; without it what the vertices resolve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "schema", schemars(range(min = 0.0, max = COORDINATE.max)))]
+    #[cfg_attr(test, schemars(range(min = 0.0, max = COORDINATE.max)))]
     pub tolerance: Option<f64>,
 }
 
 /// Parameters of `scene.merge`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MergeParams {
     /// Two objects or more; the first gives its name and its place.
-    #[cfg_attr(feature = "schema", schemars(length(min = 2, max = 4096)))]
+    #[cfg_attr(test, schemars(length(min = 2, max = 4096)))]
     pub ids: Vec<u32>,
 }
 
 /// Reply of a method that makes an object or changes one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ObjectReply {
     /// The object that was made, or that it was about.
     pub id: u32,
@@ -258,7 +258,7 @@ pub struct ObjectReply {
 
 /// Reply of `scene.boolean`, `scene.merge` and `scene.split`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CombineReply {
     /// The new object; of several the first.
     pub id: u32,
@@ -279,7 +279,7 @@ pub struct CombineReply {
 
 /// Reply of `scene.list`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SceneReply {
     /// The object that strokes and Booleans act on.
     pub active: u32,
@@ -289,7 +289,7 @@ pub struct SceneReply {
 
 /// An object of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ObjectInfo {
     /// Its name for programs: no other object ever has it.
     pub id: u32,
@@ -321,7 +321,7 @@ pub struct ObjectInfo {
 
 /// A Boolean whose result follows its operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FollowedBoolean {
     /// Operation that combines the two.
     pub operation: Operation,
@@ -333,11 +333,11 @@ pub struct FollowedBoolean {
 
 /// Parameters of `export`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ExportParams {
     /// An absolute path without `..`, not a symbolic link.
-    #[cfg_attr(feature = "schema", schemars(extend("minLength" = 1, "maxLength" = 4096)))]
+    #[cfg_attr(test, schemars(extend("minLength" = 1, "maxLength" = 4096)))]
     pub path: PathBuf,
     /// Objects to write; by default the visible ones. glTF keeps them as nodes with their names and
     /// transforms; the other formats hold one mesh, in which the transforms are applied.
@@ -347,7 +347,7 @@ pub struct ExportParams {
 
 /// Objects to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ExportObjects {
     /// The active one.

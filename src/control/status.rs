@@ -16,7 +16,7 @@ pub const OLDEST_PROTOCOL: u32 = 1;
 
 /// A range of versions, both ends counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Versions {
     /// The oldest version.
@@ -45,13 +45,13 @@ impl Versions {
 
 /// No parameters. Any is refused by name.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct NoParams {}
 
 /// Parameters of `hello`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct HelloParams {
     /// The versions that the client speaks; without it, whatever the daemon prefers.
@@ -60,7 +60,7 @@ pub struct HelloParams {
 
 /// Reply of `hello`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HelloReply {
     /// The version to use: the newest that both sides speak.
     pub protocol: u32,
@@ -75,7 +75,7 @@ pub type MethodsReply = BTreeMap<String, String>;
 
 /// Parameters of `status`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct StatusParams {
     /// The version that the client speaks; one that the daemon does not speak is refused.
@@ -84,7 +84,7 @@ pub struct StatusParams {
 
 /// Reply of `status`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StatusReply {
     /// The newest version of the protocol that the daemon speaks.
     pub protocol: u32,
@@ -143,7 +143,7 @@ pub struct StatusReply {
 
 /// Position of a pen.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PenStatus {
     /// The number of its device.
     pub device: u16,
@@ -157,7 +157,7 @@ pub struct PenStatus {
 
 /// Mapping of a tablet by the desktop.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TabletStatus {
     /// The number of its device.
     pub device: u16,
@@ -171,7 +171,7 @@ pub struct TabletStatus {
 
 /// State of knowledge about the desktop's mapping of a tablet.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum TabletPlace {
     /// Its whole area covers the view.
@@ -185,7 +185,7 @@ pub enum TabletPlace {
 
 /// State of the daemon's window.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum WindowStatus {
     /// None was asked for, or it could not be opened.
@@ -201,7 +201,7 @@ pub enum WindowStatus {
 
 /// Samples that were lost between a device and the loop.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Losses {
     /// Samples that only moved; some are lost where a device sends more than the channel holds.
     pub motion: u64,
@@ -211,7 +211,7 @@ pub struct Losses {
 
 /// The distribution of a duration, milliseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Percentiles {
     /// The median.
     pub p50: f64,
@@ -223,7 +223,7 @@ pub struct Percentiles {
 
 /// State of the session file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JournalStatus {
     /// The last tick that is on the disk.
     pub written: u64,
@@ -236,7 +236,7 @@ pub struct JournalStatus {
 /// Parameters of `window`: the variables of the environment that name the screen. `display` or
 /// `wayland_display` must be given.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct WindowParams {
     /// `DISPLAY`: the X server.
@@ -249,7 +249,7 @@ pub struct WindowParams {
 
 /// Reply of `window`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WindowReply {
     /// The session that the new window shows.
     pub session: String,
@@ -257,7 +257,7 @@ pub struct WindowReply {
 
 /// Reply of `shutdown`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ShutdownReply {
     /// Always true.
     pub stopping: bool,
@@ -265,7 +265,7 @@ pub struct ShutdownReply {
 
 /// Reply of a method that only hands a command to the loop, which carries it out at its next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SentReply {
     /// Always true.
     pub sent: bool,

@@ -34,7 +34,7 @@ pub mod request;
 pub mod request_guard;
 pub mod requester;
 pub mod rollout;
-#[cfg(feature = "schema")]
+#[cfg(test)]
 pub mod schema;
 pub mod settings_files;
 pub mod state;

@@ -15,7 +15,7 @@ pub const MAX_TRIAL_S: u32 = 7 * 86_400;
 
 /// A request to one installation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FleetRequest {
     /// Names the request: 16 hexadecimal digits, drawn by who asks. The same request may come more
     /// than once and is carried out once.
@@ -30,7 +30,7 @@ pub struct FleetRequest {
 
 /// Action that staff request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "do", rename_all = "kebab-case")]
 pub enum FleetAction {
     /// Shows a text to the staff on the spot, until somebody presses it away.
@@ -93,7 +93,7 @@ impl FleetAction {
 
 /// An installation's answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FleetAnswer {
     /// The request's.
     pub id: String,
@@ -104,7 +104,7 @@ pub struct FleetAnswer {
 
 /// Result of a request.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "outcome", rename_all = "kebab-case")]
 pub enum FleetOutcome {
     /// It is done, or begun.

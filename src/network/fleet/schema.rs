@@ -1,4 +1,4 @@
-//! Generates `schema.json` from the types (feature `schema`).
+//! Generates `schema.json` from the types, in tests alone.
 
 use schemars::generate::SchemaSettings;
 use serde_json::json;

@@ -12,7 +12,7 @@ pub const MAX_FLEET_NAME: usize = 64;
 
 /// The state of an installation.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct InstallationState {
     /// The version of this schema: 1.
     pub schema: u32,
@@ -51,7 +51,7 @@ pub struct InstallationState {
 
 /// Visitor state.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct VisitState {
     /// Stage of the visit.
     pub stage: VisitStage,
@@ -61,7 +61,7 @@ pub struct VisitState {
 
 /// Stage of a visit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum VisitStage {
     /// Nobody is there: recordings play.
@@ -75,7 +75,7 @@ pub enum VisitStage {
 
 /// Error counts of this run, from its log.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ErrorCounts {
     /// Lines of the level `ERROR`.
     pub errors: u64,
@@ -88,7 +88,7 @@ pub struct ErrorCounts {
 
 /// A device that an installation listens to.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DeviceLine {
     /// Kind of the device.
     pub kind: DeviceKind,
@@ -100,7 +100,7 @@ pub struct DeviceLine {
 
 /// The kinds of devices.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DeviceKind {
     /// A pen tablet.
@@ -114,7 +114,7 @@ pub enum DeviceKind {
 
 /// Durations of the loop's ticks in this run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TickTimes {
     /// The median, milliseconds.
     pub p50_ms: f64,
@@ -128,7 +128,7 @@ pub struct TickTimes {
 
 /// Latencies from a sample to the frame that showed it, in this run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FrameTimes {
     /// Number of frames that showed a new sample.
     pub count: u64,
@@ -140,7 +140,7 @@ pub struct FrameTimes {
 
 /// The settings file of an installation.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SettingsState {
     /// The first 16 hexadecimal digits of the SHA-256 of the file that this run began with; empty:
     /// the built-in settings.
