@@ -8,6 +8,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::boolean::resolution;
+use crate::measure::{Measures, measures_of};
 use crate::{Aabb, PolyMesh, TriMesh};
 
 /// A file's mesh about its centre, scaled.
@@ -32,6 +33,9 @@ pub struct CentredMesh {
     pub centre: DVec3,
     /// The greatest rounding error of the file's coordinates, scaled.
     pub grain: f64,
+    /// Volume, area, size and centroid of the file's own coordinates, scaled; the centroid is about
+    /// the centre.
+    pub sizes: Measures,
 }
 
 impl CentredMesh {
@@ -48,8 +52,10 @@ impl CentredMesh {
         let (mut mesh, _) = poly.triangulate();
         mesh.positions = poly.positions.iter().map(|&p| ((p - centre) * scale).as_vec3()).collect();
         let counts = [mesh.positions.len(), mesh.triangles.len()];
+        let exact: Vec<DVec3> = poly.positions.iter().map(|&p| (p - centre) * scale).collect();
+        let sizes = measures_of(&exact, &mesh.triangles);
         let grain = resolution(poly).error * scale;
-        CentredMesh { mesh, counts, centre: centre * scale, grain }
+        CentredMesh { mesh, counts, centre: centre * scale, grain, sizes }
     }
 
     /// A point of this frame in the file's coordinates, scaled.

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::TriMesh;
 use crate::distance::DistanceSolid;
 use crate::job::{Cancelled, Job};
+use crate::{Aabb, TriMesh};
 
 /// Strips that a projection is cut into: see [`projected_area`].
 const STRIPS: usize = 2048;
@@ -24,26 +24,36 @@ pub struct Measures {
     pub centroid: Option<DVec3>,
 }
 
-/// In double precision, about the box's centre, so that a part far from the origin loses nothing.
+/// Measures a mesh, see [`measures_of`].
 pub fn measures(mesh: &TriMesh) -> Measures {
-    let (lo, hi) = mesh.bounds();
-    if mesh.positions.is_empty() {
+    let positions: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+    measures_of(&positions, &mesh.triangles)
+}
+
+/// Measures triangles in double precision, about the box's centre and in units of its size: a part
+/// far from the origin loses nothing, and no intermediate result overflows. Vertices that no
+/// triangle uses count for nothing.
+pub fn measures_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Measures {
+    let used = triangles.iter().flatten().map(|&v| positions[v as usize]);
+    let bounds = Aabb::of(used);
+    if triangles.is_empty() {
         return Measures { volume: 0.0, area: 0.0, dimensions: [0.0; 3], centroid: None };
     }
-    let centre = (lo.as_dvec3() + hi.as_dvec3()) * 0.5;
+    let (centre, size) = (bounds.centre(), bounds.size());
+    let unit = Some(size.max_element()).filter(|s| *s > 0.0).unwrap_or(1.0);
     let (mut six, mut twice, mut moment) = (0.0f64, 0.0f64, DVec3::ZERO);
-    for t in 0..mesh.triangles.len() {
-        let [a, b, c] = mesh.corners(t).map(|p| p.as_dvec3() - centre);
+    for t in triangles {
+        let [a, b, c] = t.map(|v| (positions[v as usize] - centre) / unit);
         let v = a.dot(b.cross(c));
         six += v;
         moment += (a + b + c) * v;
         twice += (b - a).cross(c - a).length();
     }
     Measures {
-        volume: six / 6.0,
-        area: twice * 0.5,
-        dimensions: (hi.as_dvec3() - lo.as_dvec3()).to_array(),
-        centroid: (six != 0.0).then(|| centre + moment / (4.0 * six)),
+        volume: six / 6.0 * unit * unit * unit,
+        area: twice * 0.5 * unit * unit,
+        dimensions: size.to_array(),
+        centroid: (six != 0.0).then(|| centre + moment / (4.0 * six) * unit),
     }
 }
 

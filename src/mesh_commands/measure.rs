@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::thickness::{How, load};
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::measure::{measures, overlaps, projected_area};
+use sculptd_geometry::measure::{overlaps, projected_area};
 use sculptd_geometry::thickness::check::{ThicknessLimits, check};
 
 #[derive(Debug, clap::Args)]
@@ -92,7 +92,7 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
         || clock.now_us() as f64 * 1e-6,
     )
     .map_err(|e| Fail::Usage(e.to_string()))?;
-    let m = measures(part.whole());
+    let m = part.mesh.sizes;
     let along =
         |d: Vec3| projected_area(part.whole(), d, &job).map_err(|e| Fail::Input(e.to_string()));
     let s = checked.answer.summary;

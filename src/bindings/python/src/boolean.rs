@@ -159,6 +159,14 @@ fn computed(
     solids.into_iter().map(result).collect()
 }
 
+/// The mesh of one Boolean with the settings of [`boolean`], for the operators of [`Mesh`].
+pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResult<Mesh> {
+    let options = options(None, "as-operands", false)?;
+    let made = computed(py, a, b, &[operation], &options, &None)?.into_iter().next();
+    let made = made.ok_or_else(|| PyValueError::new_err("no result"))?;
+    Ok(made.mesh.get().__copy__())
+}
+
 /// One Boolean of two closed solids: 'union', 'intersection', 'difference' (A minus B) or
 /// 'reverse-difference' (B minus A).
 ///
@@ -224,23 +232,63 @@ fn slices<'py>(
     offsets: Vec<f64>,
     progress: Progress,
 ) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
+    let sections = cut(py, mesh, normal, &offsets, &progress)?;
+    let lines = |s: Section| s.contours.into_iter().map(|c| line(py, c.points)).collect();
+    sections.into_iter().map(lines).collect()
+}
+
+/// A polyline as an array.
+fn line(py: Python<'_>, points: Vec<glam::DVec3>) -> PyResult<Bound<'_, PyAny>> {
+    let shape = vec![points.len(), 3];
+    let points = Arc::new(points);
+    shared(py, points.clone(), bytemuck::cast_slice::<_, f64>(&points), shape)
+}
+
+/// Sections of a mesh by the planes `normal . p = offset` with their sizes: for each offset a dict
+/// of `area`, `perimeter`, `centroid` (None without area), `contours` and `open`, the contours that
+/// the mesh leaves open. Contours are as in `slices`: outer ones run counter-clockwise, seen
+/// against the normal, and holes clockwise.
+#[pyfunction]
+#[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
+fn sections<'py>(
+    py: Python<'py>,
+    mesh: &Bound<'py, Mesh>,
+    normal: [f64; 3],
+    offsets: Vec<f64>,
+    progress: Progress,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let of = |s: Section| {
+        let out = PyDict::new(py);
+        out.set_item("area", s.area)?;
+        out.set_item("perimeter", s.perimeter)?;
+        out.set_item("centroid", s.centroid.map(|c| c.to_array()))?;
+        let (closed, open): (Vec<_>, Vec<_>) = s.contours.into_iter().partition(|c| c.closed);
+        for (name, contours) in [("contours", closed), ("open", open)] {
+            let lines = contours.into_iter().map(|c| line(py, c.points));
+            out.set_item(name, lines.collect::<PyResult<Vec<_>>>()?)?;
+        }
+        Ok(out)
+    };
+    cut(py, mesh, normal, &offsets, &progress)?.into_iter().map(of).collect()
+}
+
+fn cut(
+    py: Python<'_>,
+    mesh: &Bound<'_, Mesh>,
+    normal: [f64; 3],
+    offsets: &[f64],
+    progress: &Progress,
+) -> PyResult<Vec<Section>> {
     let finite = offsets.iter().all(|o| o.is_finite());
     let mesh = mesh.get().poly.clone();
-    let sections = watched(py, &progress, |job| {
+    watched(py, progress, |job| {
         let slicer = Slicer::new(&mesh, glam::DVec3::from(normal)).filter(|_| finite)?;
-        Some(slicer.all(&offsets, job))
+        Some(slicer.all(offsets, job))
     })?
     .ok_or_else(|| {
         PyValueError::new_err("normal, offsets: expected finite numbers, the normal not zero")
     })?
-    .map_err(errors::cancelled)?;
-    let line = |points: Vec<glam::DVec3>| {
-        let shape = vec![points.len(), 3];
-        let points = Arc::new(points);
-        shared(py, points.clone(), bytemuck::cast_slice::<_, f64>(&points), shape)
-    };
-    let lines = |s: Section| s.contours.into_iter().map(|c| line(c.points)).collect();
-    sections.into_iter().map(lines).collect()
+    .map_err(errors::cancelled)
 }
 
 /// Adds what this file defines.
@@ -248,5 +296,6 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<BooleanResult>()?;
     m.add_function(wrap_pyfunction!(boolean, m)?)?;
     m.add_function(wrap_pyfunction!(boolean_all, m)?)?;
+    m.add_function(wrap_pyfunction!(sections, m)?)?;
     m.add_function(wrap_pyfunction!(slices, m)?)
 }

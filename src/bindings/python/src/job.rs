@@ -3,6 +3,7 @@
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
+use crate::pool;
 use pyo3::prelude::*;
 use sculptd_geometry::job::Job;
 
@@ -27,7 +28,7 @@ pub fn watched<T: Send>(
             let thread = scope.spawn(move || {
                 // Dropped at the end, also by a panic: the receiver then sees a closed channel.
                 let _done = done;
-                work(job)
+                pool::here(|| work(job))
             });
             let mut raised = None;
             while wait.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {

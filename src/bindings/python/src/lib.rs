@@ -15,6 +15,7 @@ mod job;
 mod measure;
 mod mesh;
 mod picture;
+mod pool;
 mod remake;
 mod solid;
 mod thickness;

@@ -5,8 +5,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sculptd_geometry::distance::Topology;
+use sculptd_geometry::measure::measures_of;
 use sculptd_geometry::projection::{PlaneRegion, ProjectionPlane, area, outline};
-use sculptd_geometry::{CentredMesh, check, measure};
+use sculptd_geometry::{CentredMesh, check};
 
 use crate::array::shared;
 use crate::errors;
@@ -25,16 +26,12 @@ pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<B
 fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py, PyDict>> {
     let poly = mesh.get().poly.clone();
     let none: Progress = None;
-    let (part, m) = watched(py, &none, |_| {
-        let part = CentredMesh::new(&poly, 1.0);
-        let m = measure::measures(&part.mesh);
-        (part.centre, m)
-    })?;
+    let m = watched(py, &none, |_| measures_of(&poly.positions, &poly.triangles().0))?;
     let out = PyDict::new(py);
     out.set_item("volume", m.volume)?;
     out.set_item("area", m.area)?;
     out.set_item("dimensions", m.dimensions)?;
-    out.set_item("centroid", m.centroid.map(|c| (c + part).to_array()))?;
+    out.set_item("centroid", m.centroid.map(|c| c.to_array()))?;
     Ok(out)
 }
 

@@ -1,18 +1,26 @@
 //! Meshes: made from arrays, read from files, written, and shared with NumPy.
 
+use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use pyo3::types::{PyBytes, PyType};
+use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::face_attributes::FaceAttributes;
 use sculptd_geometry::io::{LoadedMesh, read_mesh, write_mesh};
-use sculptd_geometry::{PolyMesh, TriMesh, shapes, written};
+use sculptd_geometry::job::Job;
+use sculptd_geometry::measure::{Measures, measures_of};
+use sculptd_geometry::repair::flip;
+use sculptd_geometry::{PolyMesh, TriMesh, check, shapes, written};
+use serde::{Deserialize, Serialize};
 
 use crate::array::{integers, points, shared};
 use crate::errors;
 use crate::job::{Progress, watched};
+use crate::{boolean, picture, pool};
 
 /// A surface of polygons in double precision. It never changes: every operation gives a new one.
 ///
@@ -28,8 +36,29 @@ use crate::job::{Progress, watched};
 pub struct Mesh {
     pub poly: Arc<PolyMesh>,
     /// The format of the file, if it came from one.
-    format: Option<&'static str>,
+    format: Option<String>,
     warnings: Vec<String>,
+}
+
+/// A mesh as it is pickled.
+#[derive(Serialize, Deserialize)]
+struct PickledMesh {
+    positions: Vec<DVec3>,
+    face_starts: Vec<u32>,
+    corners: Vec<u32>,
+    colours: Option<Vec<[u8; 4]>>,
+    groups: Option<Vec<u32>>,
+    attributes: Option<FaceAttributes>,
+    format: Option<String>,
+    warnings: Vec<String>,
+}
+
+/// Returns true if `starts` begins at 0, ends at the number of corners, and no face has fewer than
+/// three.
+fn are_starts(starts: &[u32], corners: usize) -> bool {
+    starts.first() == Some(&0)
+        && starts.last().is_some_and(|&l| l as usize == corners)
+        && starts.windows(2).all(|w| w[0].checked_add(3).is_some_and(|least| least <= w[1]))
 }
 
 impl From<PolyMesh> for Mesh {
@@ -49,6 +78,11 @@ impl Mesh {
         let mut poly = mesh.to_poly();
         poly.positions.iter_mut().for_each(|p| *p += centre);
         poly.into()
+    }
+
+    fn sizes(&self, py: Python<'_>) -> Measures {
+        let sizes = || measures_of(&self.poly.positions, &self.poly.triangles().0);
+        py.detach(|| pool::here(sizes))
     }
 
     fn regular(&self) -> Option<usize> {
@@ -85,10 +119,7 @@ impl Mesh {
                 )));
             }
         };
-        let good = starts.first() == Some(&0)
-            && starts.last().is_some_and(|&l| l as usize == corners.len())
-            && starts.windows(2).all(|w| w[0] + 3 <= w[1]);
-        if !good {
+        if !are_starts(&starts, corners.len()) {
             return Err(PyValueError::new_err(
                 "face_starts: expected 0, then at least 3 more each time, at last the number of \
                  corners",
@@ -157,8 +188,8 @@ impl Mesh {
 
     /// The format of the file, e.g. 'STL (binary)'; None for a mesh that came from no file.
     #[getter]
-    fn format(&self) -> Option<&'static str> {
-        self.format
+    fn format(&self) -> Option<&str> {
+        self.format.as_deref()
     }
 
     /// The data left out, guessed or repaired when this mesh was made: one sentence each.
@@ -169,25 +200,170 @@ impl Mesh {
 
     /// The same surface with every polygon cut into triangles; vertices keep their numbers.
     fn triangulated(&self, py: Python<'_>) -> Mesh {
-        py.detach(|| written::triangulated(&self.poly)).into()
+        py.detach(|| pool::here(|| written::triangulated(&self.poly))).into()
     }
 
-    /// The mesh with every vertex multiplied by `scale`, then moved by `offset`.
-    #[pyo3(signature = (scale=1.0, offset=[0.0, 0.0, 0.0]))]
-    fn transformed(&self, scale: f64, offset: [f64; 3]) -> PyResult<Mesh> {
+    /// The mesh with every vertex multiplied by `scale`, then moved by `offset`, then mapped by
+    /// `matrix`: (4, 4) numbers, the last row 0, 0, 0, 1. A matrix that mirrors turns the faces, so
+    /// that a solid stays a solid.
+    #[pyo3(signature = (scale=1.0, offset=[0.0, 0.0, 0.0], matrix=None))]
+    fn transformed(
+        &self,
+        scale: f64,
+        offset: [f64; 3],
+        matrix: Option<[[f64; 4]; 4]>,
+    ) -> PyResult<Mesh> {
         let offset = DVec3::from(offset);
         if !(scale > 0.0 && scale.is_finite() && offset.is_finite()) {
             return Err(PyValueError::new_err("expected a scale above 0 and a finite offset"));
         }
         let mut poly = PolyMesh::clone(&self.poly);
         poly.positions.iter_mut().for_each(|p| *p = *p * scale + offset);
+        if let Some(rows) = matrix {
+            let map = DMat4::from_cols_array_2d(&rows).transpose();
+            let turn = map.determinant();
+            if !(map.is_finite() && rows[3] == [0.0, 0.0, 0.0, 1.0] && turn != 0.0) {
+                return Err(PyValueError::new_err(
+                    "matrix: expected finite numbers, the last row 0, 0, 0, 1, and a determinant \
+                     that is not 0",
+                ));
+            }
+            poly.positions.iter_mut().for_each(|p| *p = map.transform_point3(*p));
+            if turn < 0.0 {
+                flip(&mut poly);
+            }
+        }
         Ok(poly.into())
+    }
+
+    /// The enclosed volume. Raises ValueError if the mesh is not closed and oriented: an open mesh
+    /// has none.
+    #[getter]
+    fn volume(&self, py: Python<'_>) -> PyResult<f64> {
+        if !self.is_closed(py) {
+            return Err(PyValueError::new_err(
+                "the mesh is not closed, so it has no volume; check() names its faults and \
+                 repair() closes holes",
+            ));
+        }
+        Ok(self.sizes(py).volume)
+    }
+
+    /// The sum of the areas of all faces.
+    #[getter]
+    fn area(&self, py: Python<'_>) -> f64 {
+        self.sizes(py).area
+    }
+
+    /// The lowest and the highest corner of the box around all faces; None without faces.
+    #[getter]
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let used = self.poly.corners.iter().map(|&v| self.poly.positions[v as usize]);
+        let ends = used.map(|p| (p, p)).reduce(|(lo, hi), (p, _)| (lo.min(p), hi.max(p)))?;
+        Some((ends.0.to_array(), ends.1.to_array()))
+    }
+
+    /// True if each edge has exactly two faces, which run along it in opposite directions.
+    #[getter]
+    fn is_closed(&self, py: Python<'_>) -> bool {
+        let report = py.detach(|| pool::here(|| check::report(&self.poly, false, &Job::default())));
+        report.is_ok_and(|r| r.closed)
+    }
+
+    fn __sub__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
+        boolean::made(py, self, other.get(), Operation::Difference)
+    }
+
+    fn __or__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
+        boolean::made(py, self, other.get(), Operation::Union)
+    }
+
+    fn __and__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
+        boolean::made(py, self, other.get(), Operation::Intersection)
+    }
+
+    /// Equal bits of positions, faces, colours, groups and attributes.
+    fn __eq__(&self, other: &Bound<'_, Mesh>) -> bool {
+        Arc::ptr_eq(&self.poly, &other.get().poly) || self.poly == other.get().poly
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hash = DefaultHasher::new();
+        hash.write(bytemuck::cast_slice(&self.poly.positions));
+        hash.write(bytemuck::cast_slice(&self.poly.corners));
+        hash.write(bytemuck::cast_slice(&self.poly.face_starts));
+        hash.finish()
+    }
+
+    /// A mesh never changes, so a copy shares its arrays.
+    pub fn __copy__(&self) -> Mesh {
+        Mesh {
+            poly: self.poly.clone(),
+            format: self.format.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Mesh {
+        self.__copy__()
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let PolyMesh { positions, face_starts, corners, colours, groups, attributes } =
+            PolyMesh::clone(&self.poly);
+        let pickled = PickledMesh {
+            positions,
+            face_starts,
+            corners,
+            colours,
+            groups,
+            attributes: attributes.map(Arc::unwrap_or_clone),
+            format: self.format.clone(),
+            warnings: self.warnings.clone(),
+        };
+        let bytes = postcard::to_allocvec(&pickled)
+            .map_err(|e| PyValueError::new_err(format!("the mesh cannot be pickled: {e}")))?;
+        let restore = py.get_type::<Mesh>().getattr("_unpickled")?;
+        Ok((restore, (PyBytes::new(py, &bytes),)))
+    }
+
+    #[classmethod]
+    fn _unpickled(_: &Bound<'_, PyType>, bytes: &[u8]) -> PyResult<Mesh> {
+        let p: PickledMesh = postcard::from_bytes(bytes)
+            .map_err(|e| PyValueError::new_err(format!("not a pickled mesh: {e}")))?;
+        let (vertices, faces) = (p.positions.len(), p.face_starts.len().saturating_sub(1));
+        let sound = are_starts(&p.face_starts, p.corners.len())
+            && p.corners.iter().all(|&v| (v as usize) < vertices)
+            && p.colours.as_ref().is_none_or(|c| c.len() == vertices)
+            && p.groups.as_ref().is_none_or(|g| g.len() == faces);
+        if !sound {
+            return Err(PyValueError::new_err("not a pickled mesh: its arrays disagree"));
+        }
+        let poly = PolyMesh {
+            positions: p.positions,
+            face_starts: p.face_starts,
+            corners: p.corners,
+            colours: p.colours,
+            groups: p.groups,
+            attributes: p.attributes.map(Arc::new),
+        };
+        Ok(Mesh { poly: Arc::new(poly), format: p.format, warnings: p.warnings })
+    }
+
+    /// The picture that a notebook shows.
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let png = picture::drawn(py, &self.poly, (480, 360))?;
+        Ok(PyBytes::new(py, &png))
     }
 
     /// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf. The
     /// file is written beside and renamed, so a file that stood there stays whole if this fails.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| write_mesh(&path, &self.poly)).map_err(|e| errors::write(&e))
+        let written = py.detach(|| pool::here(|| write_mesh(&path, &self.poly)));
+        written.map_err(|e| errors::write(&e))
     }
 
     /// A box between two corners, of six quadrilaterals.
@@ -243,7 +419,7 @@ fn read(py: Python<'_>, path: PathBuf, progress: Progress) -> PyResult<Mesh> {
     let path: &Path = &path;
     let LoadedMesh { mesh, format, warnings, .. } =
         watched(py, &progress, |job| read_mesh(path, job))?.map_err(|e| errors::read(py, &e))?;
-    Ok(Mesh { poly: Arc::new(mesh), format: Some(format.name()), warnings })
+    Ok(Mesh { poly: Arc::new(mesh), format: Some(format.name().into()), warnings })
 }
 
 /// Adds what this file defines.

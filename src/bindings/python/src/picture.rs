@@ -4,9 +4,9 @@ use glam::Vec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use sculptd_geometry::CentredMesh;
 use sculptd_geometry::picture::{Camera, draw};
 use sculptd_geometry::thickness::colour::colour;
+use sculptd_geometry::{CentredMesh, PolyMesh};
 
 use crate::job::watched;
 use crate::mesh::Mesh;
@@ -53,6 +53,20 @@ fn picture<'py>(
     })?
     .map_err(|e| PyValueError::new_err(e.to_string()))?;
     Ok(PyBytes::new(py, &png))
+}
+
+/// Draws a mesh from a corner above, as a PNG file's bytes of this width and height.
+pub fn drawn(
+    py: Python<'_>,
+    poly: &PolyMesh,
+    (width, height): (usize, usize),
+) -> PyResult<Vec<u8>> {
+    watched(py, &None, |_| {
+        let part = CentredMesh::new(poly, 1.0);
+        let camera = Camera::whole(&part.mesh, width as f32 / height as f32);
+        draw(&part.mesh, None, &camera, width, height).png()
+    })?
+    .map_err(|e| PyValueError::new_err(e.to_string()))
 }
 
 /// Adds what this file defines.

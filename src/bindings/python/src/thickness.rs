@@ -7,7 +7,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sculptd_geometry::CentredMesh;
-use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
@@ -167,9 +166,9 @@ impl Thickness {
         let query =
             WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
         let part = self.part.clone();
-        py.detach(|| {
-            thickness::measure_at_places(&part.mesh, None, &settings, query, &Job::default())
-        })
+        watched(py, &None, |job| {
+            thickness::measure_at_places(&part.mesh, None, &settings, query, job)
+        })?
         .map(Arc::new)
         .map_err(|e| errors::thickness(&e))
     }

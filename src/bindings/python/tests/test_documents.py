@@ -5,6 +5,8 @@ import io
 import os
 import pathlib
 import re
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -29,6 +31,12 @@ class Documents(unittest.TestCase):
                             exec(compile(block, name, "exec"), {"__name__": "block"})
                     finally:
                         os.chdir(here)
+
+
+class Stub(unittest.TestCase):
+    def test_the_client_s_types_are_the_schema_s(self):
+        script = ROOT / "src/bindings/python/generate_control_stub.py"
+        subprocess.run([sys.executable, script, "--check"], check=True)
 
 
 if __name__ == "__main__":

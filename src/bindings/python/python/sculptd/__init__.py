@@ -6,10 +6,10 @@ Read a mesh, ask it something, write what came out::
 
     part = sculptd.read("part.stl")
     hole = sculptd.Mesh.cylinder(radius=3.0, height=50.0)
-    made = sculptd.boolean(part, hole, "difference")
-    walls = sculptd.thickness(made.mesh)
+    made = part - hole
+    walls = sculptd.thickness(made)
     print(made.volume, walls.min, walls.below(1.0))
-    made.mesh.write("drilled.3mf")
+    made.write("drilled.3mf")
 
 Lengths are in the unit of the file, millimetres as a rule. A mesh never changes; every operation
 gives a new one. Arrays of a mesh (``vertices``, ``faces``) are read-only views of its own memory.
@@ -26,6 +26,11 @@ import importlib
 import typing
 
 if typing.TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
     from ._native import (
         BooleanFailed,
         BooleanResult,
@@ -50,6 +55,7 @@ if typing.TYPE_CHECKING:
         read,
         remesh,
         repair,
+        sections,
         slices,
         subdivide,
         thickness,
@@ -92,6 +98,7 @@ __all__ = [
     "read",
     "remesh",
     "repair",
+    "sections",
     "signed_distance",
     "slices",
     "subdivide",
@@ -99,7 +106,12 @@ __all__ = [
 ]
 
 
-def signed_distance(mesh, points, *, progress=None):
+def signed_distance(
+    mesh: "Mesh",
+    points: "ArrayLike",
+    *,
+    progress: "Callable[[float], object] | None" = None,
+) -> "NDArray[np.float64]":
     """The distance of each of (n, 3) points to the surface of `mesh`, negative inside.
 
     For several questions of one mesh make a `Solid` once.

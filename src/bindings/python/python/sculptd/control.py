@@ -10,7 +10,8 @@
 Every method of the protocol is a method of the client: ``daemon.call("camera", {"yaw": 0.5})`` and
 ``daemon.camera(yaw=0.5)`` are the same. ``take-up`` and other names with a hyphen are written with
 an underscore, and names with a dot as they are: ``daemon.scene.list()``. The schema is
-``src/control/schema.json``; ``daemon.methods()`` lists the methods.
+``src/control/schema.json``; type checkers and editors read the methods, their parameters and their
+replies from ``control.pyi``, which is generated from it.
 
 A reply comes after its effect. Each reply is matched with its request by its id: after a time-out
 or a Ctrl-C the next call gets its own answer. Threads may share a client; they take turns.
@@ -202,6 +203,11 @@ class Client:
                     return None
                 if line.get("method") == "event":
                     return line["params"]
+
+    def events(self, patience=None):
+        """Yields events after `subscribe`, until none comes within ``patience`` seconds."""
+        while (event := self.next_event(patience)) is not None:
+            yield event
 
     def _line(self, until):
         """One message; None where it does not come in time."""
