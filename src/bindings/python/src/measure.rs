@@ -22,7 +22,7 @@ pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<B
 
 /// Volume, area, dimensions along x, y and z, and the centroid of the enclosed volume (None where
 /// there is no volume): a dict. Of an open mesh the volume means little; `check` tells.
-#[pyfunction]
+#[pyfunction(name = "measure")]
 fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py, PyDict>> {
     let poly = mesh.get().poly.clone();
     let none: Progress = None;
@@ -37,7 +37,7 @@ fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py
 
 /// Returns the facts of the mesh: counts, topology, bounds, crossings. The result is a dict with
 /// the fields of `sculptd info --json`. `crossings=False` leaves out the slowest part.
-#[pyfunction]
+#[pyfunction(name = "check")]
 #[pyo3(signature = (mesh, *, crossings=true, progress=None))]
 fn check_mesh<'py>(
     py: Python<'py>,
@@ -122,7 +122,7 @@ fn project(
 /// Adds what this file defines.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<Projection>()?;
-    m.add("measure", wrap_pyfunction!(measures, m)?)?;
-    m.add("check", wrap_pyfunction!(check_mesh, m)?)?;
+    m.add_function(wrap_pyfunction!(measures, m)?)?;
+    m.add_function(wrap_pyfunction!(check_mesh, m)?)?;
     m.add_function(wrap_pyfunction!(project, m)?)
 }
