@@ -94,9 +94,9 @@ pub enum FleetCommand {
         #[arg(long, value_name = "N", default_value_t = 100)]
         lines: u32,
     },
-    /// Roll out a settings file (kiosk.toml without its table [fleet]) to all installations: to one
-    /// first, which is watched, then to the others. A failure on one reverts all. Exits with 1 if
-    /// reverted.
+    /// Roll out a settings file (keys of kiosk.toml that are not an installation's own) to all
+    /// installations: to one first, which is watched, then to the others. A failure on one reverts
+    /// all. Exits with 1 if reverted.
     Rollout {
         file: PathBuf,
         /// The installation to change first.

@@ -46,9 +46,10 @@ pub enum FleetAction {
         lines: u32,
     },
     /// Replaces the installation's settings file, on trial, and starts a new run with it. The
-    /// installation keeps its table `[fleet]`. If the file is in place already, nothing is done.
+    /// installation keeps the settings that are its own. If the file is in place already, nothing
+    /// is done.
     TrySettings {
-        /// The text of the file, without a table `[fleet]`; at most 64 KiB.
+        /// The text of the file, with the settings that a roll-out may change; at most 64 KiB.
         text: String,
         /// After so many seconds without [`FleetAction::KeepSettings`] the file before it comes
         /// back: 1 to 604800.

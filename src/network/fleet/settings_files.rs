@@ -19,8 +19,24 @@ use serde::{Deserialize, Serialize};
 use super::state::SettingsState;
 use sculptd_geometry::io::write_beside;
 
-/// The table that belongs to one installation.
-pub const OWN_TABLE: &str = "fleet";
+/// The settings that a roll-out may change. All others belong to one installation and its owner:
+/// they name its programs, folders and addresses, and a key of the fleet must not be enough to run
+/// a program or to send works elsewhere.
+pub const ROLLED_OUT: [&str; 13] = [
+    "idle_s",
+    "countdown_s",
+    "max_triangles",
+    "undo_bytes",
+    "language",
+    "languages",
+    "staff_pin",
+    "share_minutes",
+    "interrupted",
+    "attract",
+    "brush",
+    "radius",
+    "screen",
+];
 /// Runs that may begin with a file on trial.
 const STARTS: u32 = 1;
 
@@ -55,17 +71,21 @@ pub struct SettingsFiles {
     path: PathBuf,
 }
 
-/// The name of settings: the first 16 hexadecimal digits of the SHA-256 of the TOML without its
-/// table `[fleet]` and its comments.
+/// The name of settings: the first 16 hexadecimal digits of the SHA-256 of those in [`ROLLED_OUT`],
+/// as TOML without comments.
 ///
 /// # Errors
 /// The text is no TOML.
 pub fn revision_of(text: &str) -> Result<String, String> {
     let mut table: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
-    table.remove(OWN_TABLE);
+    table.retain(|name, _| is_rolled_out(name));
     let plain = toml::to_string(&table).map_err(|e| e.to_string())?;
     let sum = digest::digest(&digest::SHA256, plain.as_bytes());
     Ok(sum.as_ref()[..8].iter().map(|b| format!("{b:02x}")).collect())
+}
+
+fn is_rolled_out(name: &str) -> bool {
+    ROLLED_OUT.contains(&name)
 }
 
 impl SettingsFiles {
@@ -146,14 +166,12 @@ impl SettingsFiles {
     /// Puts settings in place, on trial. `Ok(false)`: they are in place already.
     ///
     /// # Errors
-    /// The text is no TOML or has a table `[fleet]`, or a file cannot be written; nothing has
-    /// changed.
+    /// The text is no TOML or has a setting beyond [`ROLLED_OUT`], or a file cannot be written;
+    /// nothing has changed.
     pub fn try_settings(&self, text: &str, trial_s: u32) -> Result<bool, String> {
         let table: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
-        if table.contains_key(OWN_TABLE) {
-            return Err(format!(
-                "the table [{OWN_TABLE}] is each installation's own: leave it out"
-            ));
+        if let Some(own) = table.keys().find(|name| !is_rolled_out(name)) {
+            return Err(format!("`{own}` is each installation's own: leave it out"));
         }
         let revision = revision_of(text)?;
         let old = read(&self.path).ok_or_else(|| format!("{}: not read", self.path.display()))?;
@@ -164,9 +182,11 @@ impl SettingsFiles {
             return Err("other settings are on trial".into());
         }
         let table: toml::Table = toml::from_str(&old).map_err(|e| e.to_string())?;
-        let own: toml::Table = table.into_iter().filter(|(name, _)| name == OWN_TABLE).collect();
-        let own = toml::to_string(&own).map_err(|e| e.to_string())?;
-        let new = format!("{}\n\n{own}", text.trim_end());
+        let own = table.into_iter().filter(|(name, _)| !is_rolled_out(name));
+        // Keys must come before tables.
+        let (tables, keys): (toml::Table, toml::Table) = own.partition(|(_, v)| v.is_table());
+        let of = |table: &toml::Table| toml::to_string(table).map_err(|e| e.to_string());
+        let new = format!("{}{}\n\n{}", of(&keys)?, text.trim_end(), of(&tables)?);
         write(&self.beside(".before"), &old)?;
         self.write_mark(&TrialMark { revision, trial_s, starts: 0 })?;
         write(&self.path, &new)?;
@@ -251,8 +271,9 @@ mod tests {
     #[test]
     fn a_revision_knows_settings_and_neither_comments_nor_whose_they_are() {
         let of = |text| revision_of(text).expect("TOML");
-        assert_eq!(of("a = 1 # one\n[fleet]\nname = \"x\""), of("a=1"));
-        assert_ne!(of("a = 1"), of("a = 2"));
+        assert_eq!(of("radius = 1 # one\n[fleet]\nname = \"x\""), of("radius=1"));
+        assert_eq!(of("radius = 1\nspeak = [\"say\"]\n"), of("radius=1"));
+        assert_ne!(of("radius = 1"), of("radius = 2"));
         assert!(revision_of("a = ").is_err());
         // Named in a document: it must not change.
         assert_eq!(of("idle_s = 50.0"), of("idle_s = 50.0 "));
@@ -287,6 +308,26 @@ mod tests {
         assert_eq!(read(files.path()).as_deref(), Some(OLD));
         assert_eq!(files.take_back(None), Ok(true));
         assert_eq!(files.revision(), revision_of(NEW).ok());
+    }
+
+    #[test]
+    fn nothing_that_names_programs_or_places_comes_over_the_network() {
+        let (_folder, files) = files();
+        let own = "speak = [\"espeak-ng\"]\ngallery = \"works\"\n";
+        write(files.path(), &format!("{own}{OLD}")).expect("written");
+        let refused =
+            ["speak = [\"sh\", \"-c\"]", "gallery_store = \"/elsewhere\"", "audit = \"x\""];
+        for text in refused.iter().chain(&["share = \"80\"", "unknown = 1"]) {
+            let why = files.try_settings(&format!("idle_s = 9.0\n{text}\n"), 9);
+            assert!(why.is_err_and(|why| why.contains("own")), "{text}");
+        }
+        assert_eq!(files.try_settings(NEW, 9), Ok(true));
+        let text = read(files.path()).expect("in place");
+        let table: toml::Table = toml::from_str(&text).expect("TOML");
+        assert_eq!(table["speak"].as_array().map(Vec::len), Some(1), "{text}");
+        assert_eq!(table["gallery"].as_str(), Some("works"));
+        assert_eq!(table["fleet"]["name"].as_str(), Some("museum"));
+        assert_eq!(table["idle_s"].as_float(), Some(50.0));
     }
 
     #[test]
