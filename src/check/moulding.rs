@@ -1,0 +1,213 @@
+//! What a mould asks of a part: draft, undercuts and the direction in which it parts.
+//!
+//! A face is released by the half of the mould on its own side, if the way from it along the pull
+//! direction is free; a face along the pull direction, by either half. The area that neither half
+//! releases is an undercut. Draft is exact; undercuts are measured by a ray from each cell of each
+//! face ([`crate::columns`]).
+
+use glam::DVec3;
+use rayon::prelude::*;
+use sculptd_geometry::flat_region::large_faces;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::portable::PortableMath;
+use sculptd_geometry::projection::spread_directions;
+
+use crate::columns::{CellSum, over_cells};
+use crate::overhangs::{FaceRegion, connected};
+use crate::part::PreparedPart;
+
+/// Angles that differ by less, degrees, are one.
+const ANGLE_SLACK: f64 = 0.01;
+/// Directions of a hemisphere that are tried.
+const DIRECTIONS: usize = 500;
+/// Points of the surface that each of them is tried with.
+const POINTS: usize = 2048;
+/// Directions that are refined, and those that are measured in full.
+const REFINED: usize = 8;
+/// The least share of the surface of a flat face whose normal is tried.
+const FLAT_SHARE: f64 = 0.01;
+/// Faces of one task.
+const CHUNK: usize = 256;
+
+/// A region with less draft than a limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DraftRegion {
+    /// The region.
+    pub region: FaceRegion,
+    /// The least draft, degrees.
+    pub draft: f64,
+}
+
+/// A region that neither half of a mould releases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UndercutRegion {
+    /// The faces that are hidden at least in part.
+    pub region: FaceRegion,
+    /// The hidden area.
+    pub hidden: CellSum,
+}
+
+/// The angle between a face and the pull direction, degrees, 0 to 90.
+pub fn draft_angle(normal: DVec3, pull: DVec3) -> f64 {
+    90.0 - normal.dot(pull).abs().min(1.0).portable_acos().to_degrees()
+}
+
+/// The regions with less draft than `limit` degrees, the largest first.
+pub fn draft_regions(part: &PreparedPart, pull: DVec3, limit: f64) -> Vec<DraftRegion> {
+    let most = (limit - ANGLE_SLACK).max(0.0).to_radians().portable_sin();
+    let faces: Vec<u32> = (0..part.triangles() as u32)
+        .filter(|&t| {
+            part.areas[t as usize] > 0.0 && part.normals[t as usize].dot(pull).abs() < most
+        })
+        .collect();
+    connected(part, &faces)
+        .into_iter()
+        .map(|region| {
+            let own = region.triangles.iter();
+            let draft = own.map(|&t| draft_angle(part.normals[t as usize], pull));
+            DraftRegion { draft: draft.fold(f64::INFINITY, f64::min), region }
+        })
+        .collect()
+}
+
+/// Whether a point of a face is hidden from both halves.
+fn hidden(part: &PreparedPart, pull: DVec3, p: DVec3, normal: DVec3) -> bool {
+    let step = 16.0 * part.rounding();
+    let (from, rise) = (p + normal * step, normal.dot(pull));
+    let vertical = rise.abs() < ANGLE_SLACK.to_radians();
+    let blocked = |way: DVec3| part.blocked(from, way, 0.0);
+    (rise < 0.0 && !vertical || blocked(pull)) && (rise > 0.0 && !vertical || blocked(-pull))
+}
+
+/// The regions that neither half releases along `pull`, the largest first. Cells have `cell` square
+/// millimetres.
+pub fn undercuts(
+    part: &PreparedPart,
+    pull: DVec3,
+    cell: f64,
+    job: &Job,
+) -> Result<Vec<UndercutRegion>, Cancelled> {
+    let all: Vec<u32> = (0..part.triangles() as u32).collect();
+    let one = |&t: &u32| {
+        let Some(corners) = part.corners(t) else { return CellSum::default() };
+        let normal = part.normals[t as usize];
+        over_cells(corners, part.areas[t as usize], cell, |p| {
+            f64::from(u8::from(hidden(part, pull, p, normal)))
+        })
+    };
+    let chunks = all.par_chunks(CHUNK).map(|chunk| {
+        job.check()?;
+        Ok(chunk.iter().map(one).collect::<Vec<_>>())
+    });
+    let sums = chunks.collect::<Result<Vec<_>, Cancelled>>()?.concat();
+    let faces: Vec<u32> = all.into_iter().filter(|&t| sums[t as usize].total > 0.0).collect();
+    let mut out: Vec<UndercutRegion> = connected(part, &faces)
+        .into_iter()
+        .map(|region| {
+            let mut hidden = CellSum::default();
+            region.triangles.iter().for_each(|&t| hidden.add(&sums[t as usize]));
+            UndercutRegion { region, hidden }
+        })
+        .collect();
+    out.sort_by(|a, b| b.hidden.total.total_cmp(&a.hidden.total));
+    Ok(out)
+}
+
+/// A direction in which a mould may part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartingDirection {
+    /// Of unit length.
+    pub direction: DVec3,
+    /// The area that neither half releases.
+    pub undercut: CellSum,
+    /// The area with less draft than the limit.
+    pub low_draft: f64,
+}
+
+/// Points spread over the surface by area.
+fn surface_points(part: &PreparedPart) -> Vec<(DVec3, DVec3)> {
+    let all: f64 = part.areas.iter().sum();
+    let step = all / POINTS as f64;
+    let (mut out, mut at, mut sum) = (Vec::with_capacity(POINTS), step * 0.5, 0.0);
+    let mut weight = 0.5f64;
+    for t in 0..part.triangles() as u32 {
+        sum += part.areas[t as usize];
+        let Some([a, b, c]) = part.corners(t) else { continue };
+        while at < sum && out.len() < POINTS {
+            // The golden ratio's sequence along one side, and the square root along the other.
+            weight = (weight + 0.618_033_988_749_894_9).fract();
+            let across = ((out.len() as f64 + 0.5) * 0.754_877_666_246_692_7).fract().sqrt();
+            let p = a + ((b - a) * (1.0 - weight) + (c - a) * weight) * across;
+            out.push((p, part.normals[t as usize]));
+            at += step;
+        }
+    }
+    out
+}
+
+/// The direction with the least undercut, then the least area without draft: among `also`, the
+/// axes, the normals of large flat faces and 500 directions of a hemisphere, the best of which are
+/// refined. The first of `also` wins a tie.
+pub fn best_parting(
+    part: &PreparedPart,
+    also: &[DVec3],
+    draft: f64,
+    cell: f64,
+    job: &Job,
+) -> Result<Option<PartingDirection>, Cancelled> {
+    let points = surface_points(part);
+    let least = draft.to_radians().portable_sin();
+    let low_draft = |d: DVec3| -> f64 {
+        let low = |t: usize| part.normals[t].dot(d).abs() < least - 1e-4;
+        (0..part.triangles()).filter(|&t| low(t)).map(|t| part.areas[t]).sum()
+    };
+    let share = |d: &DVec3| {
+        let count = points.iter().filter(|(p, n)| hidden(part, *d, *p, *n)).count();
+        (count, *d)
+    };
+    let rate = |tried: Vec<DVec3>| -> Result<Vec<(usize, DVec3)>, Cancelled> {
+        tried.par_iter().map(|d| job.check().map(|()| share(d))).collect()
+    };
+    let mut fixed: Vec<DVec3> = also.to_vec();
+    fixed.extend([DVec3::Z, DVec3::X, DVec3::Y]);
+    let flat = large_faces(&part.centred.mesh, FLAT_SHARE);
+    fixed.extend(flat.iter().map(|f| f.normal).take(REFINED * 2));
+    let mut rated = rate(fixed.iter().copied().chain(spread_directions(DIRECTIONS)).collect())?;
+    rated.sort_by_key(|r| r.0);
+    rated.truncate(REFINED);
+    let mut step = 6f64.to_radians();
+    for _ in 0..3 {
+        let around: Vec<DVec3> = rated.iter().flat_map(|r| ring(r.1, step)).collect();
+        rated.extend(rate(around)?);
+        rated.sort_by_key(|r| r.0);
+        rated.truncate(REFINED);
+        step *= 0.4;
+    }
+    let best = rated.iter().map(|r| r.1);
+    let mut out: Vec<PartingDirection> = Vec::new();
+    for d in fixed.iter().copied().chain(best) {
+        if out.iter().any(|o| o.direction.dot(d).abs() > 1.0 - 1e-9) {
+            continue;
+        }
+        let mut undercut = CellSum::default();
+        undercuts(part, d, cell, job)?.iter().for_each(|u| undercut.add(&u.hidden));
+        out.push(PartingDirection { direction: d, undercut, low_draft: low_draft(d) });
+    }
+    // A direction is better only by more than its cells can tell apart.
+    let grain = cell;
+    let key = |p: &PartingDirection| ((p.undercut.total / grain).round(), p.low_draft);
+    Ok(out.into_iter().min_by(|a, b| {
+        let ((a, x), (b, y)) = (key(a), key(b));
+        a.total_cmp(&b).then(x.total_cmp(&y))
+    }))
+}
+
+/// Six directions around `d` at an angle of `step` radians.
+pub fn ring(d: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
+    let (u, v) = d.any_orthonormal_pair();
+    (0..6).map(move |i| {
+        let turn = std::f64::consts::TAU * f64::from(i) / 6.0;
+        let side = u * turn.portable_cos() + v * turn.portable_sin();
+        (d * step.portable_cos() + side * step.portable_sin()).normalize()
+    })
+}
