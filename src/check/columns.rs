@@ -106,3 +106,31 @@ pub fn column(part: &PreparedPart, stand: &Standing, p: DVec3) -> f64 {
         _ => to_plate,
     }
 }
+
+/// `count` points spread over the surface by area, with their triangles.
+pub fn surface_points(part: &PreparedPart, count: usize) -> Vec<(DVec3, u32)> {
+    let all: f64 = part.areas.iter().sum();
+    let step = all / count as f64;
+    let (mut out, mut at, mut sum) = (Vec::with_capacity(count), step * 0.5, 0.0);
+    for t in 0..part.triangles() as u32 {
+        sum += part.areas[t as usize];
+        let Some(corners) = part.corners(t) else { continue };
+        while at < sum && out.len() < count {
+            out.push((point_in(corners, out.len()), t));
+            at += step;
+        }
+    }
+    out
+}
+
+/// The `i`-th point of a sequence that fills a triangle evenly (Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
+pub fn point_in([a, b, c]: [DVec3; 3], i: usize) -> DVec3 {
+    let i = i as f64;
+    let mut u = (0.5 + i * 0.754_877_666_246_692_7).fract();
+    let mut v = (0.5 + i * 0.569_840_290_998_053_3).fract();
+    if u + v > 1.0 {
+        (u, v) = (1.0 - u, 1.0 - v);
+    }
+    a + (b - a) * u + (c - a) * v
+}

@@ -12,7 +12,7 @@ use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::projection::spread_directions;
 
-use crate::columns::{CellSum, over_cells};
+use crate::columns::{CellSum, over_cells, surface_points};
 use crate::overhangs::{FaceRegion, connected};
 use crate::part::PreparedPart;
 
@@ -124,27 +124,6 @@ pub struct PartingDirection {
     pub low_draft: f64,
 }
 
-/// Points spread over the surface by area.
-fn surface_points(part: &PreparedPart) -> Vec<(DVec3, DVec3)> {
-    let all: f64 = part.areas.iter().sum();
-    let step = all / POINTS as f64;
-    let (mut out, mut at, mut sum) = (Vec::with_capacity(POINTS), step * 0.5, 0.0);
-    let mut weight = 0.5f64;
-    for t in 0..part.triangles() as u32 {
-        sum += part.areas[t as usize];
-        let Some([a, b, c]) = part.corners(t) else { continue };
-        while at < sum && out.len() < POINTS {
-            // The golden ratio's sequence along one side, and the square root along the other.
-            weight = (weight + 0.618_033_988_749_894_9).fract();
-            let across = ((out.len() as f64 + 0.5) * 0.754_877_666_246_692_7).fract().sqrt();
-            let p = a + ((b - a) * (1.0 - weight) + (c - a) * weight) * across;
-            out.push((p, part.normals[t as usize]));
-            at += step;
-        }
-    }
-    out
-}
-
 /// The direction with the least undercut, then the least area without draft: among `also`, the
 /// axes, the normals of large flat faces and 500 directions of a hemisphere, the best of which are
 /// refined. The first of `also` wins a tie.
@@ -155,14 +134,15 @@ pub fn best_parting(
     cell: f64,
     job: &Job,
 ) -> Result<Option<PartingDirection>, Cancelled> {
-    let points = surface_points(part);
+    let points = surface_points(part, POINTS);
     let least = draft.to_radians().portable_sin();
     let low_draft = |d: DVec3| -> f64 {
         let low = |t: usize| part.normals[t].dot(d).abs() < least - 1e-4;
         (0..part.triangles()).filter(|&t| low(t)).map(|t| part.areas[t]).sum()
     };
     let share = |d: &DVec3| {
-        let count = points.iter().filter(|(p, n)| hidden(part, *d, *p, *n)).count();
+        let count =
+            points.iter().filter(|(p, t)| hidden(part, *d, *p, part.normals[*t as usize])).count();
         (count, *d)
     };
     let rate = |tried: Vec<DVec3>| -> Result<Vec<(usize, DVec3)>, Cancelled> {

@@ -1,5 +1,5 @@
-//! The direction in which to build a part: least support, then least overhang, fewest islands,
-//! lowest, and largest first layer, in this order.
+//! The direction in which to build a part: least support, then least overhang, fewest islands, a
+//! first layer on which it stands, lowest, and largest first layer, in this order.
 //!
 //! Directions all over the sphere are tried with a sample of the overhangs, the best are refined,
 //! and then measured in full beside the six axes, the part as it is, and its large flat faces put
@@ -13,11 +13,11 @@ use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::projection::spread_directions;
 use serde::Serialize;
 
-use crate::columns::{CELLS, CellSum, cell_area, column, support_columns};
+use crate::columns::{CELLS, CellSum, cell_area, column, point_in, support_columns};
 use crate::moulding::ring;
 use crate::overhangs::overhang_faces;
 use crate::part::{PreparedPart, Standing};
-use crate::placement::first_layer;
+use crate::placement::{covers, first_layer, tip_angle};
 use crate::plate::PlateContact;
 use crate::settings::CheckSettings;
 use crate::sweep::sweep;
@@ -52,6 +52,8 @@ pub struct Orientation {
     pub height: f64,
     /// The area of the first layer, mm2.
     pub contact_area: f64,
+    /// Whether the first layer is large enough, and the part does not fall from it.
+    pub stands: bool,
 }
 
 /// The outcome of a search.
@@ -146,6 +148,7 @@ fn compare(a: &Orientation, b: &Orientation, grain: f64) -> std::cmp::Ordering {
         .total_cmp(&bucket(b.support_volume, grain))
         .then(bucket(a.overhang_area, area).total_cmp(&bucket(b.overhang_area, area)))
         .then(a.islands.cmp(&b.islands))
+        .then(b.stands.cmp(&a.stands))
         .then(bucket(a.height, area.sqrt()).total_cmp(&bucket(b.height, area.sqrt())))
         .then(b.contact_area.total_cmp(&a.contact_area))
 }
@@ -154,6 +157,9 @@ fn reasons(best: &Orientation, now: &Orientation, grain: f64) -> Vec<String> {
     let mut out = Vec::new();
     if compare(best, now, grain).is_ge() {
         return out;
+    }
+    if best.stands && !now.stands {
+        out.push("the part stands on its first layer".into());
     }
     let mut say = |what: &str, better: f64, worse: f64, unit: &str| {
         let (a, b) = (format!("{better:.1}"), format!("{worse:.1}"));
@@ -181,7 +187,7 @@ pub fn measured(
     let (mut support, mut area) = (CellSum::default(), 0.0);
     if let Some(limit) = settings.process.overhang {
         let faces = overhang_faces(part, &stand, limit);
-        area = faces.iter().map(|&t| part.areas[t as usize]).sum();
+        area = faces.iter().fold(0.0, |sum, &t| sum + part.areas[t as usize]);
         let columns = support_columns(part, &stand, &faces, cell_area(part, CELLS), job)?;
         columns.iter().for_each(|c| support.add(c));
     }
@@ -192,6 +198,10 @@ pub fn measured(
         0
     };
     let first = first_layer(part, &stand, layer);
+    let tip = part.sizes.centroid.map(|c| tip_angle(&stand, &first, c));
+    let least = settings.process.contact_area.unwrap_or(0.0);
+    let stands = covers(part, first.area, least)
+        && settings.process.tip_angle.is_none_or(|l| tip.is_some_and(|t| t >= l));
     Ok(Some(Orientation {
         direction: up.to_array(),
         support_volume: support.total,
@@ -200,6 +210,7 @@ pub fn measured(
         islands,
         height: stand.top - stand.plate,
         contact_area: first.area,
+        stands,
     }))
 }
 
@@ -218,9 +229,8 @@ fn tried_at(part: &PreparedPart, settings: &CheckSettings, up: DVec3) -> Trial {
     let least = -limit.to_radians().portable_sin();
     let slack = part.tolerance.max(0.05 * settings.layer());
     let names = &part.topology().triangles;
-    let on_plate = |t: usize| {
-        names[t].iter().all(|&v| part.places[v as usize].dot(up) <= plate + slack)
-    };
+    let on_plate =
+        |t: usize| names[t].iter().all(|&v| part.places[v as usize].dot(up) <= plate + slack);
     let (mut sums, mut sum, mut area) = (Vec::new(), 0.0, 0.0);
     for (t, n) in part.normals.iter().enumerate() {
         let rise = n.dot(up);
@@ -239,12 +249,8 @@ fn tried_at(part: &PreparedPart, settings: &CheckSettings, up: DVec3) -> Trial {
     for i in 0..COLUMNS {
         let at = (i as f64 + 0.5) * step;
         let k = sums.partition_point(|s| s.0 < at).min(sums.len() - 1);
-        let Some([a, b, c]) = part.corners(sums[k].1) else { continue };
-        // Where in the face: by the golden ratio and the plastic number.
-        let w = (i as f64 * 0.618_033_988_749_894_9 + 0.5).fract();
-        let s = (i as f64 * 0.754_877_666_246_692_7 + 0.5).fract().sqrt();
-        let p = a + ((b - a) * (1.0 - w) + (c - a) * w) * s;
-        support += column(part, &stand, p) * step;
+        let Some(corners) = part.corners(sums[k].1) else { continue };
+        support += column(part, &stand, point_in(corners, i)) * step;
     }
     Trial { up, support, area, height }
 }

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use sculptd_geometry::bvh::{Bvh8, Ray};
+use sculptd_geometry::bvh::{Bvh8, REACH, Ray};
 use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::distance::topology::{NO_PARTNER, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
@@ -133,6 +133,12 @@ impl PreparedPart {
         self.tree().closest_hit(ray, |t| self.normals[t as usize].dot(along) < 0.0).is_some()
     }
 
+    /// Whether all triangles are small and near enough for the tree, and some have an area.
+    pub fn within_reach(&self) -> bool {
+        let near = |p: &DVec3| p.abs().max_element() < REACH;
+        self.places.iter().all(near) && self.areas.iter().any(|a| *a > 0.0)
+    }
+
     /// The largest rounding of a coordinate to single precision.
     pub fn rounding(&self) -> f64 {
         let (lo, hi) = self.tree().bounds();
@@ -155,7 +161,13 @@ impl PreparedPart {
             }
         }
         let slack = self.tolerance.max(0.05 * layer).min(0.01 * (top - plate).max(0.0));
-        (plate <= top).then_some(Standing { up, heights, plate, top, slack: slack.max(self.tolerance) })
+        (plate <= top).then_some(Standing {
+            up,
+            heights,
+            plate,
+            top,
+            slack: slack.max(self.tolerance),
+        })
     }
 }
 

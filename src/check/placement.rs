@@ -51,6 +51,11 @@ pub fn first_layer(part: &PreparedPart, stand: &Standing, layer: f64) -> FirstLa
     FirstLayer { area: section.area, centre: section.centroid.unwrap_or_default(), hull }
 }
 
+/// Whether an area reaches a limit; a tie up to rounding does.
+pub fn covers(part: &PreparedPart, area: f64, limit: f64) -> bool {
+    area >= limit - 4.0 * part.tolerance * limit.sqrt() - 1e-9 * limit
+}
+
 /// The convex hull, counter-clockwise, without points on its sides (Andrew, 1979).
 pub fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.retain(|p| p.is_finite());
@@ -84,9 +89,7 @@ fn depth_in(hull: &[DVec2], p: DVec2) -> f64 {
         return -far;
     }
     let sides = (0..hull.len()).map(|i| (hull[i], hull[(i + 1) % hull.len()]));
-    sides
-        .map(|(a, b)| (b - a).normalize_or_zero().perp_dot(p - a))
-        .fold(f64::INFINITY, f64::min)
+    sides.map(|(a, b)| (b - a).normalize_or_zero().perp_dot(p - a)).fold(f64::INFINITY, f64::min)
 }
 
 /// The angle, degrees, by which a part can be tilted before it falls: from the edge of its first

@@ -89,9 +89,8 @@ impl PlateContact {
     pub fn region_at(&self, p: DVec2, except: Option<usize>) -> u32 {
         let around = self.holes.iter().enumerate().filter(|(_, l)| Some(**l) != except);
         let around = around.filter(|(_, l)| inside(&self.loops[**l].points, p));
-        let least = around.min_by(|a, b| {
-            self.loops[*a.1].area.abs().total_cmp(&self.loops[*b.1].area.abs())
-        });
+        let least = around
+            .min_by(|a, b| self.loops[*a.1].area.abs().total_cmp(&self.loops[*b.1].area.abs()));
         least.map_or(OUTSIDE, |(i, _)| i as u32 + 1)
     }
 

@@ -14,7 +14,7 @@ use crate::moulding::{best_parting, draft_regions, undercuts};
 use crate::orientation::{OrientationSearch, orientations};
 use crate::overhangs::overhangs;
 use crate::part::{PreparedPart, Standing};
-use crate::placement::{extent, first_layer, tip_angle, too_large};
+use crate::placement::{covers, extent, first_layer, tip_angle, too_large};
 use crate::plate::PlateContact;
 use crate::preset::BuildMethod;
 use crate::settings::CheckSettings;
@@ -170,8 +170,7 @@ pub fn check_part(
     let sound = soundness(mesh, scale, settings.process.sliver, job)?;
     let mut findings = sound.findings;
     let mut warnings = sound.warnings;
-    let mut checks =
-        vec![RanCheck { name: "mesh", ran: true, seconds: seconds() - began }];
+    let mut checks = vec![RanCheck { name: "mesh", ran: true, seconds: seconds() - began }];
     let mut facts = PartFacts::default();
     let asked = asked(settings);
     let mut search = None;
@@ -180,7 +179,9 @@ pub fn check_part(
         Ok(solid) => {
             let part = PreparedPart::new(solid, scale, job)?;
             let stand = part.standing(settings.up, settings.layer());
-            stand.map(|s| (part, s)).ok_or_else(|| "the mesh has no faces with area".to_string())
+            let whole = part.within_reach();
+            let found = stand.map(|s| (part, s)).filter(|_| whole);
+            found.ok_or_else(|| "no face has an area, or the part is too large".to_string())
         }
         Err(why) => Err(why.clone()),
     };
@@ -239,8 +240,7 @@ pub fn check_part(
         None => Default::default(),
     };
     let answer = CheckAnswer {
-        ok: findings.iter().all(|f| f.severity != Severity::Error)
-            && checks.iter().all(|c| c.ran),
+        ok: findings.iter().all(|f| f.severity != Severity::Error) && checks.iter().all(|c| c.ran),
         file: file.into(),
         process: settings.process.name.clone(),
         printer: settings.printer.as_ref().map(|p| p.name.clone()),
@@ -305,19 +305,31 @@ fn merge(facts: &mut PartFacts, own: PartFacts) {
         ($($name:ident),+) => { $(facts.$name = own.$name.or(facts.$name);)+ };
     }
     take!(
-        volume, area, size, weight, layers, contact_area, tip_angle, overhang_area, support_volume,
-        support_error, projected_area, nominal_wall, thickest_wall, cooling_time, clamping_force,
-        shot_volume, parting_direction, parting_undercut, undercut_area, build_time
+        volume,
+        area,
+        size,
+        weight,
+        layers,
+        contact_area,
+        tip_angle,
+        overhang_area,
+        support_volume,
+        support_error,
+        projected_area,
+        nominal_wall,
+        thickest_wall,
+        cooling_time,
+        clamping_force,
+        shot_volume,
+        parting_direction,
+        parting_undercut,
+        undercut_area,
+        build_time
     );
 }
 
 /// Facts that need no limit.
-fn general(
-    part: &PreparedPart,
-    stand: &Standing,
-    settings: &CheckSettings,
-    facts: &mut PartFacts,
-) {
+fn general(part: &PreparedPart, stand: &Standing, settings: &CheckSettings, facts: &mut PartFacts) {
     let volume = part.sizes.volume;
     facts.volume = Some(volume);
     facts.area = Some(part.areas.iter().sum());
@@ -331,12 +343,17 @@ fn general(
     }
 }
 
+/// A number of a preset in single precision as it was written: 0.8, not 0.800000012.
+fn as_written(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or_else(|_| f64::from(value))
+}
+
 fn walls(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
     let p = &c.settings.process;
     let preset = c.settings.walls.as_ref();
     let limits = WallLimits {
-        fail_below: preset.map(|w| f64::from(w.fail_below)),
-        warn_below: preset.map(|w| f64::from(w.warn_below)),
+        fail_below: preset.map(|w| as_written(w.fail_below)),
+        warn_below: preset.map(|w| as_written(w.warn_below)),
         round: p.pin,
         resolution: p.resolution,
     };
@@ -361,14 +378,14 @@ fn thick_sections(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
     let place = c.part.to_file(spread.position);
     let mut out = Vec::new();
     let value = spread.thickest;
-    if let Some(limit) = c.settings.walls.as_ref().and_then(|w| w.fail_above).map(f64::from)
+    if let Some(limit) = c.settings.walls.as_ref().and_then(|w| w.fail_above).map(as_written)
         && value - spread.error > limit
     {
         let message = format!("a section is {value:.2} mm thick; core it out to {limit:.2} mm");
         let found = Finding::new(FindingKind::ThickSection, message).at(place);
         out.push(found.measured(value, limit, "mm").within(spread.error));
     }
-    if let Some(limit) = c.settings.walls.as_ref().and_then(|w| w.neighbour_ratio).map(f64::from) {
+    if let Some(limit) = c.settings.walls.as_ref().and_then(|w| w.neighbour_ratio).map(as_written) {
         let ratio = value / spread.nominal;
         let error = spread.error / spread.nominal;
         if ratio - error > limit {
@@ -492,7 +509,7 @@ fn placement(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
     let place = part.to_file(layer.centre);
     let mut out = Vec::new();
     if let Some(limit) = p.contact_area
-        && layer.area < limit * (1.0 - 1e-9)
+        && !covers(part, layer.area, limit)
     {
         let message = format!(
             "the first layer covers {:.2} mm2; turn the part, flatten its base, or print it on a \
@@ -518,8 +535,7 @@ fn placement(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
             out.push(tipping.measured(angle, limit, "degrees"));
         }
     }
-    let facts =
-        PartFacts { contact_area: Some(layer.area), tip_angle: tip, ..Default::default() };
+    let facts = PartFacts { contact_area: Some(layer.area), tip_angle: tip, ..Default::default() };
     Ok((out, facts))
 }
 
@@ -584,9 +600,7 @@ fn mould(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
             let undercut = Finding::new(FindingKind::Undercut, message);
             let undercut = undercut.at(part.to_file(r.region.position));
             let value = r.hidden.total;
-            out.push(
-                undercut.measured(value, limit, "mm2").over(value).within(r.hidden.error()),
-            );
+            out.push(undercut.measured(value, limit, "mm2").over(value).within(r.hidden.error()));
         }
     }
     let shadow = projected_area(&part.centred.mesh, pull.as_vec3(), c.job)?;

@@ -3,9 +3,7 @@
 use glam::DVec3;
 use sculptd_geometry::thickness::preset::Preset;
 
-use crate::preset::{
-    BuildMethod, CheckPreset, MaterialPreset, PrinterPreset, ProcessPreset,
-};
+use crate::preset::{BuildMethod, CheckPreset, MaterialPreset, PrinterPreset, ProcessPreset};
 
 /// The presets that are available by name.
 #[derive(Debug, Clone, Default)]

@@ -92,8 +92,7 @@ pub fn soundness<'a>(
             let message = "the part is inside out; turn its faces with sculptd convert --mend";
             let wrong = Finding::new(FindingKind::Orientation, message);
             let value = volume * scale.powi(3);
-            findings
-                .push(wrong.at(facts.bounds.centre() * scale).measured(value, 0.0, "mm3"));
+            findings.push(wrong.at(facts.bounds.centre() * scale).measured(value, 0.0, "mm3"));
             warnings.push("the faces were turned outwards for the other checks".into());
         }
         flip(solid.to_mut());
@@ -160,8 +159,7 @@ fn bad_edge(mesh: &PolyMesh, is_bad: impl Fn(usize) -> bool) -> Option<DVec3> {
 fn misoriented(mesh: &PolyMesh) -> Option<DVec3> {
     let table = EdgeTable::of(mesh);
     let same = |e: &&[sculptd_geometry::edges::HalfEdge]| {
-        e.len() == 2
-            && mesh.corners[e[0].corner as usize] == mesh.corners[e[1].corner as usize]
+        e.len() == 2 && mesh.corners[e[0].corner as usize] == mesh.corners[e[1].corner as usize]
     };
     let (a, b) = table.each().find(same)?[0].ends;
     Some((mesh.positions[a as usize] + mesh.positions[b as usize]) * 0.5)

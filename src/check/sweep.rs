@@ -212,8 +212,7 @@ pub fn sweep(
     let mut pieces: Vec<Piece> = (0..vertices as u32).map(|birth| Piece { birth }).collect();
     // Contours that began, with the height at which they joined an older one.
     let mut begun: Vec<(u32, f64)> = Vec::new();
-    let solid_above =
-        |v: u32| part.topology().vertex_normals[v as usize].dot(stand.up) <= 0.0;
+    let solid_above = |v: u32| part.topology().vertex_normals[v as usize].dot(stand.up) <= 0.0;
     for &v in &order {
         let own = &below[starts[v as usize] as usize..starts[v as usize + 1] as usize];
         let height = heights[v as usize];
@@ -303,7 +302,8 @@ fn floor_below(part: &PreparedPart, stand: &Standing, p: DVec3) -> Option<(f64, 
     let step = 16.0 * part.rounding();
     [DVec3::ZERO, u, v, -u, -v]
         .iter()
-        .find_map(|side| part.distance_along(p + *side * step, -stand.up, 0.0))
+        // Not the walls that go up from the point itself.
+        .find_map(|side| part.distance_along(p + *side * step, -stand.up, 4.0 * step))
 }
 
 /// The islands among the contours that began.

@@ -1,17 +1,19 @@
 //! Thin walls, pins, gaps and holes, and walls that are too thick: the definitions and the proofs
 //! are those of [`sculptd_geometry::thickness`].
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use sculptd_geometry::bvh::Ray;
-use sculptd_geometry::job::Job;
+use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
-use sculptd_geometry::thickness::check::add_places;
+use sculptd_geometry::thickness::ray::{Caster, Site};
 use sculptd_geometry::thickness::worst::ThinRegion;
 use sculptd_geometry::thickness::{
-    MeasuredSide, Thickness, ThicknessError, ThicknessMethod, ThicknessSettings, WallQuery,
-    measure_at_places,
+    Cone, Correction, MeasuredSide, Outliers, ThicknessError, ThicknessSettings, WallQuery,
+    Weights, measure_at_places,
 };
 
+use crate::columns::surface_points;
 use crate::finding::{Finding, FindingKind, MOST_OF_A_KIND};
 use crate::part::PreparedPart;
 
@@ -19,6 +21,11 @@ use crate::part::PreparedPart;
 const ROUND: f64 = 1.5;
 /// Directions in which chords across are tried.
 const FAN: usize = 16;
+/// How far beside a thin place, in thicknesses, it is looked for whether the wall extends.
+const BESIDE: f64 = 2.0;
+/// Balls that are laid against the surface, and the largest of them that are moved along it.
+const BALLS: usize = 1 << 13;
+const CLIMBED: usize = 24;
 
 /// Limits of walls and gaps, millimetres.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -40,21 +47,6 @@ impl WallLimits {
     }
 }
 
-/// The part measured by one definition. A coarse part gets places to measure at.
-fn measured(
-    part: &PreparedPart,
-    method: ThicknessMethod,
-    side: MeasuredSide,
-    limit: Option<f64>,
-    job: &Job,
-) -> Result<Thickness, ThicknessError> {
-    let settings = ThicknessSettings { method, side, ..ThicknessSettings::default() };
-    let mut mesh = part.centred.mesh.clone();
-    let walls = add_places(&mut mesh, None, settings.crease);
-    let query = WallQuery { limit, thinnest: false, grain: part.centred.grain };
-    measure_at_places(&mesh, walls.as_ref(), &settings, query, job)
-}
-
 /// The walls (or the gaps) below the limits, the thinnest first.
 pub fn thin_places(
     part: &PreparedPart,
@@ -63,8 +55,12 @@ pub fn thin_places(
     job: &Job,
 ) -> Result<Vec<Finding>, ThicknessError> {
     let Some(largest) = limits.largest() else { return Ok(Vec::new()) };
-    let found = measured(part, ThicknessMethod::Ray, side, Some(largest), job)?;
-    let slack = found.least.map_or(0.0, |l| (l.upper - l.value).max(0.0)) + 4.0 * part.centred.grain;
+    let settings = ThicknessSettings { side, ..ThicknessSettings::default() };
+    let grain = part.centred.grain;
+    let query = WallQuery { limit: Some(largest), thinnest: false, grain };
+    let found = measure_at_places(&part.centred.mesh, None, &settings, query, job)?;
+    let slack =
+        found.least.map_or(0.0, |l| (l.upper - l.value).max(0.0)) + 4.0 * part.centred.grain;
     let mut out = Vec::new();
     for region in found.worst(largest as f32, 0.0, MOST_OF_A_KIND + 1) {
         out.extend(judged(part, side, limits, &region, slack));
@@ -89,7 +85,9 @@ fn judged(
             let limit = fails.or(below(limits.warn_below))?;
             let lost = below(limits.resolution).is_some();
             let message = if lost {
-                format!("a wall of {value:.3} mm is too narrow to be made at all; thicken it to {limit} mm")
+                format!(
+                    "a wall of {value:.3} mm is too narrow to be made at all; thicken it to {limit} mm"
+                )
             } else {
                 format!("a wall is {value:.3} mm thick; thicken it to {limit} mm")
             };
@@ -122,7 +120,8 @@ fn judged(
     Some(if severe { found } else { found.warning() })
 }
 
-/// Whether a thin region is narrow in the direction across its thickness as well.
+/// Whether a thin region is narrow in every direction: from none of the places around it that have
+/// the same thickness does it extend in two directions.
 fn is_round(part: &PreparedPart, side: MeasuredSide, region: &ThinRegion) -> bool {
     let away = DVec3::from(region.normal.map(f64::from)).normalize_or_zero();
     let thickness = f64::from(region.thickness);
@@ -131,19 +130,27 @@ fn is_round(part: &PreparedPart, side: MeasuredSide, region: &ThinRegion) -> boo
     }
     let middle = DVec3::from(region.position.map(f64::from)) - away * (thickness * 0.5);
     let (u, v) = away.any_orthonormal_pair();
-    let reach = |dir: DVec3| {
-        let ray = Ray::new(middle.as_vec3(), dir.as_vec3());
+    let fan = |i: usize| {
+        let angle = std::f64::consts::PI * i as f64 / FAN as f64;
+        u * angle.portable_cos() + v * angle.portable_sin()
+    };
+    let reach = |from: DVec3, dir: DVec3| {
+        let ray = Ray::new(from.as_vec3(), dir.as_vec3());
         let ahead = |t: u32| {
             let facing = part.normals[t as usize].dot(dir);
             if side == MeasuredSide::Wall { facing > 0.0 } else { facing < 0.0 }
         };
         part.tree().closest_hit(ray, ahead).map_or(f64::INFINITY, |h| f64::from(h.t))
     };
-    (0..FAN).any(|i| {
-        let angle = std::f64::consts::PI * i as f64 / FAN as f64;
-        let dir = u * angle.portable_cos() + v * angle.portable_sin();
-        reach(dir) + reach(-dir) <= ROUND * thickness
-    })
+    let narrow =
+        |from: DVec3, dir: DVec3| reach(from, dir) + reach(from, -dir) <= ROUND * thickness;
+    let extends = |dir: DVec3| {
+        let from = middle + dir * (BESIDE * thickness);
+        reach(middle, dir) >= (BESIDE + 0.5) * thickness
+            && narrow(from, away)
+            && !(0..FAN).any(|i| narrow(from, fan(i)))
+    };
+    !(0..FAN).any(|i| extends(fan(i)) || extends(-fan(i)))
 }
 
 /// How thick a moulded part is, by the largest ball that fits.
@@ -151,28 +158,79 @@ fn is_round(part: &PreparedPart, side: MeasuredSide, region: &ThinRegion) -> boo
 pub struct WallSpread {
     /// The median by area: the nominal wall.
     pub nominal: f64,
-    /// The thickest wall.
+    /// The thickest wall that was found: a ball of this diameter fits.
     pub thickest: f64,
-    /// Where it is, about the part's centre.
+    /// The centre of that ball, about the part's centre.
     pub position: DVec3,
-    /// The greatest error of both.
+    /// The rounding of both.
     pub error: f64,
 }
 
-/// The nominal and the thickest wall of a part; `None` where it has no wall.
-pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>, ThicknessError> {
-    let found = measured(part, ThicknessMethod::Sphere, MeasuredSide::Wall, None, job)?;
-    let summary = found.summary();
-    let (Some(nominal), Some(_)) = (summary.median, summary.max) else { return Ok(None) };
-    let at_sample = found.samples.iter().map(|s| (s.value, s.position));
-    let welded = found.welded_values();
-    let at_vertex = welded.iter().copied().zip(found.surface.positions.iter().copied());
-    let known = at_sample.chain(at_vertex).filter(|(v, _)| v.is_finite());
-    let most = known.max_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(most.map(|(thickest, position)| WallSpread {
-        nominal: f64::from(nominal),
-        thickest: f64::from(thickest),
-        position: position.as_dvec3(),
-        error: f64::from(summary.error_bound),
+/// The nominal and the thickest wall of a part, by the balls that rest on places spread over its
+/// surface; the thickest are moved along the surface to where they are largest. `None` where no
+/// ball is bounded.
+pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>, Cancelled> {
+    let normals: Vec<Vec3> = part.normals.iter().map(|n| n.as_vec3()).collect();
+    let cone = Cone::new(1, 0.0, Weights::Plain);
+    let caster = Caster {
+        tree: part.tree(),
+        face_normals: &normals,
+        corner_normals: &[],
+        sign: 1.0,
+        cone: &cone,
+        outliers: Outliers::Keep,
+        correction: Correction::None,
+        acute: None,
+    };
+    let ball = |p: DVec3, t: u32| {
+        let corners = part.corners(t)?;
+        let site = Site {
+            point: p.as_vec3(),
+            away: normals[t as usize],
+            along: (corners[1] - corners[0]).as_vec3(),
+            own: &[t],
+            clear: f32::INFINITY,
+        };
+        caster.ball(&site).map(|b| f64::from(b.diameter)).filter(|d| d.is_finite())
+    };
+    let points = surface_points(part, BALLS);
+    let found: Vec<Option<f64>> = points
+        .par_iter()
+        .map(|&(p, t)| job.check().map(|()| ball(p, t)))
+        .collect::<Result<_, Cancelled>>()?;
+    let mut balls: Vec<(f64, DVec3, u32)> =
+        points.iter().zip(found).filter_map(|(&(p, t), d)| Some((d?, p, t))).collect();
+    balls.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some(nominal) = balls.get(balls.len() / 2).map(|b| b.0) else { return Ok(None) };
+    let spacing = (part.areas.iter().sum::<f64>() / BALLS as f64).sqrt();
+    let least = spacing * 1e-4;
+    let best: Vec<(f64, DVec3, u32)> = balls
+        .par_iter()
+        .take(CLIMBED)
+        .map(|&(mut d, mut p, mut t)| {
+            let mut step = 2.0 * spacing;
+            while step > least {
+                job.check()?;
+                let (u, v) = part.normals[t as usize].any_orthonormal_pair();
+                let around = (0..8).filter_map(|i| {
+                    let turn = std::f64::consts::FRAC_PI_4 * f64::from(i);
+                    let side = u * turn.portable_cos() + v * turn.portable_sin();
+                    let near = part.tree().nearest(p + side * step, 2.0 * step)?;
+                    Some((ball(near.point, near.triangle)?, near.point, near.triangle))
+                });
+                match around.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|n| n.0 > d) {
+                    Some(better) => (d, p, t) = better,
+                    None => step *= 0.5,
+                }
+            }
+            Ok((d, p, t))
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let most = best.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(most.map(|(thickest, p, t)| WallSpread {
+        nominal,
+        thickest,
+        position: p - part.normals[t as usize] * (thickest * 0.5),
+        error: 8.0 * part.rounding() + thickest * 2e-5,
     }))
 }
