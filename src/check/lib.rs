@@ -33,6 +33,7 @@ pub mod part;
 pub mod placement;
 pub mod plate;
 pub mod preset;
+pub mod report;
 mod run;
 pub mod settings;
 pub mod soundness;

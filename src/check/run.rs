@@ -35,7 +35,7 @@ pub struct RanCheck {
 
 /// What is known of a part. Lengths in millimetres; absent where the process or the mesh has no
 /// such value.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PartFacts {
     /// Enclosed volume, mm3.
     pub volume: Option<f64>,
