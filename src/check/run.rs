@@ -435,7 +435,10 @@ fn layers(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
             };
             let message = format!("a cavity of {:.3} mm3 is enclosed: {what}", v.volume);
             let trapped = Finding::new(FindingKind::TrappedVolume, message);
-            out.push(trapped.at(part.to_file(v.position)).measured(v.volume, limit, "mm3"));
+            let trapped = trapped.at(part.to_file(v.position)).measured(v.volume, limit, "mm3");
+            // Filament leaves air in it, which does no harm.
+            let harmless = p.method == BuildMethod::Layers && p.cup.is_none();
+            out.push(if harmless { trapped.warning() } else { trapped });
         }
     }
     if let Some(limit) = p.cup {
