@@ -20,9 +20,10 @@ use crate::part::PreparedPart;
 const ANGLE_SLACK: f64 = 0.01;
 /// Directions of a hemisphere that are tried.
 const DIRECTIONS: usize = 500;
-/// Points of the surface that each of them is tried with.
+/// Points of the surface that each of them is tried with, and the last of them are.
 const POINTS: usize = 2048;
-/// Directions that are refined, and those that are measured in full.
+const FINE_POINTS: usize = 1 << 14;
+/// Directions that are refined.
 const REFINED: usize = 8;
 /// The least share of the surface of a flat face whose normal is tried.
 const FLAT_SHARE: f64 = 0.01;
@@ -126,12 +127,12 @@ pub struct PartingDirection {
 
 /// The direction with the least undercut, then the least area without draft: among `also`, the
 /// axes, the normals of large flat faces and 500 directions of a hemisphere, the best of which are
-/// refined. The first of `also` wins a tie.
+/// refined. The undercut is measured at points spread over the surface. The first of `also` wins a
+/// tie.
 pub fn best_parting(
     part: &PreparedPart,
     also: &[DVec3],
     draft: f64,
-    cell: f64,
     job: &Job,
 ) -> Result<Option<PartingDirection>, Cancelled> {
     let points = surface_points(part, POINTS);
@@ -140,19 +141,18 @@ pub fn best_parting(
         let low = |t: usize| part.normals[t].dot(d).abs() < least - 1e-4;
         (0..part.triangles()).filter(|&t| low(t)).map(|t| part.areas[t]).sum()
     };
-    let share = |d: &DVec3| {
-        let count =
-            points.iter().filter(|(p, t)| hidden(part, *d, *p, part.normals[*t as usize])).count();
-        (count, *d)
+    let hides = |d: DVec3, points: &[(DVec3, u32)]| {
+        let hidden = |(p, t): &&(DVec3, u32)| hidden(part, d, *p, part.normals[*t as usize]);
+        points.iter().filter(hidden).count()
     };
     let rate = |tried: Vec<DVec3>| -> Result<Vec<(usize, DVec3)>, Cancelled> {
-        tried.par_iter().map(|d| job.check().map(|()| share(d))).collect()
+        tried.par_iter().map(|&d| job.check().map(|()| (hides(d, &points), d))).collect()
     };
     let mut fixed: Vec<DVec3> = also.to_vec();
     fixed.extend([DVec3::Z, DVec3::X, DVec3::Y]);
     let flat = large_faces(&part.centred.mesh, FLAT_SHARE);
     fixed.extend(flat.iter().map(|f| f.normal).take(REFINED * 2));
-    let mut rated = rate(fixed.iter().copied().chain(spread_directions(DIRECTIONS)).collect())?;
+    let mut rated = rate(spread_directions(DIRECTIONS))?;
     rated.sort_by_key(|r| r.0);
     rated.truncate(REFINED);
     let mut step = 6f64.to_radians();
@@ -163,22 +163,27 @@ pub fn best_parting(
         rated.truncate(REFINED);
         step *= 0.4;
     }
-    let best = rated.iter().map(|r| r.1);
-    let mut out: Vec<PartingDirection> = Vec::new();
-    for d in fixed.iter().copied().chain(best) {
-        if out.iter().any(|o| o.direction.dot(d).abs() > 1.0 - 1e-9) {
-            continue;
+    let mut last: Vec<DVec3> = Vec::new();
+    for d in fixed.into_iter().chain(rated.iter().map(|r| r.1)) {
+        if last.iter().all(|o| o.dot(d).abs() < 1.0 - 1e-9) {
+            last.push(d);
         }
-        let mut undercut = CellSum::default();
-        undercuts(part, d, cell, job)?.iter().for_each(|u| undercut.add(&u.hidden));
-        out.push(PartingDirection { direction: d, undercut, low_draft: low_draft(d) });
     }
-    // A direction is better only by more than its cells can tell apart.
-    let grain = cell;
-    let key = |p: &PartingDirection| ((p.undercut.total / grain).round(), p.low_draft);
-    Ok(out.into_iter().min_by(|a, b| {
-        let ((a, x), (b, y)) = (key(a), key(b));
-        a.total_cmp(&b).then(x.total_cmp(&y))
+    let fine = surface_points(part, FINE_POINTS);
+    let each = part.areas.iter().sum::<f64>() / FINE_POINTS as f64;
+    let measured: Vec<PartingDirection> = last
+        .par_iter()
+        .map(|&direction| {
+            job.check()?;
+            let count = hides(direction, &fine) as f64;
+            let share = count / FINE_POINTS as f64;
+            let variance = count * (1.0 - share) * each * each;
+            let undercut = CellSum { total: count * each, variance };
+            Ok(PartingDirection { direction, undercut, low_draft: low_draft(direction) })
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    Ok(measured.into_iter().min_by(|a, b| {
+        a.undercut.total.total_cmp(&b.undercut.total).then(a.low_draft.total_cmp(&b.low_draft))
     }))
 }
 

@@ -1,10 +1,12 @@
 //! All checks of one part, and the answer.
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::projected_area;
-use sculptd_geometry::thickness::{MeasuredSide, ThicknessError};
+use sculptd_geometry::thickness::{MeasuredSide, WeldedSurface};
 use serde::Serialize;
 
 use crate::columns::{CELLS, cell_area};
@@ -20,7 +22,7 @@ use crate::preset::BuildMethod;
 use crate::settings::CheckSettings;
 use crate::soundness::soundness;
 use crate::sweep::sweep;
-use crate::walls::{WallLimits, thin_places, wall_spread};
+use crate::walls::{WallLimits, thin_places, wall_spread, welded};
 
 /// A check of the process, and whether it ran.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -143,15 +145,6 @@ impl From<Cancelled> for Stopped {
     }
 }
 
-impl From<ThicknessError> for Stopped {
-    fn from(e: ThicknessError) -> Stopped {
-        match e {
-            ThicknessError::Cancelled(_) => Stopped::Cancelled,
-            e => Stopped::Because(e.to_string()),
-        }
-    }
-}
-
 /// Checks one part. `scale` is millimetres a unit of the file; `seconds` reads a clock that the
 /// caller started.
 ///
@@ -194,7 +187,8 @@ pub fn check_part(
         }
         Ok((part, stand)) => {
             general(&part, &stand, settings, &mut facts);
-            let view = CheckView { part: &part, stand: &stand, settings, job };
+            let welded = OnceLock::new();
+            let view = CheckView { part: &part, stand: &stand, settings, job, welded };
             let one = |check: &AskedCheck| {
                 let from = seconds();
                 let done = (check.2)(&view);
@@ -263,6 +257,14 @@ struct CheckView<'a> {
     stand: &'a Standing,
     settings: &'a CheckSettings,
     job: &'a Job,
+    welded: OnceLock<WeldedSurface>,
+}
+
+impl CheckView<'_> {
+    /// The surface for the search for thin walls, made by the first check that needs it.
+    fn surface(&self) -> &WeldedSurface {
+        self.welded.get_or_init(|| welded(self.part))
+    }
 }
 
 /// A check's name, its name in a sentence, and what it does.
@@ -357,7 +359,8 @@ fn walls(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         round: p.pin,
         resolution: p.resolution,
     };
-    Ok((thin_places(c.part, MeasuredSide::Wall, &limits, c.job)?, PartFacts::default()))
+    let found = thin_places(c.part, c.surface(), MeasuredSide::Wall, &limits, c.job)?;
+    Ok((found, PartFacts::default()))
 }
 
 fn gaps(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
@@ -368,7 +371,8 @@ fn gaps(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         round: p.hole.or(p.gap),
         resolution: p.resolution.filter(|_| p.gap.is_some()),
     };
-    Ok((thin_places(c.part, MeasuredSide::Gap, &limits, c.job)?, PartFacts::default()))
+    let found = thin_places(c.part, c.surface(), MeasuredSide::Gap, &limits, c.job)?;
+    Ok((found, PartFacts::default()))
 }
 
 fn thick_sections(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
@@ -578,8 +582,7 @@ fn mould(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
     let mut facts = PartFacts::default();
     if let Some(limit) = p.undercut {
         let draft = p.draft.unwrap_or(0.0);
-        let coarse = cell_area(part, CELLS / 8.0);
-        let best = best_parting(part, &[pull], draft, coarse, c.job)?;
+        let best = best_parting(part, &[pull], draft, c.job)?;
         let regions = undercuts(part, pull, cell, c.job)?;
         let total: f64 = regions.iter().map(|r| r.hidden.total).sum();
         facts.undercut_area = Some(total);
@@ -587,7 +590,7 @@ fn mould(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         if let Some(b) = best {
             facts.parting_direction = Some(b.direction.to_array());
             facts.parting_undercut = Some(b.undercut.total);
-            if b.undercut.total < total * 0.99 - limit {
+            if b.undercut.total + 3.0 * b.undercut.error() < total - limit {
                 let d = b.direction;
                 better = format!(
                     ", or part the mould along ({:.3}, {:.3}, {:.3}), where {:.1} mm2 are left",

@@ -9,8 +9,8 @@ use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::thickness::ray::{Caster, Site};
 use sculptd_geometry::thickness::worst::ThinRegion;
 use sculptd_geometry::thickness::{
-    Cone, Correction, MeasuredSide, Outliers, ThicknessError, ThicknessSettings, WallQuery,
-    Weights, measure_at_places,
+    Cone, Correction, MeasuredSide, Outliers, ThicknessSettings, Weights, WeldedSurface,
+    walls_below,
 };
 
 use crate::columns::surface_points;
@@ -47,22 +47,25 @@ impl WallLimits {
     }
 }
 
+/// The surface of a part as the search for thin walls needs it.
+pub fn welded(part: &PreparedPart) -> WeldedSurface {
+    WeldedSurface::new(&part.centred.mesh, ThicknessSettings::default().crease.to_radians())
+}
+
 /// The walls (or the gaps) below the limits, the thinnest first.
 pub fn thin_places(
     part: &PreparedPart,
+    surface: &WeldedSurface,
     side: MeasuredSide,
     limits: &WallLimits,
     job: &Job,
-) -> Result<Vec<Finding>, ThicknessError> {
+) -> Result<Vec<Finding>, Cancelled> {
     let Some(largest) = limits.largest() else { return Ok(Vec::new()) };
-    let settings = ThicknessSettings { side, ..ThicknessSettings::default() };
     let grain = part.centred.grain;
-    let query = WallQuery { limit: Some(largest), thinnest: false, grain };
-    let found = measure_at_places(&part.centred.mesh, None, &settings, query, job)?;
-    let slack =
-        found.least.map_or(0.0, |l| (l.upper - l.value).max(0.0)) + 4.0 * part.centred.grain;
+    let found = walls_below(surface, part.tree(), side, largest, grain, job)?;
+    let slack = 4.0 * (grain + part.rounding());
     let mut out = Vec::new();
-    for region in found.worst(largest as f32, 0.0, MOST_OF_A_KIND + 1) {
+    for region in found.regions(0.0, MOST_OF_A_KIND + 1) {
         out.extend(judged(part, side, limits, &region, slack));
     }
     Ok(out)
