@@ -140,7 +140,7 @@ impl Finding {
 
     /// Creates the finding that `check` could not run, and why.
     pub fn not_checked(check: &str, why: &str) -> Finding {
-        Finding::new(FindingKind::NotChecked, format!("{check} was not checked: {why}"))
+        Finding::new(FindingKind::NotChecked, format!("not checked: {check}, because {why}"))
     }
 
     /// Sets the place.

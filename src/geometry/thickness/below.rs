@@ -4,7 +4,8 @@
 use super::MeasuredSide;
 use super::ThinFacets;
 use super::least::Solid;
-use super::measuring::{facets_in_order, single};
+use super::measuring::single;
+use super::opposed::may_be_thin;
 use super::sharp_edges::AcuteEdges;
 use super::surface::WeldedSurface;
 use crate::bvh::Bvh8;
@@ -47,7 +48,7 @@ pub fn walls_below(
     let edges = AcuteEdges::new(surface, &tilts, sign);
     let solid =
         Solid { tree, surface, sign, grain, edges: &edges, tilts: &tilts, opposed_only: false };
-    let order = facets_in_order(surface, tree);
+    let order = may_be_thin(surface, tree, sign, limit, job)?;
     let facets = solid.thin(&order, limit - solid.tolerance(), job)?;
     Ok(ThinFacets { limit, facets })
 }

@@ -233,7 +233,7 @@ pub fn measure_prepared(
 }
 
 /// The triangles that are kept, near ones one after the other.
-pub(super) fn facets_in_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
+fn facets_in_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
     let mut seen = vec![false; surface.triangles.len()];
     let once = |t: &u32| {
         seen.get_mut(*t as usize).is_some_and(|seen| !std::mem::replace(seen, true))

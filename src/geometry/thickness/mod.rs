@@ -22,6 +22,7 @@ mod edges;
 mod known_walls;
 pub mod least;
 mod measuring;
+mod opposed;
 pub mod overlap;
 pub mod preset;
 pub mod probe;
