@@ -206,3 +206,79 @@ fn a_batch_is_resumed_and_its_shards_make_one_table() {
     assert!(folder.path().join("shards/index.html").is_file());
     assert_eq!(check(&["--merge", "--out", &out("nothing")]).status.code(), Some(6));
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_batch_that_is_killed_and_started_again_gives_the_same_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let parts = folder.path().join("parts");
+    std::fs::create_dir(&parts).expect("made");
+    for i in 0..100u32 {
+        let mesh = torus(9.0 + f64::from(i % 7), 2.0, 96, 48);
+        put(&parts, &format!("ring{i}.stl"), &mesh);
+    }
+    let from = parts.to_string_lossy().into_owned();
+    let out = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let rows = |name: &str| {
+        let entries = std::fs::read_dir(folder.path().join(name)).into_iter().flatten().flatten();
+        let names = entries.map(|e| e.file_name().to_string_lossy().into_owned());
+        names.filter(|n| n.ends_with(".row.json")).count()
+    };
+    for wanted in [5, 30, 60] {
+        let mut running = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+            .args(["check", &from, "--out", &out("killed")])
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .expect("the binary starts");
+        crate::waiting::until("rows", || {
+            rows("killed") >= wanted || running.try_wait().is_ok_and(|e| e.is_some())
+        });
+        let _ = running.kill();
+        running.wait().expect("it ended");
+    }
+    let (_, said) = json(&[&from, "--out", &out("killed")]);
+    assert!(said["reused"].as_u64().expect("a count") >= 60, "{said}");
+    json(&[&from, "--out", &out("whole")]);
+    let table = |name: &str| {
+        let path = folder.path().join(name).join("results.csv");
+        std::fs::read_to_string(path).expect("a table")
+    };
+    assert_eq!(table("killed"), table("whole"));
+    assert_eq!(table("whole").lines().count(), 101);
+
+    // The example for a cluster: each task of the array takes its share.
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/config/batch/slurm.sh");
+    for task in ["4", "5", "6"] {
+        let ran = Command::new("bash")
+            .args([script, &from, &out("array"), "--process", "fdm"])
+            .env("SCULPTD", env!("CARGO_BIN_EXE_sculptd"))
+            .env("SLURM_ARRAY_TASK_ID", task)
+            .env("SLURM_ARRAY_TASK_MIN", "4")
+            .env("SLURM_ARRAY_TASK_COUNT", "3")
+            .env("SLURM_CPUS_PER_TASK", "2")
+            .output()
+            .expect("bash starts");
+        assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    }
+    json(&["--merge", "--out", &out("array")]);
+    assert_eq!(table("array"), table("whole"));
+    // The command of the indexed job, as its shell runs it.
+    let job = include_str!("../../config/batch/kubernetes.yaml");
+    let lines = job.lines().skip_while(|l| !l.contains("sculptd check /parts")).take(2);
+    let command: Vec<&str> = lines.map(str::trim).collect();
+    let command = command.join(" ").replace("/parts", &from).replace("/out", &out("pods"));
+    let command =
+        command.replace("sculptd check", &format!("{} check", env!("CARGO_BIN_EXE_sculptd")));
+    for index in ["0", "1"] {
+        let ran = Command::new("sh")
+            .args(["-c", &command])
+            .env("JOB_COMPLETION_INDEX", index)
+            .env("SHARDS", "2")
+            .output()
+            .expect("sh starts");
+        assert!(ran.status.success(), "{command}: {}", String::from_utf8_lossy(&ran.stderr));
+    }
+    json(&["--merge", "--out", &out("pods")]);
+    assert_eq!(table("pods"), table("whole"));
+}
