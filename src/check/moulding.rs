@@ -13,8 +13,8 @@ use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::projection::spread_directions;
 
 use crate::columns::{CellSum, over_cells, surface_points};
-use crate::overhangs::{FaceRegion, connected};
 use crate::part::PreparedPart;
+use crate::regions::{FaceRegion, connected};
 
 /// Angles that differ by less, degrees, are one.
 const ANGLE_SLACK: f64 = 0.01;

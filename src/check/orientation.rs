@@ -14,13 +14,13 @@ use sculptd_geometry::projection::spread_directions;
 use serde::Serialize;
 
 use crate::columns::{CELLS, CellSum, cell_area, column, point_in, support_columns};
+use crate::layers::overhangs::overhang_faces;
+use crate::layers::placement::{covers, first_layer, tip_angle};
+use crate::layers::plate::PlateContact;
+use crate::layers::sweep::sweep;
 use crate::moulding::ring;
-use crate::overhangs::overhang_faces;
 use crate::part::{PreparedPart, Standing};
-use crate::placement::{covers, first_layer, tip_angle};
-use crate::plate::PlateContact;
 use crate::settings::CheckSettings;
-use crate::sweep::sweep;
 
 /// Directions of a hemisphere that are tried; the opposite ones are tried as well.
 const DIRECTIONS: usize = 512;
@@ -32,6 +32,8 @@ const REFINED: usize = 10;
 const FLAT_FACES: usize = 12;
 /// The least share of the surface of such a face.
 const FLAT_SHARE: f64 = 0.005;
+/// Directions within this angle, degrees, of a better one are not listed.
+const NEAR: f64 = 3.0;
 /// The number of orientations in an answer.
 const LISTED: usize = 12;
 
@@ -125,6 +127,18 @@ pub fn orientations(
         found.extend(measured(part, settings, d, job)?);
     }
     found.sort_by(|a, b| compare(a, b, grain));
+    // Of directions that are nearly one, the best is listed.
+    let mut listed: Vec<Orientation> = Vec::new();
+    for o in found {
+        let near = |l: &Orientation| {
+            DVec3::from(l.direction).dot(DVec3::from(o.direction))
+                > NEAR.to_radians().portable_cos()
+        };
+        if !listed.iter().any(near) {
+            listed.push(o);
+        }
+    }
+    let mut found = listed;
     found.truncate(LISTED);
     let reasons = found.first().map_or(Vec::new(), |best| reasons(best, &as_it_is, grain));
     Ok(Some(OrientationSearch { orientations: found, as_it_is, reasons, tried }))
@@ -158,20 +172,26 @@ fn reasons(best: &Orientation, now: &Orientation, grain: f64) -> Vec<String> {
     if compare(best, now, grain).is_ge() {
         return out;
     }
+    let mut price = Vec::new();
+    let mut say = |what: &str, new: f64, old: f64, digits: usize, unit: &str| {
+        let (a, b) = (format!("{new:.digits$}"), format!("{old:.digits$}"));
+        let gained = if what == "first layer" { new > old } else { new < old };
+        if a != b {
+            let text = format!("{what} {a} instead of {b}{unit}");
+            if gained { out.push(text) } else { price.push(text) }
+        }
+    };
+    say("support volume", best.support_volume, now.support_volume, 1, " mm3");
+    say("overhang area", best.overhang_area, now.overhang_area, 1, " mm2");
+    say("islands", best.islands as f64, now.islands as f64, 0, "");
+    say("height", best.height, now.height, 1, " mm");
+    say("first layer", best.contact_area, now.contact_area, 1, " mm2");
     if best.stands && !now.stands {
         out.push("the part stands on its first layer".into());
     }
-    let mut say = |what: &str, better: f64, worse: f64, unit: &str| {
-        let (a, b) = (format!("{better:.1}"), format!("{worse:.1}"));
-        if better != worse && a != b {
-            out.push(format!("{what} {a} instead of {b}{unit}"));
-        }
-    };
-    say("support volume", best.support_volume, now.support_volume, " mm3");
-    say("overhang area", best.overhang_area, now.overhang_area, " mm2");
-    say("islands", best.islands as f64, now.islands as f64, "");
-    say("height", best.height, now.height, " mm");
-    say("first layer", best.contact_area, now.contact_area, " mm2");
+    if !price.is_empty() {
+        out.push(format!("at the price of {}", price.join(" and ")));
+    }
     out
 }
 

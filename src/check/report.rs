@@ -8,13 +8,13 @@ use sculptd_geometry::TriMesh;
 use sculptd_geometry::picture::{Camera, draw};
 use sculptd_geometry::thickness::report::{ReportOrigin, escape, figure, head};
 
+use crate::answer::{CheckAnswer, CheckedSolid};
 use crate::finding::{Finding, Severity};
+use crate::layers::overhangs::overhang_angle;
 use crate::moulding::draft_angle;
 use crate::orientation::turn_upright;
-use crate::overhangs::overhang_angle;
 use crate::part::PreparedPart;
 use crate::preset::BuildMethod;
-use crate::run::{CheckAnswer, CheckedSolid};
 use crate::settings::CheckSettings;
 
 /// Findings that are shown with a picture.
@@ -142,10 +142,15 @@ fn views(
     Ok(())
 }
 
+/// Text of the answer as a page writes it.
+fn written(text: &str) -> String {
+    escape(&text.replace("mm2", "mm²").replace("mm3", "mm³"))
+}
+
 /// A number with its unit.
 fn number(value: Option<f64>, unit: &str) -> String {
-    let unit = unit.replace("mm2", "mm²").replace("mm3", "mm³").replace("degrees", "°");
-    value.map_or("–".into(), |v| format!("{v:.3} {}", escape(&unit)))
+    let unit = unit.replace("degrees", "°");
+    value.map_or("–".into(), |v| format!("{v:.3} {}", written(&unit)))
 }
 
 fn findings(
@@ -174,7 +179,7 @@ fn findings(
             f.kind.name(),
             number(f.value, f.unit),
             number(f.limit, f.unit),
-            escape(&f.message)
+            written(&f.message)
         );
         if let (Some(part), true) = (part, i < PICTURES) {
             close_up(out, part, f, i + 1)?;
@@ -245,7 +250,7 @@ fn orientations(out: &mut String, a: &CheckAnswer) {
     if a.reasons.is_empty() {
         out.push_str("<p>No direction is better than the part as it is.</p>");
     } else {
-        let _ = write!(out, "<p>The first is better: {}.</p>", escape(&a.reasons.join("; ")));
+        let _ = write!(out, "<p>The first is better: {}.</p>", written(&a.reasons.join("; ")));
     }
     out.push_str(
         "<table><thead><tr><th scope=col>Build direction<th scope=col class=n>Support, mm³<th \
@@ -281,7 +286,8 @@ fn method(
         out,
         "</tbody></table><p>Build or pull direction: {x:.4}, {y:.4}, {z:.4}. A tie with a limit \
          passes. The area without draft, overhangs, cups and cavities are exact up to rounding; \
-         support and undercuts are sampled, with a stated deviation. Cooling time: t = s² / (π² a) \
+         support and undercuts are sampled, with a stated deviation. Cooling time: t = s² / (π² \
+         a) \
          · ln(4/π · (Tm − Tw) / (Te − Tw)).</p><p>Limits: {}. Material: {}, {}.</p>\
          <table><tbody><tr><th scope=row>File<td>{}<tr><th scope=row>Size<td>{} bytes<tr><th \
          scope=row>Hash (FNV-1a, 64 bits)<td><code>{:016x}</code><tr><th \

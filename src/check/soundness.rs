@@ -103,7 +103,8 @@ pub fn soundness<'a>(
     if let Some(&(first, _)) = crossed.first() {
         let place = middle(&solid, &triangles[first as usize]) * scale;
         let message = format!(
-            "{} pairs of triangles cross; unite the part with sculptd boolean union --solve winding",
+            "{} pairs of triangles cross; unite the part with sculptd boolean union --solve \
+             winding",
             crossed.len()
         );
         let found = Finding::new(FindingKind::SelfIntersection, message).at(place);

@@ -89,7 +89,8 @@ fn judged(
             let lost = below(limits.resolution).is_some();
             let message = if lost {
                 format!(
-                    "a wall of {value:.3} mm is too narrow to be made at all; thicken it to {limit} mm"
+                    "a wall of {value:.3} mm is too narrow to be made at all; thicken it to \
+                     {limit} mm"
                 )
             } else {
                 format!("a wall is {value:.3} mm thick; thicken it to {limit} mm")

@@ -6,7 +6,7 @@ use common::*;
 use glam::{DQuat, DVec3};
 use sculptd_check::FindingKind::{Bridge, Overhang};
 use sculptd_check::columns::{CELLS, cell_area};
-use sculptd_check::overhangs::{overhang_faces, overhangs};
+use sculptd_check::layers::overhangs::{overhang_faces, overhangs};
 use sculptd_check::part::PreparedPart;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::Job;

@@ -9,8 +9,8 @@
 //! that is never joined to the outside is enclosed, or sealed by the plate.
 //!
 //! Pieces of the surface that are not joined can border the same void: a ball that floats in a
-//! bowl. So where a contour begins, a ray straight down finds the surface or the region of the plate
-//! that borders the same void.
+//! bowl. So where a contour begins, a ray straight down finds the surface or the region of the
+//! plate that borders the same void.
 //!
 //! Heights, volumes and areas are exact up to the rounding of the vertices.
 
@@ -20,8 +20,9 @@ use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::distance::topology::NO_PARTNER;
 use sculptd_geometry::job::{Cancelled, Job};
 
+use super::plate::{OUTSIDE, PlateContact};
+use super::voids::{NONE, Voids, measured};
 use crate::part::{PreparedPart, Standing};
-use crate::plate::{OUTSIDE, PlateContact};
 
 /// A contour that begins with nothing below it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,65 +59,6 @@ pub struct SweepResult {
     pub cups: Vec<SealedVoid>,
     /// Voids that never open; the largest first.
     pub trapped: Vec<SealedVoid>,
-}
-
-/// What is known of a void: the members of its set, and the lowest of them.
-struct Voids {
-    sets: DisjointSets,
-    next: Vec<u32>,
-    tail: Vec<u32>,
-    low: Vec<f64>,
-    /// The cup of each node, or none.
-    cup: Vec<u32>,
-    /// The height at which each cup opened, and its first member.
-    opened: Vec<Option<f64>>,
-    slack: f64,
-}
-
-const NONE: u32 = u32::MAX;
-
-impl Voids {
-    fn new(nodes: usize, slack: f64) -> Voids {
-        Voids {
-            sets: DisjointSets::new(nodes),
-            next: vec![NONE; nodes],
-            tail: (0..nodes as u32).collect(),
-            low: vec![f64::INFINITY; nodes],
-            cup: vec![NONE; nodes],
-            opened: Vec::new(),
-            slack,
-        }
-    }
-
-    /// Makes one void of those of `a` and `b`, at this height.
-    fn join(&mut self, a: u32, b: u32, height: f64) {
-        let (a, b) = (self.sets.root(a), self.sets.root(b));
-        if a == b {
-            return;
-        }
-        let (keep, gone) = (a.min(b), a.max(b));
-        if keep == OUTSIDE {
-            if height - self.low[gone as usize] > self.slack {
-                self.close(gone, Some(height));
-            }
-        } else {
-            self.next[self.tail[keep as usize] as usize] = gone;
-            self.tail[keep as usize] = self.tail[gone as usize];
-            self.low[keep as usize] = self.low[keep as usize].min(self.low[gone as usize]);
-        }
-        self.sets.join(a, b);
-    }
-
-    /// Names all members of the void of `root` as one cup.
-    fn close(&mut self, root: u32, opens: Option<f64>) {
-        let number = self.opened.len() as u32;
-        self.opened.push(opens);
-        let mut at = root;
-        while at != NONE {
-            self.cup[at as usize] = number;
-            at = self.next[at as usize];
-        }
-    }
 }
 
 /// A piece of the surface below the sweep's height.
@@ -396,72 +338,4 @@ impl FlatBottoms {
             }
         }
     }
-}
-
-/// Volume and first moment.
-#[derive(Clone, Copy, Default)]
-struct VoidSum {
-    volume: f64,
-    moment: DVec3,
-}
-
-/// The volume of each cup up to the height at which it opens, by the divergence theorem: the sum
-/// over its surface of the depth below that height, times the surface's area in the plan.
-fn measured(
-    part: &PreparedPart,
-    stand: &Standing,
-    voids: &Voids,
-    node: impl Fn(u32) -> u32,
-    contact: &PlateContact,
-) -> Vec<VoidSum> {
-    let mut sums = vec![VoidSum::default(); voids.opened.len()];
-    if sums.is_empty() {
-        return sums;
-    }
-    let names = &part.topology().triangles;
-    for t in 0..names.len() as u32 {
-        let Some(corners) = part.corners(t) else { continue };
-        let cup = voids.cup[node(t) as usize];
-        if cup == NONE || contact.triangles[t as usize] {
-            continue;
-        }
-        let rise = part.normals[t as usize].dot(stand.up);
-        let open = voids.opened[cup as usize];
-        let level = open.unwrap_or(stand.plate);
-        let height = |p: DVec3| p.dot(stand.up);
-        let mut polygon: Vec<DVec3> = corners.to_vec();
-        if open.is_some() {
-            polygon = below_level(&polygon, level, stand.up);
-        }
-        let sum = &mut sums[cup as usize];
-        for i in 1..polygon.len().saturating_sub(1) {
-            let [a, b, c] = [polygon[0], polygon[i], polygon[i + 1]];
-            let plan = (b - a).cross(c - a).length() * 0.5 * rise;
-            // Exact for polynomials of degree two: the middles of the sides.
-            for m in [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5] {
-                let (z, weight) = (height(m), plan / 3.0);
-                sum.volume += (level - z) * weight;
-                let across = m - stand.up * z;
-                let up = (level * level - z * z) * 0.5;
-                sum.moment += (across * (level - z) + stand.up * up) * weight;
-            }
-        }
-    }
-    sums
-}
-
-/// The part of a convex polygon below a height.
-fn below_level(polygon: &[DVec3], level: f64, up: DVec3) -> Vec<DVec3> {
-    let mut out = Vec::with_capacity(polygon.len() + 1);
-    for i in 0..polygon.len() {
-        let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-        let (h, k) = (a.dot(up) - level, b.dot(up) - level);
-        if h <= 0.0 {
-            out.push(a);
-        }
-        if (h < 0.0 && k > 0.0) || (h > 0.0 && k < 0.0) {
-            out.push(a + (b - a) * (h / (h - k)));
-        }
-    }
-    out
 }
