@@ -1,5 +1,6 @@
 //! All checks of one part, one after the other or beside each other.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use sculptd_geometry::PolyMesh;
@@ -30,7 +31,13 @@ pub fn check_part(
     seconds: impl Fn() -> f64 + Sync,
 ) -> Result<CheckedSolid, Cancelled> {
     let began = seconds();
-    let sound = soundness(mesh, scale, settings.process.sliver, job)?;
+    // Nearly every mesh is a solid as it is: it is made ready while that is found out.
+    let finite = mesh.positions.iter().all(|p| p.is_finite());
+    let (sound, early) = rayon::join(
+        || soundness(mesh, scale, settings.process.sliver, job),
+        || finite.then(|| PreparedPart::new(mesh, scale, job)).transpose(),
+    );
+    let (sound, early) = (sound?, early?);
     let mut findings = sound.findings;
     let mut warnings = sound.warnings;
     let mut checks = vec![RanCheck { name: "mesh", ran: true, seconds: seconds() - began }];
@@ -40,7 +47,10 @@ pub fn check_part(
     let mut kept = None;
     let ready = match &sound.solid {
         Ok(solid) => {
-            let part = PreparedPart::new(solid, scale, job)?;
+            let part = match (solid, early) {
+                (Cow::Borrowed(_), Some(part)) => part,
+                _ => PreparedPart::new(solid, scale, job)?,
+            };
             let stand = part.standing(settings.up, settings.layer());
             let whole = part.within_reach();
             let found = stand.map(|s| (part, s)).filter(|_| whole);
