@@ -13,12 +13,12 @@ pub struct RanCheck {
     pub name: &'static str,
     /// False if it could not run: then a finding says why.
     pub ran: bool,
-    /// How long it took.
+    /// The duration, seconds.
     pub seconds: f64,
 }
 
-/// What is known of a part. Lengths in millimetres; absent where the process or the mesh has no
-/// such value.
+/// The facts of a part. Lengths in millimetres; absent where the process or the mesh has no such
+/// value.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PartFacts {
     /// Enclosed volume, mm3.
@@ -66,7 +66,7 @@ pub struct PartFacts {
 /// The answer of `sculptd check --json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct CheckAnswer {
-    /// Whether every check that the process asks for ran, and none found an error.
+    /// True if every check of the process ran, and none found an error.
     pub ok: bool,
     /// The name of the file as it was given.
     pub file: String,
@@ -84,18 +84,18 @@ pub struct CheckAnswer {
     pub orientations: Vec<Orientation>,
     /// Why the first orientation is better than the part as it is.
     pub reasons: Vec<String>,
-    /// What is known of the part, flattened into this object in JSON.
+    /// The facts of the part, flattened into this object in JSON.
     #[serde(flatten)]
     pub facts: PartFacts,
     /// The checks that the process asks for.
     pub checks: Vec<RanCheck>,
     /// Sentences on the file and on what was done to check it.
     pub warnings: Vec<String>,
-    /// How long it took.
+    /// The duration, seconds.
     pub seconds: f64,
 }
 
-/// What is asked besides the limits.
+/// The work asked for besides the checks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CheckRequest {
     /// Search for the best orientation.

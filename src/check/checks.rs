@@ -36,7 +36,7 @@ impl From<Cancelled> for Stopped {
     }
 }
 
-/// What a check looks at.
+/// The input of a check.
 pub(crate) struct CheckView<'a> {
     pub part: &'a PreparedPart,
     pub stand: &'a Standing,

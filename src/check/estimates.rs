@@ -19,8 +19,8 @@ pub fn build_time(volume: f64, layers: usize, process: &ProcessPreset) -> Option
 /// ejection: t = s2 / (pi2 a) ln(4/pi (Tm - Tw) / (Te - Tw)), with the wall s, the effective
 /// thermal diffusivity a, and the temperatures of the melt, the mould's wall and ejection (Ballman
 /// and Shusman, "Easy way to calculate injection molding setup time", Modern Plastics, 1959;
-/// Menges, Michaeli and Mohren, "How to Make Injection Molds", 2001). `None` where the material does not
-/// state its constants.
+/// Menges, Michaeli and Mohren, "How to Make Injection Molds", 2001). `None` where the material
+/// does not state its constants.
 pub fn cooling_time(thickest: f64, material: &MaterialPreset) -> Option<f64> {
     let (a, melt) = (material.diffusivity?, material.melt?);
     let (wall, eject) = (material.mould?, material.eject?);

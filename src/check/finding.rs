@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// What a finding is about.
+/// The subject of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FindingKind {
@@ -89,7 +89,7 @@ impl FindingKind {
     }
 }
 
-/// How bad a finding is.
+/// The weight of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
@@ -102,11 +102,11 @@ pub enum Severity {
 /// A finding. Lengths are in millimetres, positions in the file's coordinates in millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What it is about.
+    /// The subject.
     pub kind: FindingKind,
-    /// How bad it is.
+    /// The weight.
     pub severity: Severity,
-    /// Where it is; `None` where it is of the whole part.
+    /// The place; `None` for a finding of the whole part.
     pub position: Option<[f64; 3]>,
     /// The measured value.
     pub value: Option<f64>,

@@ -1,6 +1,6 @@
 //! What a mould asks of a part: draft, undercuts and the direction in which it parts.
 //!
-//! A face is released by the half of the mould on its own side, if the way from it along the pull
+//! A face is released by the half of the mould on its side, if the way from it along the pull
 //! direction is free; a face along the pull direction, by either half. The area that neither half
 //! releases is an undercut. Draft is exact; undercuts are measured by a ray from each cell of each
 //! face ([`crate::columns`]).
@@ -71,7 +71,7 @@ pub fn draft_regions(part: &PreparedPart, pull: DVec3, limit: f64) -> Vec<DraftR
         .collect()
 }
 
-/// Whether a point of a face is hidden from both halves.
+/// Returns true if a point of a face is hidden from both halves.
 fn hidden(part: &PreparedPart, pull: DVec3, p: DVec3, normal: DVec3) -> bool {
     let step = 16.0 * part.rounding();
     let (from, rise) = (p + normal * step, normal.dot(pull));

@@ -54,7 +54,7 @@ pub struct Orientation {
     pub height: f64,
     /// The area of the first layer, mm2.
     pub contact_area: f64,
-    /// Whether the first layer is large enough, and the part does not fall from it.
+    /// True if the first layer is large enough, and the part does not fall from it.
     pub stands: bool,
 }
 

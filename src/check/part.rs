@@ -32,7 +32,7 @@ pub struct PreparedPart {
     pub sizes: Measures,
 }
 
-/// How a part stands: its build direction and the plate under it.
+/// The build direction of a part and the plate under it.
 #[derive(Debug, Clone)]
 pub struct Standing {
     /// The build direction, of unit length.
@@ -127,13 +127,13 @@ impl PreparedPart {
         self.tree().closest_hit(ray, against).map(|h| (f64::from(h.t), h.triangle))
     }
 
-    /// Whether a face that looks against the ray blocks it from `least` on.
+    /// Returns true if a face that looks against the ray blocks it from `least` on.
     pub fn blocked(&self, from: DVec3, along: DVec3, least: f64) -> bool {
         let ray = Ray { t_min: least as f32, ..Ray::new(from.as_vec3(), along.as_vec3()) };
         self.tree().closest_hit(ray, |t| self.normals[t as usize].dot(along) < 0.0).is_some()
     }
 
-    /// Whether all triangles are small and near enough for the tree, and some have an area.
+    /// Returns true if all triangles are near enough for the tree, and some have an area.
     pub fn within_reach(&self) -> bool {
         let near = |p: &DVec3| p.abs().max_element() < REACH;
         self.places.iter().all(near) && self.areas.iter().any(|a| *a > 0.0)
@@ -172,7 +172,7 @@ impl PreparedPart {
 }
 
 impl Standing {
-    /// Whether all corners of a triangle are on the plate.
+    /// Returns true if all corners of a triangle are on the plate.
     pub fn on_plate(&self, corners: &[u32; 3]) -> bool {
         corners.iter().all(|&v| self.heights[v as usize] <= self.plate + self.slack)
     }

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How a process makes a part.
+/// The way in which a process makes a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BuildMethod {
@@ -27,7 +27,7 @@ pub struct ProcessPreset {
     pub name: String,
     /// The displayed name.
     pub title: String,
-    /// How the part is made.
+    /// The way in which the part is made.
     pub method: BuildMethod,
     /// The thickness preset with the limits of walls.
     pub walls: Option<String>,
@@ -49,7 +49,7 @@ pub struct ProcessPreset {
     pub overhang_area: Option<f64>,
     /// The longest span of a flat ceiling between two supports.
     pub bridge: Option<f64>,
-    /// Whether a contour may begin at a layer without anything below it.
+    /// True to report contours that begin with nothing below them.
     #[serde(default)]
     pub islands: bool,
     /// The largest enclosed volume, mm3.

@@ -15,10 +15,10 @@ use sculptd_geometry::{PolyMesh, self_intersection};
 use crate::finding::{Finding, FindingKind};
 use crate::part::PreparedPart;
 
-/// How far beside a face the winding number is looked at, as a share of the size.
+/// The distance from a face at which the winding number is looked at, as a share of the size.
 const BESIDE: f64 = 1e-5;
 
-/// What the checks of the mesh itself say.
+/// The outcome of the checks of the mesh itself.
 #[derive(Debug)]
 pub struct Soundness<'a> {
     /// The findings, in millimetres.
@@ -166,8 +166,8 @@ fn misoriented(mesh: &PolyMesh) -> Option<DVec3> {
     Some((mesh.positions[a as usize] + mesh.positions[b as usize]) * 0.5)
 }
 
-/// Whether each edge is passed as often one way as the other: a solid, although some of its edges
-/// have four faces.
+/// Returns true if each edge is passed as often one way as the other: a solid, although some of its
+/// edges have four faces.
 fn balanced(mesh: &PolyMesh) -> bool {
     let table = EdgeTable::of(mesh);
     table.each().all(|e| {

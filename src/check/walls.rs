@@ -17,11 +17,11 @@ use crate::columns::surface_points;
 use crate::finding::{Finding, FindingKind, MOST_OF_A_KIND};
 use crate::part::PreparedPart;
 
-/// A chord across that is at most so many times the thickness makes a pin or a hole.
+/// The longest chord across a pin or a hole, in thicknesses.
 const ROUND: f64 = 1.5;
 /// Directions in which chords across are tried.
 const FAN: usize = 16;
-/// How far beside a thin place, in thicknesses, it is looked for whether the wall extends.
+/// The distance from a thin place, in thicknesses, at which an extended wall is looked for.
 const BESIDE: f64 = 2.0;
 /// Balls that are laid against the surface, and the largest of them that are moved along it.
 const BALLS: usize = 1 << 13;
@@ -71,7 +71,7 @@ pub fn thin_places(
     Ok(out)
 }
 
-/// What the limits say of one region.
+/// Compares one region with the limits.
 fn judged(
     part: &PreparedPart,
     side: MeasuredSide,
@@ -124,8 +124,8 @@ fn judged(
     Some(if severe { found } else { found.warning() })
 }
 
-/// Whether a thin region is narrow in every direction: from none of the places around it that have
-/// the same thickness does it extend in two directions.
+/// Returns true if a thin region is narrow in every direction: from none of the places around it
+/// that have the same thickness does it extend in two directions.
 fn is_round(part: &PreparedPart, side: MeasuredSide, region: &ThinRegion) -> bool {
     let away = DVec3::from(region.normal.map(f64::from)).normalize_or_zero();
     let thickness = f64::from(region.thickness);
@@ -157,7 +157,7 @@ fn is_round(part: &PreparedPart, side: MeasuredSide, region: &ThinRegion) -> boo
     !(0..FAN).any(|i| extends(fan(i)) || extends(-fan(i)))
 }
 
-/// How thick a moulded part is, by the largest ball that fits.
+/// The walls of a moulded part, by the largest ball that fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallSpread {
     /// The median by area: the nominal wall.

@@ -32,8 +32,8 @@ pub fn overhang_angle(normal: DVec3, up: DVec3) -> f64 {
     90.0 - (-normal.dot(up)).clamp(-1.0, 1.0).portable_acos().to_degrees()
 }
 
-/// The triangles that look down more steeply than `limit` (degrees from the vertical) and do not
-/// lie on the plate, ascending.
+/// The triangles that look down more steeply than `limit` (degrees from the vertical) and are
+/// not on the plate, ascending.
 pub fn overhang_faces(part: &PreparedPart, stand: &Standing, limit: f64) -> Vec<u32> {
     let least = -(limit + ANGLE_SLACK).to_radians().portable_sin();
     let names = &part.topology().triangles;

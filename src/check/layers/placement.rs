@@ -51,7 +51,7 @@ pub fn first_layer(part: &PreparedPart, stand: &Standing, layer: f64) -> FirstLa
     FirstLayer { area: section.area, centre: section.centroid.unwrap_or_default(), hull }
 }
 
-/// Whether an area reaches a limit; a tie up to rounding does.
+/// Returns true if an area reaches a limit; a tie up to rounding does.
 pub fn covers(part: &PreparedPart, area: f64, limit: f64) -> bool {
     area >= limit - 4.0 * part.tolerance * limit.sqrt() - 1e-9 * limit
 }
@@ -82,7 +82,7 @@ pub fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     hull
 }
 
-/// How far a point is inside of a convex hull; negative outside, or where the hull has no area.
+/// Returns the depth of a point in a convex hull; negative outside, or if the hull has no area.
 fn depth_in(hull: &[DVec2], p: DVec2) -> f64 {
     if hull.len() < 3 {
         let far = hull.iter().map(|h| h.distance(p)).fold(f64::INFINITY, f64::min);
@@ -115,8 +115,8 @@ pub fn extent(part: &PreparedPart, stand: &Standing) -> [f64; 3] {
     [along(u), along(v), stand.top - stand.plate]
 }
 
-/// Whether a part fits into a box, turned about the build direction as it likes; else by how much
-/// its best fit is too large, and along which of width, depth and height.
+/// Returns `None` if a part fits into a box, turned about the build direction; else the excess of
+/// its best fit, and the index of width, depth or height.
 pub fn too_large(part: &PreparedPart, stand: &Standing, room: [f64; 3]) -> Option<(f64, usize)> {
     let size = extent(part, stand);
     let slack = part.tolerance;

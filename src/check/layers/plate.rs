@@ -18,9 +18,9 @@ struct ContactLoop {
 /// A part's contact with its plate.
 #[derive(Debug, Clone, Default)]
 pub struct PlateContact {
-    /// Whether each triangle lies on the plate.
+    /// True for each triangle on the plate.
     pub triangles: Vec<bool>,
-    /// The area that lies on the plate.
+    /// The area on the plate.
     pub area: f64,
     loops: Vec<ContactLoop>,
     /// The loops around the regions that the part encloses, as indices into `loops`.
@@ -119,7 +119,7 @@ impl PlateContact {
     }
 }
 
-/// Whether a point is inside a closed polygon.
+/// Returns true if a point is inside a closed polygon.
 fn inside(ring: &[DVec2], p: DVec2) -> bool {
     let mut odd = false;
     for i in 0..ring.len() {

@@ -46,11 +46,11 @@ pub struct SealedVoid {
     pub volume: f64,
     /// The height above the plate at which it opens; `None` where it stays sealed.
     pub opens: Option<f64>,
-    /// Whether only the plate seals it below, so that it is open once it is off the plate.
+    /// True if only the plate seals it below: it is open once it is off the plate.
     pub through: bool,
 }
 
-/// What one sweep finds.
+/// The findings of one sweep.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SweepResult {
     /// The lowest first.

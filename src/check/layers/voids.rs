@@ -6,7 +6,7 @@ use sculptd_geometry::disjoint_sets::DisjointSets;
 use super::plate::{OUTSIDE, PlateContact};
 use crate::part::{PreparedPart, Standing};
 
-/// What is known of a void: the members of its set, and the lowest of them.
+/// The voids as sets of vertices and regions of the plate, with the lowest member of each.
 pub(super) struct Voids {
     pub sets: DisjointSets,
     next: Vec<u32>,
