@@ -158,6 +158,7 @@ fn reports_presets_and_errors() {
         (&[&ring, "--process", &bad], 3),
         (&[&ring, "--printer", &own], 3),
         (&[&ring, "--orient", "turned.xyz"], 2),
+        (&[&ring, "--orient", &ring], 2),
         (&[], 2),
     ] {
         let out = check(args);

@@ -216,6 +216,10 @@ pub fn run(args: &CheckArgs, library: &PresetLibrary, json: bool) -> Outcome {
     }
     if let Some(file) = turned {
         writable_format(file)?;
+        if args.parts.contains(file) {
+            let file = file.display();
+            return Err(Fail::Usage(format!("--orient: {file} would replace the part itself")));
+        }
     }
     let mut answers = Vec::new();
     for path in &args.parts {
