@@ -87,9 +87,11 @@
 //!   set).
 //! * `sculptd-window` (`src/window`) depends on the daemon and all below it: panels (egui) and
 //!   viewer (wgpu), which read snapshots and send commands.
-//! * `sculptd-mesh-commands` (`src/mesh_commands`) depends on geometry, and on the clock of the
-//!   devices: the subcommands over mesh files. They are separate so that an edit of the clay does
-//!   not recompile them.
+//! * `sculptd-check` (`src/check`) depends on geometry: whether a part is ready to be printed or
+//!   moulded, as findings with place, value and limit, and in which direction to build it.
+//! * `sculptd-mesh-commands` (`src/mesh_commands`) depends on geometry, check, and on the clock of
+//!   the devices: the subcommands over mesh files. They are separate so that an edit of the clay
+//!   does not recompile them.
 //! * `sculptd` (`src/main.rs`, `src/cli`) depends on all: the command line, which reads arguments,
 //!   calls, and prints.
 //! * `src/bindings`, for other languages: `c` (a header and a shared library over geometry and

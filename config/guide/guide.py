@@ -43,6 +43,7 @@ CHAPTERS = [
         ("Brushes", "brushes/"),
         ("Gestures", "gestures.md"),
         ("Solids: join, measure, check", "solids.md"),
+        ("Ready to print, ready to mould", "check.md"),
         ("A kiosk, from an empty computer to opening day", "kiosk.md"),
         ("A fleet of installations", "fleet.md"),
         ("One sculpture, several people", "together.md"),

@@ -6,12 +6,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 use sculptd_daemon::startup::StartupError;
 pub use sculptd_mesh_commands::{Fail, Outcome, answer};
 use sculptd_mesh_commands::{
-    boolean, convert, decimate, distance, hollow, info, measure, offset, project, remesh, slice,
-    subdivide, thickness,
+    boolean, check, convert, decimate, distance, hollow, info, measure, offset, project, remesh,
+    slice, subdivide, thickness,
 };
 
 pub mod bench;
 pub mod brush;
+mod check_presets;
 pub mod config;
 #[cfg(unix)]
 pub mod ctl;
@@ -131,6 +132,8 @@ pub enum Command {
     Boolean(boolean::BooleanArgs),
     /// Wall thickness: of every vertex, against limits, as numbers, map and report.
     Thickness(thickness::ThicknessArgs),
+    /// Whether a part is ready to print or mould: findings against limits, and how it should stand.
+    Check(check::CheckArgs),
     /// Volume, area, dimensions, projected areas and thickness of a part.
     Measure(measure::MeasureArgs),
     /// Signed distance to a solid, at points or on a grid.
@@ -192,6 +195,9 @@ pub fn run() -> u8 {
         Some(Command::Boolean(args)) => boolean::run(&args, cli.json),
         Some(Command::Thickness(args)) => {
             thickness_presets::all().and_then(|presets| thickness::run(&args, &presets, cli.json))
+        }
+        Some(Command::Check(args)) => {
+            check_presets::all().and_then(|library| check::run(&args, &library, cli.json))
         }
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Info(args)) => info::run(&args, cli.json),

@@ -13,11 +13,13 @@ use std::path::Path;
 use sculptd_geometry::io::{ReadError, WriteError};
 
 pub mod boolean;
+pub mod check;
 pub mod convert;
 pub mod decimate;
 pub mod distance;
 pub mod hollow;
 pub mod info;
+mod many_files;
 pub mod measure;
 pub mod offset;
 pub mod project;

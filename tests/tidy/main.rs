@@ -9,7 +9,7 @@ mod words;
 use std::path::{Path, PathBuf};
 
 /// The crates of the workspace, and where their sources lie.
-const CRATES: [(&str, &str); 10] = [
+const CRATES: [(&str, &str); 11] = [
     ("sculptd-geometry", "src/geometry"),
     ("sculptd-devices", "devices/src"),
     ("sculptd-control", "src/control"),
@@ -18,6 +18,7 @@ const CRATES: [(&str, &str); 10] = [
     ("sculptd-daemon", "src/daemon"),
     ("sculptd-network", "src/network"),
     ("sculptd-window", "src/window"),
+    ("sculptd-check", "src/check"),
     ("sculptd-mesh-commands", "src/mesh_commands"),
     ("sculptd", "src"),
 ];

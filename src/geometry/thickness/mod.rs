@@ -13,6 +13,7 @@
 //! the triangles' own surface, smoothed where it bends by less than the crease.
 
 pub mod ball;
+mod below;
 pub mod check;
 pub mod colour;
 pub mod cone;
@@ -21,6 +22,7 @@ mod edges;
 mod known_walls;
 pub mod least;
 mod measuring;
+mod opposed;
 pub mod overlap;
 pub mod preset;
 pub mod probe;
@@ -39,6 +41,7 @@ pub mod worst;
 use glam::{DMat3, DVec3};
 
 use crate::job::Cancelled;
+pub use below::walls_below;
 pub use cone::{Cone, Outliers, Weights};
 pub use least::{Comparison, LeastWall, ThinFacet};
 pub use measuring::{WallQuery, measure, measure_at_places, measure_prepared};

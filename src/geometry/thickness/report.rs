@@ -137,7 +137,9 @@ fn verdict(out: &mut String, a: &ThicknessAnswer) {
     }
 }
 
-fn figure(
+/// Adds a picture with its words for those who do not see it, and its caption; shared with other
+/// reports.
+pub fn figure(
     out: &mut String,
     picture: &Picture,
     alt: &str,

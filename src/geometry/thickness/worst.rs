@@ -89,7 +89,7 @@ impl Thickness {
 impl ThinFacets {
     /// At most `count` regions of facets that share corners, of at least `minimum_area`, the
     /// thinnest first.
-    fn regions(&self, minimum_area: f64, count: usize) -> Vec<ThinRegion> {
+    pub fn regions(&self, minimum_area: f64, count: usize) -> Vec<ThinRegion> {
         let mut corners: Vec<u32> = self.facets.iter().flat_map(|f| f.corners).collect();
         corners.sort_unstable();
         corners.dedup();

@@ -1,11 +1,12 @@
 //! Many files at once: a row, a report and a summary page; an interrupted batch is resumed.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{ThicknessArgs, judge, one, write_report};
+use crate::many_files::{self, TestCase, TestOutcome, link, names};
 use crate::{Fail, Outcome, answer};
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
@@ -76,25 +77,6 @@ pub(super) fn run(args: &ThicknessArgs, limits: ThicknessLimits, json: bool) -> 
         (0, n) => Err(Fail::Input(format!("{n} of {} files could not be read", rows.len()))),
         (n, _) => Err(Fail::Check(format!("{n} of {} files fail", rows.len()))),
     }
-}
-
-/// Returns a name for each file's row and report: the file's name, numbered if several share it.
-fn names(paths: &[PathBuf]) -> Vec<String> {
-    let mut taken = std::collections::BTreeSet::new();
-    paths
-        .iter()
-        .map(|p| {
-            let stem =
-                p.file_name().map_or_else(|| "mesh".into(), |s| s.to_string_lossy().into_owned());
-            let mut name = stem.clone();
-            let mut n = 2;
-            while !taken.insert(name.to_lowercase()) {
-                name = format!("{stem}-{n}");
-                n += 1;
-            }
-            name
-        })
-        .collect()
 }
 
 /// Checks one file, or takes the row of an earlier run. Only an output that cannot be written ends
@@ -200,48 +182,22 @@ fn index(rows: &[Row]) -> String {
     out
 }
 
-/// A file name as a relative URL.
-fn link(name: &str) -> String {
-    let mut out = String::from("./");
-    for b in name.bytes() {
-        if b.is_ascii_alphanumeric() || b"-._~".contains(&b) {
-            out.push(b as char);
-        } else {
-            out.push_str(&format!("%{b:02X}"));
-        }
-    }
-    out
-}
-
-/// JUnit's XML, as build servers read it: a file that fails is a failure, one that cannot be read
-/// an error.
+/// The rows as a page for build servers.
 pub(super) fn junit(rows: &[Row]) -> String {
-    let count = |v: &str| rows.iter().filter(|r| r.verdict == v).count();
-    let seconds: f64 = rows.iter().map(|r| r.seconds).sum();
-    let mut out = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites><testsuite name=\"wall \
-            thickness\" tests=\"{}\" failures=\"{}\" \
-         errors=\"{}\" time=\"{seconds:.3}\">\n",
-        rows.len(),
-        count("fail") + count("undecided"),
-        count("unreadable")
-    );
-    for r in rows {
-        out.push_str(&format!(
-            "<testcase classname=\"thickness\" name=\"{}\" time=\"{:.3}\">",
-            escape(&r.file),
-            r.seconds
-        ));
-        let why = escape(r.why.as_deref().unwrap_or(""));
-        match r.verdict.as_str() {
-            "fail" | "undecided" => out.push_str(&format!("<failure message=\"{why}\"/>")),
-            "unreadable" => out.push_str(&format!("<error message=\"{why}\"/>")),
-            _ => {}
-        }
-        out.push_str("</testcase>\n");
-    }
-    out.push_str("</testsuite></testsuites>\n");
-    out
+    let cases: Vec<TestCase> = rows
+        .iter()
+        .map(|r| TestCase {
+            name: &r.file,
+            seconds: r.seconds,
+            outcome: match r.verdict.as_str() {
+                "fail" | "undecided" => TestOutcome::Failed,
+                "unreadable" => TestOutcome::Unreadable,
+                _ => TestOutcome::Passed,
+            },
+            why: r.why.as_deref().unwrap_or(""),
+        })
+        .collect();
+    many_files::junit("wall thickness", "thickness", &cases)
 }
 
 impl Row {

@@ -1,0 +1,198 @@
+//! What a mould asks of a part: draft, undercuts and the direction in which it parts.
+//!
+//! A face is released by the half of the mould on its side, if the way from it along the pull
+//! direction is free; a face along the pull direction, by either half. The area that neither half
+//! releases is an undercut. Draft is exact; undercuts are measured by a ray from each cell of each
+//! face ([`crate::columns`]).
+
+use glam::DVec3;
+use rayon::prelude::*;
+use sculptd_geometry::flat_region::large_faces;
+use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::portable::PortableMath;
+use sculptd_geometry::projection::spread_directions;
+
+use crate::columns::{CellSum, over_cells, surface_points};
+use crate::part::PreparedPart;
+use crate::regions::{FaceRegion, connected};
+
+/// Angles that differ by less, degrees, are one.
+const ANGLE_SLACK: f64 = 0.01;
+/// Directions of a hemisphere that are tried.
+const DIRECTIONS: usize = 500;
+/// Points of the surface that each of them is tried with, and the last of them are.
+const POINTS: usize = 2048;
+const FINE_POINTS: usize = 1 << 14;
+/// Directions that are refined.
+const REFINED: usize = 8;
+/// The least share of the surface of a flat face whose normal is tried.
+const FLAT_SHARE: f64 = 0.01;
+/// Faces of one task.
+const CHUNK: usize = 256;
+
+/// A region with less draft than a limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DraftRegion {
+    /// The region.
+    pub region: FaceRegion,
+    /// The least draft, degrees.
+    pub draft: f64,
+}
+
+/// A region that neither half of a mould releases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UndercutRegion {
+    /// The faces that are hidden at least in part.
+    pub region: FaceRegion,
+    /// The hidden area.
+    pub hidden: CellSum,
+}
+
+/// The angle between a face and the pull direction, degrees, 0 to 90.
+pub fn draft_angle(normal: DVec3, pull: DVec3) -> f64 {
+    90.0 - normal.dot(pull).abs().min(1.0).portable_acos().to_degrees()
+}
+
+/// The regions with less draft than `limit` degrees, the largest first.
+pub fn draft_regions(part: &PreparedPart, pull: DVec3, limit: f64) -> Vec<DraftRegion> {
+    let most = (limit - ANGLE_SLACK).max(0.0).to_radians().portable_sin();
+    let faces: Vec<u32> = (0..part.triangles() as u32)
+        .filter(|&t| {
+            part.areas[t as usize] > 0.0 && part.normals[t as usize].dot(pull).abs() < most
+        })
+        .collect();
+    connected(part, &faces)
+        .into_iter()
+        .map(|region| {
+            let own = region.triangles.iter();
+            let draft = own.map(|&t| draft_angle(part.normals[t as usize], pull));
+            DraftRegion { draft: draft.fold(f64::INFINITY, f64::min), region }
+        })
+        .collect()
+}
+
+/// Returns true if a point of a face is hidden from both halves.
+fn hidden(part: &PreparedPart, pull: DVec3, p: DVec3, normal: DVec3) -> bool {
+    let step = 16.0 * part.rounding();
+    let (from, rise) = (p + normal * step, normal.dot(pull));
+    let vertical = rise.abs() < ANGLE_SLACK.to_radians();
+    let blocked = |way: DVec3| part.blocked(from, way, 0.0);
+    (rise < 0.0 && !vertical || blocked(pull)) && (rise > 0.0 && !vertical || blocked(-pull))
+}
+
+/// The regions that neither half releases along `pull`, the largest first. Cells have `cell` square
+/// millimetres.
+pub fn undercuts(
+    part: &PreparedPart,
+    pull: DVec3,
+    cell: f64,
+    job: &Job,
+) -> Result<Vec<UndercutRegion>, Cancelled> {
+    let all: Vec<u32> = (0..part.triangles() as u32).collect();
+    let one = |&t: &u32| {
+        let Some(corners) = part.corners(t) else { return CellSum::default() };
+        let normal = part.normals[t as usize];
+        over_cells(corners, part.areas[t as usize], cell, |p| {
+            f64::from(u8::from(hidden(part, pull, p, normal)))
+        })
+    };
+    let chunks = all.par_chunks(CHUNK).map(|chunk| {
+        job.check()?;
+        Ok(chunk.iter().map(one).collect::<Vec<_>>())
+    });
+    let sums = chunks.collect::<Result<Vec<_>, Cancelled>>()?.concat();
+    let faces: Vec<u32> = all.into_iter().filter(|&t| sums[t as usize].total > 0.0).collect();
+    let mut out: Vec<UndercutRegion> = connected(part, &faces)
+        .into_iter()
+        .map(|region| {
+            let mut hidden = CellSum::default();
+            region.triangles.iter().for_each(|&t| hidden.add(&sums[t as usize]));
+            UndercutRegion { region, hidden }
+        })
+        .collect();
+    out.sort_by(|a, b| b.hidden.total.total_cmp(&a.hidden.total));
+    Ok(out)
+}
+
+/// A direction in which a mould may part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartingDirection {
+    /// Of unit length.
+    pub direction: DVec3,
+    /// The area that neither half releases.
+    pub undercut: CellSum,
+    /// The area with less draft than the limit.
+    pub low_draft: f64,
+}
+
+/// The direction with the least undercut, then the least area without draft: among `also`, the
+/// axes, the normals of large flat faces and 500 directions of a hemisphere, the best of which are
+/// refined. The undercut is measured at points spread over the surface. The first of `also` wins a
+/// tie.
+pub fn best_parting(
+    part: &PreparedPart,
+    also: &[DVec3],
+    draft: f64,
+    job: &Job,
+) -> Result<Option<PartingDirection>, Cancelled> {
+    let points = surface_points(part, POINTS);
+    let least = draft.to_radians().portable_sin();
+    let low_draft = |d: DVec3| -> f64 {
+        let low = |t: usize| part.normals[t].dot(d).abs() < least - 1e-4;
+        (0..part.triangles()).filter(|&t| low(t)).map(|t| part.areas[t]).sum()
+    };
+    let hides = |d: DVec3, points: &[(DVec3, u32)]| {
+        let hidden = |(p, t): &&(DVec3, u32)| hidden(part, d, *p, part.normals[*t as usize]);
+        points.iter().filter(hidden).count()
+    };
+    let rate = |tried: Vec<DVec3>| -> Result<Vec<(usize, DVec3)>, Cancelled> {
+        tried.par_iter().map(|&d| job.check().map(|()| (hides(d, &points), d))).collect()
+    };
+    let mut fixed: Vec<DVec3> = also.to_vec();
+    fixed.extend([DVec3::Z, DVec3::X, DVec3::Y]);
+    let flat = large_faces(&part.centred.mesh, FLAT_SHARE);
+    fixed.extend(flat.iter().map(|f| f.normal).take(REFINED * 2));
+    let mut rated = rate(spread_directions(DIRECTIONS))?;
+    rated.sort_by_key(|r| r.0);
+    rated.truncate(REFINED);
+    let mut step = 6f64.to_radians();
+    for _ in 0..3 {
+        let around: Vec<DVec3> = rated.iter().flat_map(|r| ring(r.1, step)).collect();
+        rated.extend(rate(around)?);
+        rated.sort_by_key(|r| r.0);
+        rated.truncate(REFINED);
+        step *= 0.4;
+    }
+    let mut last: Vec<DVec3> = Vec::new();
+    for d in fixed.into_iter().chain(rated.iter().map(|r| r.1)) {
+        if last.iter().all(|o| o.dot(d).abs() < 1.0 - 1e-9) {
+            last.push(d);
+        }
+    }
+    let fine = surface_points(part, FINE_POINTS);
+    let each = part.areas.iter().sum::<f64>() / FINE_POINTS as f64;
+    let measured: Vec<PartingDirection> = last
+        .par_iter()
+        .map(|&direction| {
+            job.check()?;
+            let count = hides(direction, &fine) as f64;
+            let share = count / FINE_POINTS as f64;
+            let variance = count * (1.0 - share) * each * each;
+            let undercut = CellSum { total: count * each, variance };
+            Ok(PartingDirection { direction, undercut, low_draft: low_draft(direction) })
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    Ok(measured.into_iter().min_by(|a, b| {
+        a.undercut.total.total_cmp(&b.undercut.total).then(a.low_draft.total_cmp(&b.low_draft))
+    }))
+}
+
+/// Six directions around `d` at an angle of `step` radians.
+pub fn ring(d: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
+    let (u, v) = d.any_orthonormal_pair();
+    (0..6).map(move |i| {
+        let turn = std::f64::consts::TAU * f64::from(i) / 6.0;
+        let side = u * turn.portable_cos() + v * turn.portable_sin();
+        (d * step.portable_cos() + side * step.portable_sin()).normalize()
+    })
+}
