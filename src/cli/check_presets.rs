@@ -3,42 +3,15 @@
 use sculptd_check::PresetLibrary;
 use sculptd_check::preset::CheckPreset;
 
+use super::embedded_presets::CHECKS;
 use super::{Fail, thickness_presets};
-
-macro_rules! texts {
-    ($($name:literal,)*) => {
-        &[$(($name, include_str!(concat!("../../config/check/", $name)))),*]
-    };
-}
-
-const EMBEDDED: &[(&str, &str)] = texts![
-    "fdm.toml",
-    "sla.toml",
-    "sls.toml",
-    "moulding.toml",
-    "fdm-220.toml",
-    "fdm-256.toml",
-    "sla-145.toml",
-    "msla-10k.toml",
-    "sls-165.toml",
-    "press-1000.toml",
-    "pla.toml",
-    "petg.toml",
-    "resin.toml",
-    "pa12.toml",
-    "abs.toml",
-    "pc.toml",
-    "pp.toml",
-    "pa.toml",
-    "pom.toml",
-];
 
 /// Every embedded preset.
 pub fn all() -> Result<PresetLibrary, Fail> {
     let read = |(name, text): &(&str, &str)| {
         CheckPreset::read(name, text).map_err(|e| Fail::Config(e.to_string()))
     };
-    let checks = EMBEDDED.iter().map(read).collect::<Result<_, _>>()?;
+    let checks = CHECKS.iter().map(read).collect::<Result<_, _>>()?;
     Ok(PresetLibrary { checks, walls: thickness_presets::all()? })
 }
 
@@ -53,7 +26,7 @@ mod tests {
     fn every_embedded_preset_is_valid_and_fits_the_others() {
         let library = all().expect("valid");
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/config/check");
-        assert_eq!(std::fs::read_dir(folder).expect("a folder").count(), EMBEDDED.len());
+        assert_eq!(std::fs::read_dir(folder).expect("a folder").count(), CHECKS.len());
         assert!(library.checks.iter().all(|p| p.source().len() > 10));
         for preset in &library.checks {
             let (process, printer, material) = match preset {

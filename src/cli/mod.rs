@@ -20,7 +20,8 @@ pub mod demo;
 pub mod devices;
 pub mod display;
 pub mod doctor;
-pub mod ending;
+pub mod embedded_presets;
+mod ending;
 #[cfg(feature = "network")]
 pub mod fleet;
 #[cfg(feature = "network")]

@@ -3,24 +3,14 @@
 use sculptd_geometry::thickness::preset::Preset;
 
 use super::Fail;
-
-const EMBEDDED: [(&str, &str); 8] = [
-    ("fdm.toml", include_str!("../../config/thickness/fdm.toml")),
-    ("sla.toml", include_str!("../../config/thickness/sla.toml")),
-    ("sls.toml", include_str!("../../config/thickness/sls.toml")),
-    ("abs.toml", include_str!("../../config/thickness/abs.toml")),
-    ("pc.toml", include_str!("../../config/thickness/pc.toml")),
-    ("pp.toml", include_str!("../../config/thickness/pp.toml")),
-    ("pa.toml", include_str!("../../config/thickness/pa.toml")),
-    ("pom.toml", include_str!("../../config/thickness/pom.toml")),
-];
+use super::embedded_presets::WALLS;
 
 /// Every embedded preset.
 pub fn all() -> Result<Vec<Preset>, Fail> {
     let read = |(name, text): &(&str, &str)| {
         Preset::read(name, text).map_err(|e| Fail::Config(e.to_string()))
     };
-    EMBEDDED.iter().map(read).collect()
+    WALLS.iter().map(read).collect()
 }
 
 #[cfg(test)]

@@ -12,12 +12,15 @@ const STROKE: &str = r#"{
     "space": "view"
 }"#;
 
+/// Nobody is sent away while a test runs.
+const LONG: &str = "idle_s = 3600";
+
 /// An installation whose settings have these lines, in a home folder that stays.
 fn installation(home: tempfile::TempDir, lines: &str) -> Daemon {
     let file = home.path().join("kiosk.toml");
     let works = home.path().join("works");
     let audit = home.path().join("visits.log");
-    let text = format!("gallery = {works:?}\naudit = {audit:?}\nidle_s = 3600\n{lines}\n");
+    let text = format!("gallery = {works:?}\naudit = {audit:?}\n{lines}\n");
     #[allow(clippy::disallowed_methods)] // Settings of a test.
     std::fs::write(&file, text).expect("written");
     let file = file.display().to_string();
@@ -69,11 +72,11 @@ fn works(home: &Path) -> usize {
 
 #[test]
 fn a_visit_goes_on_after_a_kill_and_its_work_comes_to_the_gallery() {
-    let mut daemon = installation(tempfile::tempdir().expect("a folder"), "");
+    let mut daemon = installation(tempfile::tempdir().expect("a folder"), LONG);
     visit(&daemon);
     for round in 0..3 {
         let before = hash(&daemon);
-        daemon = installation(ended(daemon, rustix::process::Signal::KILL), "");
+        daemon = installation(ended(daemon, rustix::process::Signal::KILL), LONG);
         until("it says so", || daemon.has_told("the last visit was interrupted"));
         assert_eq!(hash(&daemon), before, "round {round}");
         sculpt(&daemon);
@@ -86,11 +89,11 @@ fn a_visit_goes_on_after_a_kill_and_its_work_comes_to_the_gallery() {
     assert_eq!((&lines[0]["kept"], &lines[0]["interrupted"]), (&json!(true), &json!(true)));
     assert!(!home.path().join("sculptd/kiosk/visit.sculpt").exists(), "its work was put away");
     // Nothing of the visit is left.
-    let daemon = installation(home, "");
+    let daemon = installation(home, LONG);
     until("it sculpts", || daemon.has_told("end with Ctrl-C"));
     assert!(!daemon.has_told("interrupted"));
     let home = ended(daemon, rustix::process::Signal::KILL);
-    let daemon = installation(home, "");
+    let daemon = installation(home, LONG);
     until("it sculpts", || daemon.has_told("end with Ctrl-C"));
     assert!(!daemon.has_told("interrupted"), "nobody came");
     assert_eq!(audit(daemon.home.path()).len(), 1);
@@ -98,7 +101,7 @@ fn a_visit_goes_on_after_a_kill_and_its_work_comes_to_the_gallery() {
 
 #[test]
 fn an_interrupted_visit_comes_to_the_gallery_where_the_settings_say_so() {
-    let lines = "interrupted = \"gallery\"";
+    let lines = "idle_s = 3600\ninterrupted = \"gallery\"";
     let daemon = installation(tempfile::tempdir().expect("a folder"), lines);
     visit(&daemon);
     let daemon = installation(ended(daemon, rustix::process::Signal::KILL), lines);
@@ -108,4 +111,27 @@ fn an_interrupted_visit_comes_to_the_gallery_where_the_settings_say_so() {
     assert_eq!(audit(home)[0]["interrupted"], json!(true));
     let home = ended(daemon, rustix::process::Signal::TERM);
     assert_eq!((works(home.path()), audit(home.path()).len()), (1, 1), "no visit was under way");
+}
+
+#[test]
+fn each_visit_has_a_file_of_its_own_and_the_one_that_was_interrupted_goes_on() {
+    let short = "idle_s = 2\ncountdown_s = 1";
+    let daemon = installation(tempfile::tempdir().expect("a folder"), short);
+    for n in 1..=3 {
+        visit(&daemon);
+        until("the visit is over", || audit(daemon.home.path()).len() == n);
+        assert_eq!(works(daemon.home.path()), n);
+    }
+    let daemon = installation(ended(daemon, rustix::process::Signal::TERM), LONG);
+    until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+    assert!(!daemon.has_told("interrupted"));
+    visit(&daemon);
+    let before = hash(&daemon);
+    let daemon = installation(ended(daemon, rustix::process::Signal::KILL), LONG);
+    until("it says so", || daemon.has_told("the last visit was interrupted"));
+    assert_eq!(hash(&daemon), before);
+    let home = ended(daemon, rustix::process::Signal::TERM);
+    assert_eq!((works(home.path()), audit(home.path()).len()), (4, 4));
+    let left = std::fs::read_dir(home.path().join("sculptd/kiosk")).expect("a folder").count();
+    assert_eq!(left, 0, "files of visits");
 }

@@ -176,10 +176,12 @@ impl VisitFolder {
             self.make();
         }
         while let Ok(work) = calls.recv() {
-            // The tick thread hands the file over with the reset that follows the visit.
-            match self.ended.recv() {
+            // The tick thread hands the file over with the reset that follows the visit. It is
+            // dropped here: its threads end only then.
+            let recorded = self.ended.recv().map(|writer| writer.is_some());
+            match recorded {
                 // The visit was not recorded: the file is the next one's.
-                Ok(None) if self.open.is_some() => {}
+                Ok(false) if self.open.is_some() => {}
                 Ok(_) => {
                     self.close(Some(work));
                     self.make();

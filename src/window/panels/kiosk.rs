@@ -159,9 +159,14 @@ fn place(
 
 fn said(ctx: &egui::Context, free: egui::Rect, text: &str, below: &str) {
     place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
-        ui.set_max_width(free.width() - 80.0);
+        let size = |text: &str, size: f32| {
+            let font = egui::FontId::proportional(size);
+            ui.painter().layout_no_wrap(text.into(), font, egui::Color32::PLACEHOLDER).size().x
+        };
+        let widest = size(text, 44.0).max(size(below, 20.0));
+        ui.set_width(widest.ceil().min(free.width() - 80.0));
         ui.vertical_centered(|ui| {
-            ui.add(egui::Label::new(RichText::new(text).size(44.0)).extend());
+            ui.label(RichText::new(text).size(44.0));
             ui.label(RichText::new(below).size(20.0));
         });
     });
@@ -334,10 +339,15 @@ fn door(
             // Never the number itself.
             let shown = if typed.is_empty() { "–".to_owned() } else { "•".repeat(typed.len()) };
             ui.label(RichText::new(shown).size(28.0));
-            if locked || now.wrong != pad.wrong_before {
-                let text = if locked { &words.locked } else { &words.wrong_pin };
-                ui.label(RichText::new(text).size(18.0).color(ui.visuals().warn_fg_color));
-            }
+            // The line is there without a text too: the keys must not move under a finger.
+            let wrong = now.wrong != pad.wrong_before;
+            let text = match (locked, wrong) {
+                (true, _) => words.locked.as_str(),
+                (false, true) => words.wrong_pin.as_str(),
+                (false, false) => " ",
+            };
+            ui.set_max_width(3.0 * (TARGET + 8.0) + 2.0 * ui.spacing().item_spacing.x);
+            ui.label(RichText::new(text).size(18.0).color(ui.visuals().warn_fg_color));
             for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["×", "0", "OK"]] {
                 ui.horizontal(|ui| {
                     for key in row {

@@ -385,7 +385,10 @@ impl Tasks {
         let done = |done: Installed<Remeshed>| {
             let made = done.made;
             let [before, now] = made.volume;
-            let change = format!("{:+.2}", (now / before - 1.0) * 100.0);
+            let percent = (now / before - 1.0) * 100.0;
+            // A change that is only rounding has no sign.
+            let change =
+                if percent.abs() < 0.005 { "0.00".into() } else { format!("{percent:+.2}") };
             let voxel = format!("{:.4}", made.voxel);
             let (count, crossings) = (made.triangles, made.crossings);
             let text = tr!(

@@ -10,10 +10,13 @@
 
 mod array;
 mod boolean;
+#[path = "../../../cli/embedded_presets.rs"]
+mod embedded_presets;
 mod errors;
 mod job;
 mod measure;
 mod mesh;
+mod part_check;
 mod picture;
 mod pool;
 mod remake;

@@ -13,6 +13,7 @@ use crate::array::shared;
 use crate::errors;
 use crate::job::{Progress, watched};
 use crate::mesh::Mesh;
+use crate::part_check::{PartRequest, checked};
 
 /// Converts a value to Python's dicts and lists, by way of JSON.
 pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
@@ -37,14 +38,30 @@ fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py
 
 /// Returns the facts of the mesh: counts, topology, bounds, crossings. The result is a dict with
 /// the fields of `sculptd info --json`. `crossings=False` leaves out the slowest part.
+///
+/// With `process` ('fdm', 'sla', 'sls' or 'moulding'), `printer` or `material`, whether the part is
+/// ready to be made: the answer of `sculptd check`, a dict with `ok`, `findings` and `facts`. `up`:
+/// the build direction, or the pull direction of a mould; `scale`: millimetres a unit of the mesh;
+/// `orient`: search for the best build direction too.
 #[pyfunction(name = "check")]
-#[pyo3(signature = (mesh, *, crossings=true, progress=None))]
+#[pyo3(signature = (mesh, *, crossings=true, process=None, printer=None, material=None,
+                    up=[0.0, 0.0, 1.0], scale=1.0, orient=false, progress=None))]
 fn check_mesh<'py>(
     py: Python<'py>,
     mesh: &Bound<'py, Mesh>,
     crossings: bool,
+    process: Option<&str>,
+    printer: Option<&str>,
+    material: Option<&str>,
+    up: [f64; 3],
+    scale: f64,
+    orient: bool,
     progress: Progress,
 ) -> PyResult<Bound<'py, PyAny>> {
+    if process.is_some() || printer.is_some() || material.is_some() {
+        let request = PartRequest { process, printer, material, up, scale, orient };
+        return plain(py, &checked(py, mesh.get(), &request, &progress)?);
+    }
     let poly = mesh.get().poly.clone();
     let report = watched(py, &progress, |job| check::report(&poly, crossings, job))?
         .map_err(errors::cancelled)?;

@@ -1,5 +1,5 @@
-//! Threads for parallel work, one pool a process. A forked process has none of its parent's threads,
-//! so it makes a pool of its own at its first use.
+//! Threads for parallel work, one pool a process. A forked process has none of its parent's
+//! threads, so it makes a pool of its own at its first use.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

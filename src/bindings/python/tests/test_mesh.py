@@ -117,5 +117,25 @@ class Sections(unittest.TestCase):
         self.assertEqual((len(cut["contours"]), len(cut["open"])), (0, 1))
 
 
+class PartCheck(unittest.TestCase):
+    def test_a_table_has_a_bridge_too_wide(self):
+        slab = sculptd.Mesh.box([0, 0, 20], [80, 20, 24])
+        legs = [sculptd.Mesh.box([x, 0, 0], [x + 6, 20, 20]) for x in (0, 74)]
+        table = slab | legs[0] | legs[1]
+        answer = sculptd.check(table, process="fdm")
+        bridges = [f for f in answer["findings"] if f["kind"] == "bridge"]
+        self.assertFalse(answer["ok"])
+        self.assertAlmostEqual(bridges[0]["value"], 68.0, delta=0.68)
+        self.assertTrue(sculptd.check(sculptd.Mesh.box([0] * 3, [20] * 3), process="fdm")["ok"])
+
+    def test_units_and_names(self):
+        box = sculptd.Mesh.box([0, 0, 0], [1, 1, 1])
+        inch = sculptd.check(box, process="fdm", scale=25.4)["facts"]
+        self.assertAlmostEqual(inch["volume"], 25.4**3, delta=0.1)
+        for bad in ({"process": "glass"}, {"printer": "x"}, {"process": "fdm", "up": [0, 0, 0]}):
+            with self.assertRaises(ValueError):
+                sculptd.check(box, **bad)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -262,7 +262,18 @@ def thickness(
     progress: _Progress = None,
 ) -> Thickness: ...
 def measure(mesh: Mesh) -> _Measures: ...
-def check(mesh: Mesh, *, crossings: bool = True, progress: _Progress = None) -> dict[str, Any]: ...
+def check(
+    mesh: Mesh,
+    *,
+    crossings: bool = True,
+    process: Literal["fdm", "sla", "sls", "moulding"] | None = None,
+    printer: str | None = None,
+    material: str | None = None,
+    up: _Vector = ...,
+    scale: float = 1.0,
+    orient: bool = False,
+    progress: _Progress = None,
+) -> dict[str, Any]: ...
 def project(
     mesh: Mesh, direction: _Vector = ..., *, progress: _Progress = None
 ) -> Projection: ...
