@@ -158,7 +158,6 @@ pub fn set_aside(file: &Path, name: &str) -> std::io::Result<PathBuf> {
 }
 
 /// The thread that makes and removes the files, for those who must not wait for a disk.
-
 struct VisitFolder {
     path: PathBuf,
     start: VisitStart,
