@@ -17,6 +17,9 @@ const WIDTH: usize = 640;
 /// See [`WIDTH`].
 const HEIGHT: usize = 480;
 
+/// Colour of clay that nobody painted, sRGB.
+const CLAY: [u8; 3] = [205, 148, 122];
+
 /// The page before its first work.
 const HEAD: &str = r#"<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
@@ -63,10 +66,11 @@ fn draw(file: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
     let from = Vec3::new(0.35, 0.3, 1.0);
     let camera =
         Camera { up: Vec3::Y, ..Camera::from_side(&plain, from, WIDTH as f32 / HEIGHT as f32) };
-    let colours = plain.colours.as_deref();
-    let colours: Option<Vec<[u8; 3]>> =
-        colours.map(|all| all.iter().map(|c| [c[0], c[1], c[2]]).collect());
-    let picture = picture::draw(&plain, colours.as_deref(), &camera, WIDTH, HEIGHT);
+    let colours: Vec<[u8; 3]> = match &plain.colours {
+        Some(all) => all.iter().map(|c| [c[0], c[1], c[2]]).collect(),
+        None => vec![CLAY; plain.positions.len()],
+    };
+    let picture = picture::draw(&plain, Some(&colours), &camera, WIDTH, HEIGHT);
     let png = picture.png().map_err(std::io::Error::other)?;
     write_beside(file, |out| out.write_all(&png))
 }
@@ -75,7 +79,8 @@ fn draw(file: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
 pub fn page(folder: &Path) -> std::io::Result<()> {
     let names = works(folder)?;
     write_beside(&folder.join("index.html"), |out| {
-        writeln!(out, "{HEAD}<h1>{} works</h1><ul>", names.len())?;
+        let count = names.len();
+        writeln!(out, "{HEAD}<h1>{count} work{}</h1><ul>", if count == 1 { "" } else { "s" })?;
         for name in names.iter().rev() {
             // Names are digits and fixed letters: nothing to escape.
             let stem = name.strip_suffix(".glb").unwrap_or(name);
