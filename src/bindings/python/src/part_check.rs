@@ -62,6 +62,7 @@ pub fn checked(
     }
     let settings = settings(request)?;
     let (scale, orient) = (request.scale, request.orient);
+    #[allow(clippy::disallowed_methods)] // The answer states its duration.
     let began = Instant::now();
     let seconds = || began.elapsed().as_secs_f64();
     watched(py, progress, |job| {
