@@ -205,7 +205,7 @@ impl<'a> Pieces<'a> {
             diagonals: 0,
         };
         let mut active = ActiveEdges::new(points);
-        // The lowest corner above that sees the edge, and whether the boundary ends there downwards.
+        // The lowest corner above that sees the edge, and whether the boundary ends there.
         let mut helper: Vec<(u32, bool)> = vec![(NONE, false); n];
         for &v in &order.corners {
             let i = v as usize;
