@@ -68,7 +68,8 @@ pub fn join(
     let masks = work.masks();
     let work = work.to_tri().to_poly();
     job.check().map_err(boolean::BooleanError::from)?;
-    let (solids, _) = boolean::compute([&work, &tool], &[operation], &options, job, || 0.0)?;
+    let (solids, report) = boolean::compute([&work, &tool], &[operation], &options, job, || 0.0)?;
+    report.warnings.iter().for_each(|w| tracing::warn!("Boolean of the active object: {w}"));
     let solid = solids.into_iter().next().ok_or(OperationError::Nothing)?;
     if solid.mesh.face_count() == 0 {
         return Err(OperationError::Nothing);

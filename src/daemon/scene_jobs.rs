@@ -255,7 +255,8 @@ fn compute(
     if asked.all {
         operations.extend(ALL_FOUR.into_iter().filter(|o| *o != asked.operation));
     }
-    let (solids, _) = boolean::compute([&first, &second], &operations, &options, job, || 0.0)?;
+    let (solids, report) = boolean::compute([&first, &second], &operations, &options, job, || 0.0)?;
+    report.warnings.iter().for_each(|w| tracing::warn!("Boolean of two objects: {w}"));
     let mut results = Vec::with_capacity(operations.len());
     for operation in operations {
         let solid = solids.iter().find(|s| s.operation == operation);

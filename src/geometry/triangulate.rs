@@ -5,6 +5,11 @@
 //! (Shewchuk's `orient2d`) for the given coordinates, so that the result depends on nothing else. A
 //! quadrilateral is cut along the shorter of its inner diagonals. A polygon that crosses itself
 //! gives triangles too, two fewer than its corners; they overlap as it does.
+//!
+//! A large polygon for which ears take more than a few steps a corner is cut by a sweep instead
+//! (`monotone`), in n log n steps, unless it touches or crosses itself.
+
+mod monotone;
 
 use std::collections::BTreeSet;
 
@@ -144,8 +149,7 @@ fn face_avoiding(
     out: &mut Vec<[u32; 3]>,
 ) {
     let points = projected(positions, corners);
-    let turn = |i: usize, j: usize, k: usize| orient2d(points[i], points[j], points[k]);
-    ears(corners, &points, turn, |i, j| !taken(corners[i], corners[j]), out);
+    cut(corners, &points, |i, j| !taken(corners[i], corners[j]), out);
 }
 
 /// Appends the triangles of one polygon.
@@ -177,7 +181,35 @@ pub fn face(positions: &[DVec3], corners: &[u32], out: &mut Vec<[u32; 3]>) {
         out.extend(order.map(|t| t.map(|i| corners[i])));
         return;
     }
-    ears(corners, &points, turn, |_, _| true, out);
+    cut(corners, &points, |_, _| true, out);
+}
+
+/// Fewest corners of a polygon that is cut by a sweep where ears take many steps.
+const SWEEP_FROM: usize = 2_000;
+
+/// Steps a corner within which ears cut a polygon without deep bays.
+const FEW_STEPS: u64 = 64;
+
+/// Appends the triangles by ears, or by a sweep where ears take too many steps. Diagonals that are
+/// not `allowed` are taken only where there is no other.
+fn cut(
+    corners: &[u32],
+    points: &[Coord<f64>],
+    allowed: impl Fn(usize, usize) -> bool,
+    out: &mut Vec<[u32; 3]>,
+) {
+    let start = out.len();
+    if corners.len() >= SWEEP_FROM {
+        if ears(corners, points, &allowed, FEW_STEPS * corners.len() as u64, out) {
+            return;
+        }
+        out.truncate(start);
+        if let Some(all) = monotone::triangles(points, &allowed) {
+            out.extend(all.iter().map(|t| t.map(|i| corners[i as usize])));
+            return;
+        }
+    }
+    ears(corners, points, &allowed, u64::MAX, out);
 }
 
 /// Returns true if three corners are collinear up to rounding. Such a triangle has no direction: in
@@ -293,14 +325,16 @@ impl<'a> ReflexCorners<'a> {
     }
 }
 
-/// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left.
+/// Cuts ears; a diagonal that is not `allowed` is taken only where no other ear is left. Returns
+/// false, with some of the triangles, where that takes more than `most` steps.
 fn ears(
     corners: &[u32],
     points: &[Coord<f64>],
-    turn: impl Fn(usize, usize, usize) -> f64,
     allowed: impl Fn(usize, usize) -> bool,
+    most: u64,
     out: &mut Vec<[u32; 3]>,
-) {
+) -> bool {
+    let turn = |i: usize, j: usize, k: usize| orient2d(points[i], points[j], points[k]);
     let n = corners.len();
     let mut next: Vec<usize> = (1..n).chain([0]).collect();
     let mut prev: Vec<usize> = [n - 1].into_iter().chain(0..n - 1).collect();
@@ -318,8 +352,12 @@ fn ears(
     // Rounds of ever lower demands: a true ear by an allowed diagonal that leaves no three corners
     // in line; any true ear by an allowed diagonal; a true ear; any convex corner; any corner.
     // Simple polygons without neighbours in the way need the first two only.
-    let (mut demand, mut least, mut checks) = (0, 0, 0u64);
+    let (mut demand, mut least, mut checks, mut steps) = (0, 0, 0u64, 0u64);
     while left > 3 {
+        steps += 1;
+        if checks.saturating_add(steps) > most {
+            return false;
+        }
         let (p, q) = (prev[at], next[at]);
         let bend = turn(p, at, q);
         let convex = bend > 0.0;
@@ -362,6 +400,7 @@ fn ears(
         at = next[q];
     }
     out.push([corners[prev[at]], corners[at], corners[next[at]]]);
+    true
 }
 
 #[cfg(test)]

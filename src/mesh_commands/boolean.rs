@@ -9,7 +9,7 @@ use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
-use self::operands::{operand, solved};
+use self::operands::{Operands, operand};
 use super::convert::{FileFacts, ReadyMesh, write_checked, write_ready};
 use super::distance::warn;
 use super::info::interrupted;
@@ -17,7 +17,8 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{
-    BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, Precision, ResultFaces,
+    BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, OwnCrossings, Precision,
+    ResultFaces,
 };
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -215,18 +216,16 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         ));
     }
     let mut out = BooleanAnswer::default();
-    let (mut operands, mut clean) = (Vec::new(), Vec::new());
+    let mut operands = Operands::default();
     for path in &args.meshes {
-        let (mesh, is_clean) = operand(path, args, &job, &now, &mut out)?;
-        operands.push(mesh);
-        clean.push(is_clean);
+        operands.push(operand(path, args, &job, &now, &mut out)?);
     }
     let start = now();
     let faces = match args.polygons {
         _ if args.refine_cut.is_some() => ResultFaces::Triangles,
         Some(Polygons::Any) => ResultFaces::Polygons,
         Some(Polygons::Convex) => ResultFaces::ConvexPolygons,
-        None if operands.iter().any(|m| m.faces().any(|f| f.len() != 3)) => {
+        None if operands.meshes.iter().any(|m| m.faces().any(|f| f.len() != 3)) => {
             ResultFaces::ConvexPolygons
         }
         None => ResultFaces::Triangles,
@@ -237,10 +236,17 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         _ => faces,
     };
     if args.what == What::Shells {
-        return shells(&operands[0], args, out, json);
+        return shells(&operands.meshes[0], args, out, json);
     }
-    let mut options =
-        BooleanOptions { tolerance: args.tolerance, faces, keep_contact: args.keep_contact };
+    // Operands that were solved by winding are solids already.
+    let keep = args.trust || args.solve.is_some();
+    let mut options = BooleanOptions {
+        tolerance: args.tolerance,
+        faces,
+        keep_contact: args.keep_contact,
+        own_crossings: if keep { OwnCrossings::Keep } else { OwnCrossings::Solve },
+        ..BooleanOptions::default()
+    };
     let (mut best, blank) = (None::<ResultSet>, out);
     let mut failed = None;
     for factor in SMALLER {
@@ -249,14 +255,13 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             options.tolerance = Some(first * factor);
         }
         let out = blank.clone();
-        let mut made =
-            match ResultSet::of(&operands, &clean, args, &options, plane, out, &job, &now) {
-                Ok(made) => made,
-                Err(e) => {
-                    failed = Some(e);
-                    break;
-                }
-            };
+        let mut made = match ResultSet::of(&operands, args, &options, plane, out, &job, &now) {
+            Ok(made) => made,
+            Err(e) => {
+                failed = Some(e);
+                break;
+            }
+        };
         let again = made.crossings > 0 && made.out.contact.near_misses > 0;
         if best.as_ref().is_none_or(|b| made.crossings < b.crossings) {
             if let (Some(first), Some(b)) = (first, &best) {
@@ -273,30 +278,10 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             break;
         }
     }
-    // An operand that crosses itself has another meaning where the one as it is gives no result.
-    let troubled = best.as_ref().is_none_or(|b| b.crossings > 0);
-    let inconsistent = matches!(failed, None | Some(Fail::Check(_)));
-    if troubled
-        && inconsistent
-        && args.solve.is_none()
-        && !args.trust
-        && let Some(solved) = solved(&operands, &clean, args, &job)?
-    {
-        options.tolerance = args.tolerance;
-        let (solids, dirty) = (solved.meshes, vec![false; operands.len()]);
-        if let Ok(mut made) =
-            ResultSet::of(&solids, &dirty, args, &options, plane, blank, &job, &now)
-            && best.as_ref().is_none_or(|b| made.crossings < b.crossings)
-        {
-            made.out.warnings.extend(solved.warnings);
-            made.solved = true;
-            best = Some(made);
-        }
-    }
     if let Some(e) = failed.filter(|_| best.is_none()) {
         return Err(e);
     }
-    let Some(ResultSet { mut out, solids, solved, .. }) = best else {
+    let Some(ResultSet { mut out, solids, .. }) = best else {
         return Err(Fail::Check("no result".into()));
     };
     out.seconds = now() - start;
@@ -307,9 +292,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         let written = write_ready(&file, &solid.mesh, written.as_ref(), &job)?;
         out.warnings.extend(written.warnings.iter().map(|w| format!("{name}: {w}")));
         let mut made = Made::of(&name, file, &written);
-        if args.details && solved {
-            out.warnings.push(format!("{name}: no origins are given: an operand was solved first"));
-        } else if args.details {
+        if args.details {
             let plain = || solid.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
             let all = origins.unwrap_or_else(plain);
             if all.len() == made.faces {
@@ -338,8 +321,6 @@ struct ResultSet {
     solids: Vec<ReadySolid>,
     /// Pairs of triangles that cross in them once they are rounded to the format.
     crossings: usize,
-    /// Whether operands were solved by winding first.
-    solved: bool,
 }
 
 struct ReadySolid {
@@ -352,10 +333,8 @@ struct ReadySolid {
 }
 
 impl ResultSet {
-    /// `clean`: of each operand, whether it is closed and manifold and crosses nothing.
     fn of(
-        operands: &[PolyMesh],
-        clean: &[bool],
+        operands: &Operands,
         args: &BooleanArgs,
         options: &BooleanOptions,
         plane: Option<(DVec3, f64)>,
@@ -365,8 +344,10 @@ impl ResultSet {
     ) -> Result<ResultSet, Fail> {
         let solids: Vec<(String, BooleanSolid, Origins)> = match plane {
             Some((normal, offset)) => {
+                let known_crossings = [operands.crossing[0], Some(false)];
+                let options = BooleanOptions { known_crossings, ..*options };
                 let (made, report) =
-                    boolean::split(&operands[0], normal, offset, options, job, now)?;
+                    boolean::split(&operands.meshes[0], normal, offset, &options, job, now)?;
                 out.note(report, args.details);
                 let names = ["above", "below"].map(str::to_owned);
                 let mut made: Vec<_> =
@@ -380,9 +361,10 @@ impl ResultSet {
         let lap = now();
         let (mut ready, mut crossings) = (Vec::new(), 0);
         // Of the largest clean operand, the faces that are still there need no new comparison.
-        let largest = (0..operands.len())
-            .filter(|&n| clean[n])
-            .max_by_key(|&n| (operands[n].face_count(), operands.len() - n));
+        let meshes = &operands.meshes;
+        let largest = (0..meshes.len())
+            .filter(|&n| operands.clean[n])
+            .max_by_key(|&n| (meshes[n].face_count(), meshes.len() - n));
         for (name, solid, origins) in solids {
             let file = if several { named(&args.out, &name) } else { args.out.clone() };
             // Kept contact is a sheet with two sides, which a repair would part.
@@ -394,14 +376,14 @@ impl ResultSet {
                     Some(all) => all.iter().map(|&(n, face)| of(n, face)).collect(),
                     None => solid.origins.iter().map(|o| of(o.operand.into(), o.face)).collect(),
                 };
-                let known = largest.map(|n| KnownFaces { mesh: &operands[n], faces: &faces });
+                let known = largest.map(|n| KnownFaces { mesh: &meshes[n], faces: &faces });
                 Some(ReadyMesh::of(&file, &solid.mesh, out.tolerance, known, job)?)
             };
             crossings += written.as_ref().map_or(0, |w| w.crossings);
             ready.push(ReadySolid { name, file, solid, origins, written });
         }
         *out.phases.entry("crossings".into()).or_default() += now() - lap;
-        Ok(ResultSet { out, solids: ready, crossings, solved: false })
+        Ok(ResultSet { out, solids: ready, crossings })
     }
 }
 
@@ -410,7 +392,7 @@ type Origins = Option<Vec<(usize, u32)>>;
 
 /// The asked operations, from the left to the right.
 fn join(
-    operands: &[PolyMesh],
+    operands: &Operands,
     args: &BooleanArgs,
     options: &BooleanOptions,
     job: &Job,
@@ -425,10 +407,16 @@ fn join(
         _ => Operation::ALL.to_vec(),
     };
     let mut solids: Vec<(String, BooleanSolid, Origins)> = Vec::new();
-    for (n, right) in operands.iter().enumerate().skip(1) {
+    for (n, right) in operands.meshes.iter().enumerate().skip(1) {
         let left = solids.pop();
-        let first = left.as_ref().map_or(&operands[0], |l| &l.1.mesh);
-        let (made, report) = boolean::compute([first, right], &operations, options, job, now)?;
+        let first = left.as_ref().map_or(&operands.meshes[0], |l| &l.1.mesh);
+        // A result of operands that cross nothing crosses nothing.
+        let known = &operands.crossing[..n];
+        let left_crosses =
+            if n == 1 || known.iter().all(|c| *c == Some(false)) { known[0] } else { None };
+        let options =
+            BooleanOptions { known_crossings: [left_crosses, operands.crossing[n]], ..*options };
+        let (made, report) = boolean::compute([first, right], &operations, &options, job, now)?;
         out.note(report, args.details);
         let known = left.as_ref().and_then(|l| l.2.as_ref());
         let of = |o: &boolean::FaceOrigin| match (o.operand, known) {

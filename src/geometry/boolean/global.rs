@@ -17,10 +17,10 @@ use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
 
-use super::Operation;
 use super::emit::{BooleanFacts, FaceOrigin, finish, separate};
 use super::merge::{is_flat, joined_rings};
 use super::points::Map;
+use super::{Operation, attributes};
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
 
@@ -80,6 +80,29 @@ fn aside<T: Send + 'static>(
     }
 }
 
+/// One of the crate's two engines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Engine {
+    /// Doubles with symbolic perturbation. Its import and its results are cleaned: where triangles
+    /// are thinner than rounding, diagonals are swapped, which can move the surface by far more
+    /// than its precision.
+    Perturbed,
+    /// Rational numbers (Barki, Guennebaud and Foufou, "Exact, robust, and efficient regularized
+    /// Booleans on general 3D meshes", 2015), up to a thousand times slower. Takes triangles
+    /// without their neighbours, so that nothing is cleaned before it begins.
+    Rational,
+}
+
+impl Engine {
+    /// The engine's name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Engine::Perturbed => "perturbed engine",
+            Engine::Rational => "rational engine",
+        }
+    }
+}
+
 /// Both operands as the crate holds them.
 pub struct GlobalEngine {
     held: Arc<HeldOperands>,
@@ -90,12 +113,14 @@ struct HeldOperands {
     ids: [u32; 2],
     meshes: [PolyMesh; 2],
     eps: f64,
+    engine: Engine,
 }
 
 impl GlobalEngine {
     /// Takes closed operands; the inner error says why the crate refuses one.
     pub fn new(
         operands: [&PolyMesh; 2],
+        engine: Engine,
         eps: f64,
         job: &Job,
     ) -> Result<Result<GlobalEngine, String>, Cancelled> {
@@ -104,10 +129,13 @@ impl GlobalEngine {
             let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
             let one = |s: usize| {
                 let given = plain(&meshes[s], ids[s], job).map_err(|e| e.to_string())?;
-                sound(Manifold::from_mesh_gl64(&given))
+                sound(match engine {
+                    Engine::Perturbed => Manifold::from_mesh_gl64(&given),
+                    Engine::Rational => Manifold::from_mesh_gl64_robust(&loose(given)),
+                })
             };
             let operands = [one(0)?, one(1)?];
-            Ok(HeldOperands { operands, ids, meshes, eps })
+            Ok(HeldOperands { operands, ids, meshes, eps, engine })
         })?;
         Ok(made.map(|held| GlobalEngine { held: Arc::new(held) }))
     }
@@ -128,7 +156,10 @@ impl GlobalEngine {
                 Operation::Difference => (a, b, OpType::Subtract),
                 Operation::ReverseDifference => (b, a, OpType::Subtract),
             };
-            let engine = BooleanEngine::Exact;
+            let engine = match held.engine {
+                Engine::Perturbed => BooleanEngine::Exact,
+                Engine::Rational => BooleanEngine::Robust,
+            };
             let out =
                 sound(first.boolean_with_engine_and_token(second, kind, engine, Some(token)))?;
             held.polygons(&out.get_mesh_gl64(-1), triangles, job).map_err(|e| e.to_string())
@@ -196,13 +227,28 @@ fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
     })
 }
 
-/// A surface that crosses itself as the solid of all places that it goes around (positively): what
-/// `--solve winding` asks for. Faces come in triangles.
-pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Cancelled> {
+/// The same triangles, each with three corners of its own. The crate then keeps them as they are.
+fn loose(given: MeshGL64) -> MeshGL64 {
+    let corner = |&v: &u64| &given.vert_properties[3 * v as usize..3 * v as usize + 3];
+    let vert_properties = given.tri_verts.iter().flat_map(corner).copied().collect();
+    let tri_verts = (0..given.tri_verts.len() as u64).collect();
+    MeshGL64 { vert_properties, tri_verts, ..given }
+}
+
+/// A surface that crosses itself as the solid of all places that it goes around (positively), in
+/// triangles, and the face of each.
+pub fn solve(
+    mesh: &PolyMesh,
+    engine: Engine,
+    job: &Job,
+) -> Result<Result<(PolyMesh, Vec<FaceOrigin>), String>, Cancelled> {
     let mesh = mesh.clone();
     aside(job, move |token, job| {
         let said = |e: Cancelled| e.to_string();
-        let given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
+        let mut given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
+        if engine == Engine::Rational {
+            given = loose(given);
+        }
         let raw = sound(Manifold::from_mesh_gl64_robust(&given))?;
         let gl = sound(raw.rebuild_solid_with_token(WindingRule::Positive, Some(token)))?
             .get_mesh_gl64(-1);
@@ -211,13 +257,19 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<Result<PolyMesh, String>, Can
         merged.extend(
             gl.merge_from_vert.iter().zip(&gl.merge_to_vert).map(|(&f, &t)| (f as u32, t as u32)),
         );
-        let mut out = PolyMesh::new();
-        for t in gl.tri_verts.chunks_exact(3) {
+        let (mut out, mut origins) = (PolyMesh::new(), Vec::new());
+        for (n, t) in gl.tri_verts.chunks_exact(3).enumerate() {
             let t = [0, 1, 2].map(|k| merged.get(&(t[k] as u32)).copied().unwrap_or(t[k] as u32));
             out.push_face(&t);
+            let face = gl.face_id.get(n).map_or(0, |&f| f as u32);
+            origins.push(FaceOrigin { operand: 0, face });
         }
         let closed = separate(&mut out, &at, job).map_err(said)?;
-        if closed { Ok(out) } else { Err("the solved surface is not closed".into()) }
+        if !closed {
+            return Err("the solved surface is not closed".into());
+        }
+        attributes::carry(&mut out, &origins, [&mesh, &mesh]);
+        Ok((out, origins))
     })
 }
 
@@ -259,8 +311,9 @@ mod tests {
         let job = Job::default();
         let cube = crate::shapes::cuboid(DVec3::ZERO, DVec3::ONE);
         let far = crate::shapes::cuboid(DVec3::splat(5.0), DVec3::splat(6.0));
-        let engine =
-            GlobalEngine::new([&cube, &far], 1e-9, &job).expect("not cancelled").expect("taken");
+        let engine = GlobalEngine::new([&cube, &far], Engine::Perturbed, 1e-9, &job)
+            .expect("not cancelled")
+            .expect("taken");
         let (mesh, _, facts) = engine
             .run(Operation::Intersection, false, &job)
             .expect("not cancelled")

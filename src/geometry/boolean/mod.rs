@@ -17,13 +17,15 @@
 //! Every result is checked before it is returned: closed, samples that agree with the winding
 //! number of the other operand, and volumes that add up (union and intersection give A and B,
 //! difference and intersection give A). If a check fails, other tolerances are tried, then the
-//! exact engine of the crate `manifold-rust` (`global`); if that fails too, the result is an error.
-//! If that engine fails on an operand that crosses itself, [`solve`] replaces the operand by the
-//! solid of all places that it winds around. [`BooleanReport`] states whether the result depends on
-//! the tolerance or on such a solid.
+//! engines of the crate `manifold-rust` (`global`): the one in doubles, then the one in rational
+//! numbers. If all fail, the error states what each check found, in figures.
 //!
-//! Not promised: a meaning for operands that cross themselves where a tolerance does help;
-//! features smaller than the tolerance.
+//! `routes` chooses between these. If an operand crosses itself, or its own pieces touch in full
+//! faces, and there is no consistent result or the result crosses itself too, [`solve`] replaces
+//! the operand by the solid of all places that it winds around. [`BooleanReport`] states whether
+//! the result depends on the tolerance or on such a solid.
+//!
+//! Not promised: features smaller than the tolerance.
 
 /// Both surfaces cut at each other, and the result of each operation from that.
 pub mod arrange;
@@ -47,6 +49,7 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
+mod routes;
 mod self_arrangement;
 mod self_cuts;
 mod simplify;
@@ -60,7 +63,6 @@ use rayon::prelude::*;
 pub use attributes::mixed;
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use operand::check;
-use operand::crosses_itself;
 pub use parts::{shells, split};
 use pieces::Placement;
 pub use points::Contact;
@@ -155,6 +157,17 @@ pub enum ResultFaces {
     Polygons,
 }
 
+/// The meaning of an operand whose own pieces cross each other, or touch in full faces.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum OwnCrossings {
+    /// If the results cross themselves too, the solid of all places that the operand goes around
+    /// takes its place ([`solve`]), and a warning says so.
+    #[default]
+    Solve,
+    /// The surface as it is. If there is no consistent result, [`solve`] is tried nevertheless.
+    Keep,
+}
+
 /// What [`compute`] is asked for besides the operations.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct BooleanOptions {
@@ -166,6 +179,11 @@ pub struct BooleanOptions {
     pub faces: ResultFaces,
     /// Faces in which the solids only touch belong to the intersection too, both sides of them.
     pub keep_contact: bool,
+    /// The meaning of operands that cross themselves.
+    pub own_crossings: OwnCrossings,
+    /// Of each operand, whether it has triangles that cross, where the caller knows. `None`: it is
+    /// examined if it has several shells whose boxes meet.
+    pub known_crossings: [Option<bool>; 2],
 }
 
 /// One of the four results.
@@ -229,6 +247,8 @@ pub struct BooleanReport {
     /// True if places that double precision distinguishes were merged, or nearly were: another
     /// tolerance may then give another result.
     pub depends_on_tolerance: bool,
+    /// True if both operands are one surface: each result is the first operand, or nothing.
+    pub same_surface: bool,
     /// The greatest error of a volume relative to the operands as given, in cubic units.
     pub volume_bound: f64,
     /// Warnings for the caller, one sentence each.
@@ -266,48 +286,8 @@ pub fn compute(
     let wanted = options.tolerance.unwrap_or(default.tolerance).max(floor).max(f64::MIN_POSITIVE);
     let now = &now;
     let task = BooleanTask { operands, volumes, operations, options, wanted, floor, job, now };
-    let why = match task.within(&[1.0], default.precision, &mut report)? {
-        Ok(solids) => return Ok((solids, report)),
-        Err(why) => why,
-    };
-    // Operands that cross themselves are hardly ever one tolerance away from a result.
-    let crossing = crosses_itself(operands, job)?;
-    let mut tried = None;
-    if crossing.contains(&true) {
-        match task.globally(&mut report) {
-            Ok(solids) => return Ok((solids, told(report, &why, floor))),
-            Err(BooleanError::Inconsistent(failed)) => tried = Some(failed),
-            Err(other) => return Err(other),
-        }
-        if let Some(solids) = task.as_solids(crossing, default.precision, &mut report)? {
-            return Ok((solids, report));
-        }
-    }
-    // If the first tolerance falls between distances in contact and not in contact, another does
-    // not.
-    if let Ok(solids) = task.within(task.others(), default.precision, &mut report)? {
-        report.warnings.push(format!(
-            "tolerance {:.3e} taken instead of {wanted:.3e}: {why}",
-            report.tolerance
-        ));
-        return Ok((solids, report));
-    }
-    if let Some(failed) = tried {
-        return Err(BooleanError::Inconsistent(failed));
-    }
-    let solids = task.globally(&mut report)?;
-    Ok((solids, told(report, &why, floor)))
-}
-
-/// The report on a result of the global engine, which takes the coordinates as they are.
-fn told(mut report: BooleanReport, why: &str, floor: f64) -> BooleanReport {
-    report
-        .warnings
-        .push(format!("no consistent result within the tolerance ({why}): global engine taken"));
-    report.tolerance = floor;
-    report.depends_on_tolerance = true;
-    report.contact = Contact::default();
-    report
+    let solids = task.results(default.precision, &mut report)?;
+    Ok((solids, report))
 }
 
 /// The largest coordinate.

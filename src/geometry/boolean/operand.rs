@@ -71,10 +71,7 @@ fn open_edges(mesh: &PolyMesh) -> usize {
         .count()
 }
 
-/// Of each operand, whether triangles of it go through each other.
-pub(super) fn crosses_itself(operands: [&PolyMesh; 2], job: &Job) -> Result<[bool; 2], Cancelled> {
-    let crosses = |m: &PolyMesh| {
-        self_intersection::pairs(&m.positions, &m.triangles().0, job).map(|p| !p.is_empty())
-    };
-    Ok([crosses(operands[0])?, crosses(operands[1])?])
+/// Returns true if triangles of an operand go through each other.
+pub(super) fn crosses_itself(mesh: &PolyMesh, job: &Job) -> Result<bool, Cancelled> {
+    Ok(!self_intersection::pairs(&mesh.positions, &mesh.triangles().0, job)?.is_empty())
 }

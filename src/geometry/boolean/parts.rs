@@ -54,13 +54,18 @@ fn block(mesh: &PolyMesh, n: DVec3, offset: f64) -> PolyMesh {
 /// Returns each connected shell as a separate mesh with its colours and groups, in the order of
 /// their first faces.
 pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
+    shells_of_faces(mesh).into_iter().map(|shell| shell.0).collect()
+}
+
+/// As [`shells`], with the face of `mesh` that each face is.
+pub(super) fn shells_of_faces(mesh: &PolyMesh) -> Vec<(PolyMesh, Vec<u32>)> {
     let mut sets = DisjointSets::new(mesh.positions.len());
     for f in mesh.faces() {
         f.windows(2).for_each(|w| sets.join(w[0], w[1]));
     }
     let mut number = vec![u32::MAX; mesh.positions.len()];
     let mut names = vec![u32::MAX; mesh.positions.len()];
-    let mut out: Vec<PolyMesh> = Vec::new();
+    let mut out: Vec<(PolyMesh, Vec<u32>)> = Vec::new();
     for (f, corners) in mesh.faces().enumerate() {
         let Some(&first) = corners.first() else { continue };
         let root = sets.root(first) as usize;
@@ -69,9 +74,10 @@ pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
             let mut shell = PolyMesh::new();
             shell.colours = mesh.colours.as_ref().map(|_| Vec::new());
             shell.groups = mesh.groups.as_ref().map(|_| Vec::new());
-            out.push(shell);
+            out.push((shell, Vec::new()));
         }
-        let shell = &mut out[number[root] as usize];
+        let (shell, faces) = &mut out[number[root] as usize];
+        faces.push(f as u32);
         let ring: Vec<u32> = corners
             .iter()
             .map(|&v| {
@@ -91,6 +97,41 @@ pub fn shells(mesh: &PolyMesh) -> Vec<PolyMesh> {
         }
     }
     out
+}
+
+/// Comparisons of boxes after which shells count as near each other.
+const MOST_BOXES: usize = 1 << 20;
+
+/// Returns true if the boxes of two shells meet: only then can shells touch or cross each other.
+/// Costs less than a tenth of a Boolean.
+pub(super) fn shells_may_meet(mesh: &PolyMesh) -> bool {
+    let mut sets = DisjointSets::new(mesh.positions.len());
+    for f in mesh.faces() {
+        f.windows(2).for_each(|w| sets.join(w[0], w[1]));
+    }
+    let mut number = vec![u32::MAX; mesh.positions.len()];
+    let mut boxes: Vec<Span> = Vec::new();
+    for f in mesh.faces() {
+        let Some(&first) = f.first() else { continue };
+        let root = sets.root(first) as usize;
+        if number[root] == u32::MAX {
+            number[root] = boxes.len() as u32;
+            boxes.push(Span::EMPTY);
+        }
+        let own = &mut boxes[number[root] as usize];
+        *own = Span::join(*own, Span::of(f.iter().map(|&v| mesh.positions[v as usize])));
+    }
+    boxes.sort_by(|a, b| a.lo.x.total_cmp(&b.lo.x));
+    let mut looked = 0;
+    for (i, a) in boxes.iter().enumerate() {
+        for b in boxes[i + 1..].iter().take_while(|b| b.lo.x <= a.hi.x) {
+            looked += 1;
+            if a.meets(b) || looked > MOST_BOXES {
+                return true;
+            }
+        }
+    }
+    false
 }
 
 #[cfg(test)]

@@ -87,6 +87,10 @@ pub fn solid(
     if !facts.closed {
         return Ok(Err("the solved surface is not closed".into()));
     }
+    if facts.components > 1 {
+        // Shells thinner than the rounding of their corners: cells that were no solid before.
+        emit::drop_thin_shells(&mut out, &mut origins, 8.0 * eps);
+    }
     attributes::carry(&mut out, &origins, [mesh, mesh]);
     Ok(Ok((out, origins)))
 }

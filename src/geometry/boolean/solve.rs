@@ -8,9 +8,11 @@ use super::box_tree::Span;
 use super::broad_phase::SurfaceView;
 use super::classify::{WindingOracle, probe};
 use super::emit::FaceOrigin;
+use super::global::Engine;
+use super::parts::shells_of_faces;
 use super::{
-    BooleanError, BooleanOptions, Operation, ResultFaces, compute, global, reach, self_arrangement,
-    shells,
+    BooleanError, BooleanOptions, Operation, OwnCrossings, ResultFaces, compute, global, reach,
+    self_arrangement,
 };
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
@@ -20,6 +22,9 @@ use crate::self_intersection;
 /// of it beside which that is done.
 const PLACES: u32 = 1000;
 const FACES: usize = 300;
+
+/// A solved surface, and the face that each of its faces came from.
+pub(super) type Solved = (PolyMesh, Vec<FaceOrigin>);
 
 /// Returns the solid of all places that a self-crossing surface winds around, counted with its
 /// direction: a shell that faces inwards subtracts. The mesh must be closed. The result is
@@ -34,12 +39,17 @@ const FACES: usize = 300;
 /// # Errors
 /// Returns [`BooleanError::Inconsistent`] if neither gives a result that passes.
 pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
-    let parts = shells(mesh);
-    let outwards = |m: &PolyMesh| super::emit::measure(m).0 > 0.0;
+    solved(mesh, job).map(|made| made.0)
+}
+
+/// As [`solve`], with the origins of the faces.
+pub(super) fn solved(mesh: &PolyMesh, job: &Job) -> Result<Solved, BooleanError> {
+    let parts = shells_of_faces(mesh);
+    let outwards = |m: &(PolyMesh, Vec<u32>)| super::emit::measure(&m.0).0 > 0.0;
     let apart = parts.len() > 1 && parts.iter().all(outwards);
     let clean = apart && {
         let mut alone = true;
-        for part in &parts {
+        for (part, _) in &parts {
             alone &=
                 self_intersection::pairs(&part.positions, &part.triangles().0, job)?.is_empty();
         }
@@ -47,36 +57,37 @@ pub fn solve(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, BooleanError> {
     };
     if clean
         && let Some(sum) = united(&parts, true, job)?
-        && differs(mesh, &sum, job)?.is_none()
+        && differs(mesh, &sum.0, job)?.is_none()
     {
         return Ok(sum);
     }
-    if let Some((made, _)) = arranged(mesh, job)? {
+    if let Some(made) = arranged(mesh, job)? {
         return Ok(made);
     }
-    let first = match global::solve(mesh, job)? {
-        Ok(made) => match differs(mesh, &made, job)? {
-            None => return Ok(made),
-            Some(why) => why,
-        },
-        Err(why) => why,
-    };
+    let mut failed = Vec::new();
+    for engine in [Engine::Perturbed, Engine::Rational] {
+        let why = match global::solve(mesh, engine, job)? {
+            Ok(made) => match differs(mesh, &made.0, job)? {
+                None => return Ok(made),
+                Some(why) => why,
+            },
+            Err(why) => why,
+        };
+        failed.push(format!("{}: {why}", engine.name()));
+    }
     if apart
         && let Some(sum) = united(&parts, false, job)?
-        && differs(mesh, &sum, job)?.is_none()
+        && differs(mesh, &sum.0, job)?.is_none()
     {
         return Ok(sum);
     }
-    Err(BooleanError::Inconsistent(first))
+    Err(BooleanError::Inconsistent(failed.join("; ")))
 }
 
 /// The solid by an arrangement of the surface with itself, decided by what rounding alone does.
 /// None where that does not fit together, crosses itself, or is another solid. With the face that
 /// each of its faces came from.
-pub(super) fn arranged(
-    mesh: &PolyMesh,
-    job: &Job,
-) -> Result<Option<(PolyMesh, Vec<FaceOrigin>)>, Cancelled> {
+pub(super) fn arranged(mesh: &PolyMesh, job: &Job) -> Result<Option<Solved>, Cancelled> {
     let eps = reach(&mesh.positions) * 2f64.powi(-49);
     let made = self_arrangement::solid(mesh, eps.max(f64::MIN_POSITIVE), job)?;
     let Ok((made, origins)) = made else { return Ok(None) };
@@ -85,11 +96,19 @@ pub(super) fn arranged(
     Ok(good.then_some((made, origins)))
 }
 
-/// The union of shells, two and two: none where two of them give no result, or where `strictly` and
-/// the tolerance decided something.
-fn united(parts: &[PolyMesh], strictly: bool, job: &Job) -> Result<Option<PolyMesh>, BooleanError> {
-    let options = BooleanOptions { faces: ResultFaces::Triangles, ..BooleanOptions::default() };
-    let mut left: Vec<PolyMesh> = parts.to_vec();
+/// The union of shells, two and two, each with its faces in the whole: none where two of them give
+/// no result, or where `strictly` and the tolerance decided something.
+fn united(
+    parts: &[(PolyMesh, Vec<u32>)],
+    strictly: bool,
+    job: &Job,
+) -> Result<Option<Solved>, BooleanError> {
+    let options = BooleanOptions {
+        faces: ResultFaces::Triangles,
+        own_crossings: OwnCrossings::Keep,
+        ..BooleanOptions::default()
+    };
+    let mut left: Vec<(PolyMesh, Vec<u32>)> = parts.to_vec();
     while left.len() > 1 {
         let mut next = Vec::with_capacity(left.len().div_ceil(2));
         for two in left.chunks(2) {
@@ -97,7 +116,9 @@ fn united(parts: &[PolyMesh], strictly: bool, job: &Job) -> Result<Option<PolyMe
                 next.extend_from_slice(two);
                 continue;
             };
-            let (made, report) = match compute([a, b], &[Operation::Union], &options, job, || 0.0) {
+            let operands = [&a.0, &b.0];
+            let (made, report) = match compute(operands, &[Operation::Union], &options, job, || 0.0)
+            {
                 Err(BooleanError::Cancelled(e)) => return Err(e.into()),
                 Err(_) => return Ok(None),
                 Ok(made) => made,
@@ -105,11 +126,16 @@ fn united(parts: &[PolyMesh], strictly: bool, job: &Job) -> Result<Option<PolyMe
             if strictly && report.depends_on_tolerance {
                 return Ok(None);
             }
-            next.extend(made.into_iter().map(|s| s.mesh));
+            let from = |o: &FaceOrigin| [&a.1, &b.1][o.operand as usize][o.face as usize];
+            next.extend(made.into_iter().map(|s| {
+                let faces = s.origins.iter().map(from).collect();
+                (s.mesh, faces)
+            }));
         }
         left = next;
     }
-    Ok(left.pop())
+    let origin = |face| FaceOrigin { operand: 0, face };
+    Ok(left.pop().map(|(mesh, faces)| (mesh, faces.into_iter().map(origin).collect())))
 }
 
 /// A place that is inside of one and outside of the other, in words.
@@ -216,10 +242,9 @@ mod tests {
             balls.groups = Some(groups);
         }
         let united = {
-            let parts = shells(&balls);
-            super::super::emit::measure(
-                &united(&parts, true, &Job::default()).expect("runs").expect("so"),
-            )
+            let parts = shells_of_faces(&balls);
+            let made = united(&parts, true, &Job::default()).expect("runs").expect("so");
+            super::super::emit::measure(&made.0)
         };
         for (mesh, volume) in
             [(crate::shapes::torus(1.0, 1.3, 24, 17), None), (balls, Some(united.0))]

@@ -1,14 +1,14 @@
-//! The results of one pair of operands: with one tolerance, with others, of operands that cross
-//! themselves, and by the global engine.
+//! The results of one pair of operands, by the arrangement or by the global engine.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::arrange::{Arrangement, FaceState};
 use super::box_tree::Span;
+use super::global::{Engine, GlobalEngine};
 use super::{
-    BooleanError, BooleanOptions, BooleanReport, BooleanSolid, NAMES, Operation, Precision,
-    ResultFaces, attributes, common, emit, global, one_surface, simplify, solve, verify,
+    BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, Precision, ResultFaces,
+    attributes, common, emit, one_surface, simplify, verify,
 };
 use crate::PolyMesh;
 use crate::job::Job;
@@ -81,60 +81,19 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         Ok(Err(why))
     }
 
-    /// The results where each operand that crosses itself is the solid of all places that it goes
-    /// around; none where that is not found, or gives no result.
-    pub fn as_solids(
+    /// The results by an engine that knows no tolerance, compared with each other as those of the
+    /// arrangement are. The inner error says why they are not consistent.
+    pub fn by_engine(
         &self,
-        crossing: [bool; 2],
-        precision: Precision,
+        engine: Engine,
         report: &mut BooleanReport,
-    ) -> Result<Option<Vec<BooleanSolid>>, BooleanError> {
-        let start = (self.now)();
-        let mut solved = [None, None];
-        for s in (0..2).filter(|&s| crossing[s]) {
-            let Some(made) = solve::arranged(self.operands[s], self.job)? else { return Ok(None) };
-            solved[s] = Some(made);
-        }
-        report.phases.push(("solve", (self.now)() - start));
-        let mesh = |s: usize| solved[s].as_ref().map_or(self.operands[s], |made| &made.0);
-        let operands = [mesh(0), mesh(1)];
-        let volume = |s: usize| match &solved[s] {
-            Some(made) => emit::measure(&made.0).0,
-            None => self.volumes[s],
-        };
-        let task = BooleanTask { operands, volumes: [volume(0), volume(1)], ..*self };
-        let mut made = BooleanReport { precision: report.precision, ..BooleanReport::default() };
-        let mut solids = task.within(&[1.0], precision, &mut made)?;
-        if solids.is_err() {
-            solids = task.within(self.others(), precision, &mut made)?;
-        }
-        let Ok(mut solids) = solids else { return Ok(None) };
-        for solid in &mut solids {
-            for origin in &mut solid.origins {
-                if let Some((_, from)) = &solved[origin.operand as usize] {
-                    origin.face = from[origin.face as usize].face;
-                }
-            }
-        }
-        for s in (0..2).filter(|&s| crossing[s]) {
-            report.warnings.push(format!(
-                "{} crosses itself: it was taken as the solid of all places that it goes around",
-                NAMES[s]
-            ));
-        }
-        report.phases.append(&mut made.phases);
-        report.warnings.append(&mut made.warnings);
-        let (phases, warnings) = (report.phases.split_off(0), report.warnings.split_off(0));
-        *report = BooleanReport { phases, warnings, ..made };
-        Ok(Some(solids))
-    }
-
-    /// The four results by the global engine, held against each other as the others are.
-    pub fn globally(&self, report: &mut BooleanReport) -> Result<Vec<BooleanSolid>, BooleanError> {
+    ) -> Result<Result<Vec<BooleanSolid>, String>, BooleanError> {
         let BooleanTask { operands, volumes, operations, options, floor, job, now, .. } = *self;
         let start = now();
-        let engine =
-            global::GlobalEngine::new(operands, floor, job)?.map_err(BooleanError::Inconsistent)?;
+        let made = match GlobalEngine::new(operands, engine, floor, job)? {
+            Ok(made) => made,
+            Err(why) => return Ok(Err(why)),
+        };
         let mut solids = Vec::new();
         // Union and intersection too where they were not asked for: the volumes are to add up.
         let needed = |o: &Operation| {
@@ -142,13 +101,17 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         };
         for operation in Operation::ALL.into_iter().filter(needed) {
             let triangles = options.faces.triangles(operands);
-            let (mut mesh, origins, facts) =
-                engine.run(operation, triangles, job)?.map_err(BooleanError::Inconsistent)?;
+            let (mut mesh, mut origins, mut facts) = match made.run(operation, triangles, job)? {
+                Ok(made) => made,
+                Err(why) => return Ok(Err(why)),
+            };
             if !facts.closed {
-                return Err(BooleanError::Inconsistent(format!(
-                    "the {} is not closed",
-                    operation.name()
-                )));
+                return Ok(Err(format!("the {} is not closed", operation.name())));
+            }
+            // What rounding the exact places leaves of slivers.
+            let thin = engine == Engine::Rational && facts.components > 1;
+            if thin && emit::drop_thin_shells(&mut mesh, &mut origins, 8.0 * floor) > 0 {
+                facts = emit::facts(&mesh, job)?;
             }
             attributes::carry(&mut mesh, &origins, operands);
             solids.push(BooleanSolid { operation, mesh, origins, facts });
@@ -162,11 +125,11 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         };
         report.phases.push(("verify", now() - start));
         if let Some(why) = wrong {
-            return Err(BooleanError::Inconsistent(why));
+            return Ok(Err(why));
         }
         let asked = |o: &Operation| solids.iter().position(|s| s.operation == *o);
         let order: Vec<usize> = operations.iter().filter_map(asked).collect();
-        Ok(order.into_iter().map(|i| solids[i].clone()).collect())
+        Ok(Ok(order.into_iter().map(|i| solids[i].clone()).collect()))
     }
 
     /// With one tolerance. The inner error says why the arrangement is not consistent.
@@ -195,6 +158,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
                 report.contact = common.points.contact;
                 let slack = floor.max(8.0 * report.contact.farthest);
                 let why = doubt(&solids, volumes, slack, &common.points.at, report);
+                report.same_surface = true;
                 return Ok(why.map_or(Ok(solids), Err));
             }
             common.pair_again(job)?;
@@ -346,7 +310,7 @@ mod tests {
             now: &|| 0.0,
         };
         let mut report = BooleanReport::default();
-        let made = task.as_solids([true, false], Precision::Double, &mut report);
+        let made = task.as_solids([true, false], false, Precision::Double, &mut report);
         let made = made.expect("runs").expect("results");
         assert!(report.warnings.iter().any(|w| w.starts_with("A crosses itself")));
         let of = |o| made.iter().find(|s| s.operation == o).map_or(f64::NAN, |s| s.facts.volume);

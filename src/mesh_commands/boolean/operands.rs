@@ -9,46 +9,39 @@ use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, check, repair};
 
-/// Operands of which at least one was solved by winding.
-pub(super) struct SolvedOperands {
-    /// All operands, in their order.
+/// The operands in their order.
+#[derive(Default)]
+pub(super) struct Operands {
     pub meshes: Vec<PolyMesh>,
-    /// A warning for each that was solved.
-    pub warnings: Vec<String>,
+    /// Of each, whether it is known to be closed and manifold, without triangles that cross.
+    pub clean: Vec<bool>,
+    /// Of each, whether it has triangles that cross, where that is known.
+    pub crossing: Vec<Option<bool>>,
 }
 
-/// Replaces each operand that is not clean by the solid that its surface encloses. Returns `None`
-/// if no operand could be replaced.
-pub(super) fn solved(
-    operands: &[PolyMesh],
-    clean: &[bool],
-    args: &BooleanArgs,
-    job: &Job,
-) -> Result<Option<SolvedOperands>, Fail> {
-    let (mut meshes, mut warnings) = (operands.to_vec(), Vec::new());
-    for (n, mesh) in meshes.iter_mut().enumerate().filter(|(n, _)| !clean[*n]) {
-        match boolean::solve(mesh, job) {
-            Ok(solid) => *mesh = solid,
-            Err(BooleanError::Inconsistent(_)) => continue,
-            Err(e) => return Err(e.into()),
-        }
-        warnings.push(format!(
-            "{}: solved by winding, because it crosses itself, and so did the result without that",
-            args.meshes[n].display()
-        ));
+/// One operand, as it goes into [`Operands`].
+pub(super) struct Operand {
+    mesh: PolyMesh,
+    clean: bool,
+    crossing: Option<bool>,
+}
+
+impl Operands {
+    pub fn push(&mut self, operand: Operand) {
+        self.meshes.push(operand.mesh);
+        self.clean.push(operand.clean);
+        self.crossing.push(operand.crossing);
     }
-    Ok((!warnings.is_empty()).then_some(SolvedOperands { meshes, warnings }))
 }
 
-/// Reads one operand, repairs it if asked, and warns of its faults. The second value is true if it
-/// is known to be closed and manifold, without triangles that cross.
+/// Reads one operand, repairs it if asked, and warns of its faults.
 pub(super) fn operand(
     path: &Path,
     args: &BooleanArgs,
     job: &Job,
     now: &impl Fn() -> f64,
     out: &mut BooleanAnswer,
-) -> Result<(PolyMesh, bool), Fail> {
+) -> Result<Operand, Fail> {
     let mut lap = now();
     let mut phase = |out: &mut BooleanAnswer, name: &str| {
         let t = now();
@@ -78,6 +71,7 @@ pub(super) fn operand(
         }
     }
     let crossed = facts.self_intersections.unwrap_or(0);
+    let mut crossing = facts.self_intersections.map(|pairs| pairs > 0);
     let mut clean = facts.closed && facts.manifold && facts.self_intersections == Some(0);
     phase(out, "look");
     // Whether the faces' directions say what is inside.
@@ -95,7 +89,7 @@ pub(super) fn operand(
         let filled = repair::fill_holes(&mut mesh, usize::MAX);
         let was = mesh.face_count();
         mesh = boolean::solve(&mesh, job)?;
-        clean = false;
+        (clean, crossing) = (false, None);
         let steps = [
             (turned, "faces turned"),
             (filled.holes, "holes closed"),
@@ -111,10 +105,10 @@ pub(super) fn operand(
         phase(out, "solve");
     } else if crossed > 0 {
         out.warnings.push(format!(
-            "{}: {crossed} pairs of triangles cross; what lies there is taken as it is (--solve \
-                winding mends it)",
+            "{}: {crossed} pairs of triangles cross; what lies there is taken as it is unless the \
+             results cross there too (--solve winding mends it)",
             path.display()
         ));
     }
-    Ok((mesh, clean))
+    Ok(Operand { mesh, clean, crossing })
 }

@@ -130,7 +130,7 @@ fn options(tolerance: Option<f64>, faces: &str, keep_contact: bool) -> PyResult<
     if tolerance.is_some_and(|t| !(t >= 0.0 && t.is_finite())) {
         return Err(PyValueError::new_err("tolerance: expected a length of 0 or more"));
     }
-    Ok(BooleanOptions { tolerance, faces, keep_contact })
+    Ok(BooleanOptions { tolerance, faces, keep_contact, ..BooleanOptions::default() })
 }
 
 fn computed(
@@ -174,6 +174,9 @@ pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResul
 /// `faces`: what cut faces become: 'as-operands', 'triangles', 'convex' or 'polygons'.
 /// `keep_contact`: faces in which the solids only touch belong to the intersection too.
 /// `progress`: called with 0 to 1 about ten times a second; an exception from it cancels.
+///
+/// If an operand of several shells crosses itself, and the result does too, the operand is replaced
+/// by the solid of all places that it goes around; `warnings` says so.
 ///
 /// Raises BooleanFailed with `kind` and `operand` where an operand is open or inside out, or where
 /// no result passes the checks.
