@@ -18,7 +18,7 @@ use sculptd_geometry::boolean::{
 };
 use sculptd_geometry::check;
 use sculptd_geometry::job::Job;
-use solids::{Solid, expected};
+use solids::Solid;
 
 fn all(
     a: &Solid,
@@ -36,7 +36,10 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
         Ok(x) => x,
         Err(e) => return vec![format!("{} ({placement}): {e}", s.name)],
     };
-    out.extend(report.warnings.iter().map(|w| format!("{} ({placement}): warning: {w}", s.name)));
+    // Pieces that touch in full faces are solved by winding, and that is said.
+    let told = |w: &&String| !(s.name.contains("goblet") && w.contains("solved by winding"));
+    let warnings = report.warnings.iter().filter(told);
+    out.extend(warnings.map(|w| format!("{} ({placement}): warning: {w}", s.name)));
     for (k, m) in made.iter().enumerate() {
         let mut fault = |what: String| {
             out.push(format!("{} ({placement}), {}: {what}", s.name, m.operation.name()))
@@ -56,11 +59,10 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
         if facts.components != s.components[k] {
             fault(format!("{} components instead of {}", facts.components, s.components[k]));
         }
-        // Touching pieces of one operand count as crossing, in the operand as in the result. So do
-        // corners that rounding leaves beside a turned plane. The area shows that there is no
-        // further error.
-        let stacked = s.name.contains("goblet") || placement != "as it stands";
-        if facts.degenerate_faces > 0 || (facts.crossed_triangles != Some(0) && !stacked) {
+        // Corners that rounding leaves beside a turned plane count as crossing. The area shows that
+        // there is no further error.
+        let turned = placement != "as it stands";
+        if facts.degenerate_faces > 0 || (facts.crossed_triangles != Some(0) && !turned) {
             fault(format!(
                 "{} degenerate, {:?} crossed",
                 facts.degenerate_faces, facts.crossed_triangles
@@ -79,7 +81,7 @@ fn faults(s: &Scene, want: &[(f64, f64); 4], placement: &str) -> Vec<String> {
 fn the_scenes_as_they_stand_and_turned() {
     let mut wrong = Vec::new();
     for mut s in scenes() {
-        let want = expected(&s.a, &s.b);
+        let want = s.wanted();
         wrong.extend(faults(&s, &want, "as it stands"));
         let (a, b) = (s.a.clone(), s.b.clone());
         for (angle, shift) in [

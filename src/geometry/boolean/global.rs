@@ -131,7 +131,7 @@ impl GlobalEngine {
                 let given = plain(&meshes[s], ids[s], job).map_err(|e| e.to_string())?;
                 sound(match engine {
                     Engine::Perturbed => Manifold::from_mesh_gl64(&given),
-                    Engine::Rational => Manifold::from_mesh_gl64_robust(&loose(given)),
+                    Engine::Rational => Manifold::from_mesh_gl64_robust(&unwelded(given)),
                 })
             };
             let operands = [one(0)?, one(1)?];
@@ -228,7 +228,7 @@ fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
 }
 
 /// The same triangles, each with three corners of its own. The crate then keeps them as they are.
-fn loose(given: MeshGL64) -> MeshGL64 {
+fn unwelded(given: MeshGL64) -> MeshGL64 {
     let corner = |&v: &u64| &given.vert_properties[3 * v as usize..3 * v as usize + 3];
     let vert_properties = given.tri_verts.iter().flat_map(corner).copied().collect();
     let tri_verts = (0..given.tri_verts.len() as u64).collect();
@@ -247,7 +247,7 @@ pub fn solve(
         let said = |e: Cancelled| e.to_string();
         let mut given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
         if engine == Engine::Rational {
-            given = loose(given);
+            given = unwelded(given);
         }
         let raw = sound(Manifold::from_mesh_gl64_robust(&given))?;
         let gl = sound(raw.rebuild_solid_with_token(WindingRule::Positive, Some(token)))?

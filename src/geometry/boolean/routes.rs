@@ -27,7 +27,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
             Err(why) => why,
         };
         // Operands that cross themselves are hardly ever one tolerance away from a result.
-        let crossing = self.crossing(|_| true)?;
+        let crossing = self.self_crossing_operands(|_| true)?;
         let crosses = crossing.contains(&true);
         let mut tried = vec![why.clone()];
         if crosses {
@@ -74,7 +74,10 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
 
     /// Returns which operands cross themselves, as the caller knows or as is found. An operand that
     /// is not `doubtful` is not examined.
-    fn crossing(&self, doubtful: fn(&PolyMesh) -> bool) -> Result<[bool; 2], Cancelled> {
+    fn self_crossing_operands(
+        &self,
+        doubtful: fn(&PolyMesh) -> bool,
+    ) -> Result<[bool; 2], Cancelled> {
         let BooleanTask { operands, options, job, .. } = *self;
         let one = |s: usize| match options.known_crossings[s] {
             Some(known) => Ok(known),
@@ -177,7 +180,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         let start = now();
         let crossing = match crossing {
             Some(known) => known,
-            None => self.crossing(parts::shells_may_meet)?,
+            None => self.self_crossing_operands(parts::shells_may_meet)?,
         };
         if crossing == [false; 2] {
             return Ok(solids);
