@@ -210,7 +210,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             presets: crate::presets().clone(),
             brushes: own_brushes(args.brushes.as_deref())?,
             languages: LANGUAGES,
-            visits: (args.kiosk && session.is_none()).then(library::visits).flatten(),
+            // The people of a shared sculpture hold its work already.
+            visits: (args.kiosk && session.is_none() && !is_shared).then(library::visits).flatten(),
             kiosk,
             demo_devices: false,
             devices: true,

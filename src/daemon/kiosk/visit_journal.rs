@@ -193,9 +193,7 @@ impl VisitFolder {
             }
         }
         self.prepare = None;
-        // A file in which nobody sculpted is of no use to the next start.
-        let unused = self.health.written.load(Relaxed) == 0;
-        self.close(unused.then_some(PutAway::Done));
+        self.close(None);
     }
 
     /// Makes the next visit's file.
@@ -218,7 +216,8 @@ impl VisitFolder {
         }
     }
 
-    /// Closes the file; `None`: it stays, for the visit to go on at the next start.
+    /// Closes the file; `None`: it stays, for the visit to go on at the next start, unless it has
+    /// no input.
     fn close(&mut self, work: Option<PutAway>) {
         let Some(thread) = self.open.take() else { return };
         let path = thread.path.get();
@@ -226,9 +225,11 @@ impl VisitFolder {
         if let Some(why) = &trouble {
             tracing::error!("kiosk: {}: {why}", path.display());
         }
+        // Known only now: the last input is written as the file is closed.
+        let empty = trouble.is_none() && self.health.written.load(Relaxed) == 0;
         let done = match work {
-            None => Ok(()),
-            Some(PutAway::Done) => catalog::remove(&path),
+            None if !empty => Ok(()),
+            None | Some(PutAway::Done) => catalog::remove(&path),
             Some(PutAway::Refused) => set_aside(&path, "visit-not-kept").map(|to| {
                 tracing::error!("kiosk: the gallery took no work: it is in {}", to.display());
             }),
