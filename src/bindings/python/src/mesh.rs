@@ -284,7 +284,10 @@ impl Mesh {
 
     /// Equal bits of positions, faces, colours, groups and attributes.
     fn __eq__(&self, other: &Bound<'_, Mesh>) -> bool {
-        Arc::ptr_eq(&self.poly, &other.get().poly) || self.poly == other.get().poly
+        let (a, b) = (&self.poly, &other.get().poly);
+        // By bits, as the hash: 0 and -0 differ.
+        let bits = bytemuck::cast_slice::<DVec3, u64>;
+        Arc::ptr_eq(a, b) || a == b && bits(&a.positions) == bits(&b.positions)
     }
 
     fn __hash__(&self) -> u64 {

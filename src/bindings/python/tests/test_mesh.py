@@ -74,6 +74,9 @@ class Copies(unittest.TestCase):
         self.assertEqual(len({a, b, copy.copy(a), copy.deepcopy(b)}), 1)
         self.assertNotEqual(a, sculptd.Mesh.sphere(3.0, 5))
         self.assertNotEqual(a, "a mesh")
+        below = sculptd.Mesh([[-0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        above = sculptd.Mesh([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        self.assertNotEqual(below, above, "equal meshes would need equal hashes")
 
     def test_a_damaged_pickle_is_refused(self):
         bytes_of = pickle.dumps(sculptd.Mesh.sphere(1.0, 2), 2)
