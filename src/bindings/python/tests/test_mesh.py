@@ -133,7 +133,7 @@ class PartCheck(unittest.TestCase):
 
     def test_units_and_names(self):
         box = sculptd.Mesh.box([0, 0, 0], [1, 1, 1])
-        inch = sculptd.check(box, process="fdm", scale=25.4)["facts"]
+        inch = sculptd.check(box, process="fdm", scale=25.4)
         self.assertAlmostEqual(inch["volume"], 25.4**3, delta=0.1)
         for bad in ({"process": "glass"}, {"printer": "x"}, {"process": "fdm", "up": [0, 0, 0]}):
             with self.assertRaises(ValueError):
