@@ -80,7 +80,7 @@
 //! * `sculptd-control` (`src/control`) depends on none: the requests, replies and events of the
 //!   control socket as types, their JSON schema, a client.
 //! * `sculptd-daemon` (`src/daemon`) depends on all of the above: the tick loop, simulated time,
-//!   sessions, control socket, kiosk, metrics.
+//!   sessions, control socket, kiosk, metrics, the page by which guests join.
 //! * `sculptd-network` (`src/network`) depends on the daemon and all below it: one sculpture shared
 //!   by several daemons, and a fleet of installations. Both protocols are state machines without
 //!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
@@ -134,8 +134,11 @@
 //!   that client.
 //! * `sculptd-events`, made by `daemon::control::events`: sends events to one client. Waits for:
 //!   the published state.
-//! * `sculptd-metrics`, `sculptd-share`, made by `daemon::http`: serve metrics, and a visitor's
-//!   sculpture for download, each to many clients. Wait for: their socket, time.
+//! * `sculptd-metrics`, `sculptd-share`, `sculptd-web`, made by `daemon::http`: serve metrics, a
+//!   visitor's sculpture for download, and the page by which guests join, each to many clients. Wait
+//!   for: their socket, time.
+//! * `sculptd-page`, made by `daemon::web`: reads what one guest's page sends, and sends it the clay
+//!   that it lacks. Waits for: that page, time.
 //! * `sculptd-telemetry`, made by `daemon::telemetry`: sends metrics and the log to a collector.
 //!   Waits for: time, the collector.
 //! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits

@@ -13,6 +13,7 @@
 //! | [`pad_actions`] | actions of keys, wheels, rings, barrel buttons and the eraser | none |
 //! | [`serial`] | serial pens: four protocols, resync, probing of allowed ports only | one a port |
 //! | [`leap`] | tracked hands: WebSocket client, frames, the tracker's clock | one a service |
+//! | [`browser`] | pens, fingers and mice of a web page, from its batches | none |
 //! | [`calibration`], [`filter`] | settings for a tablet; jitter of tracked hands | none |
 //! | [`prediction`] | predicted pen position when a frame is seen; only for display | none |
 //! | [`queue`] | the channel to the consumer: bounded, lock-free, no transition lost | none |
@@ -62,6 +63,7 @@
 
 #![deny(missing_docs)]
 
+pub mod browser;
 mod builtin;
 pub mod calibration;
 pub mod catalogue;

@@ -456,6 +456,17 @@ impl Page {
         self.sets().filter(|s| s.any_hidden).map(|s| s.rows.as_slice())
     }
 
+    /// Returns true if the same triangles between the same rows are shown as of an older state of
+    /// this page. False also where only face sets differ.
+    pub fn shows_triangles_of(&self, older: &Page) -> bool {
+        let same_sets = match (&self.sets, &older.sets) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        same_sets && Arc::ptr_eq(&self.topology, &older.topology)
+    }
+
     /// Returns true if all corners of a triangle are hidden.
     #[inline]
     pub fn is_triangle_hidden(&self, triangle: usize) -> bool {

@@ -95,8 +95,25 @@ pub fn window(
         link: run.window.clone(),
         thickness_presets: super::thickness_presets::all().map_err(|e| e.to_string())?,
         kiosk: run.kiosk.clone(),
+        invitation: invitation(run),
     };
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
+}
+
+/// The newest link by which guests sculpt.
+#[cfg(all(feature = "viewer", unix))]
+fn invitation(run: &LiveRun) -> Option<sculptd_daemon::qr_code::Invitation> {
+    use sculptd_daemon::qr_code::{Code, Invitation};
+    let web = run.web.as_ref()?;
+    let keys = web.state.keys.all(run.clock.now_us());
+    let key = keys.iter().rfind(|k| k.role == sculptd_daemon::web::WebRole::Sculptor)?;
+    let url = web.link(key);
+    Some(Invitation { code: Code::of(&url)?, url })
+}
+
+#[cfg(all(feature = "viewer", not(unix)))]
+fn invitation(_: &LiveRun) -> Option<sculptd_daemon::qr_code::Invitation> {
+    None
 }
 
 /// Checks that the window has the material that the screen of an installation uses.

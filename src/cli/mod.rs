@@ -46,6 +46,8 @@ pub mod shared;
 pub mod telemetry;
 mod thickness_presets;
 #[cfg(unix)]
+#[cfg(unix)]
+pub mod web_page;
 pub mod window;
 mod window_guard;
 

@@ -90,6 +90,9 @@ pub struct RunArgs {
     #[cfg(unix)]
     #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = "")]
     pub telemetry: Option<String>,
+    #[cfg(unix)]
+    #[command(flatten)]
+    pub web: super::web_page::WebArgs,
     #[cfg(feature = "network")]
     #[command(flatten)]
     pub shared: super::shared::SharedArgs,
@@ -148,6 +151,12 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if args.telemetry.is_some() && !on_the_wall_clock {
         let text = "--telemetry needs a run on the wall's clock, and a recording that is played \
                     headless runs on a simulated one: leave out --telemetry, or --headless";
+        return Err(Fail::Usage(text.into()));
+    }
+    #[cfg(unix)]
+    if args.web.web.is_some() && (is_shared || !on_the_wall_clock) {
+        let text = "--web cannot be used with a sculpture shared over the network, nor with \
+                    recordings that are played headless: leave out --web, or the others";
         return Err(Fail::Usage(text.into()));
     }
     #[cfg(unix)]
@@ -223,6 +232,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             metrics: args.metrics,
             #[cfg(unix)]
             telemetry,
+            #[cfg(unix)]
+            web: args.web.options(),
             window: WindowLink::new(session.map(PathBuf::as_path)),
             shared,
         };
@@ -340,6 +351,10 @@ fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
         all.extend(["--metrics".into(), at.to_string().into()]);
     }
     #[cfg(unix)]
+    if let Some(at) = args.web.web {
+        all.push(format!("--web={at}").into());
+        all.push(format!("--web-name={}", args.web.web_name).into());
+    }
     if let Some(url) = &args.telemetry {
         all.push(format!("--telemetry={url}").into());
     }

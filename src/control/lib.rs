@@ -35,6 +35,7 @@ pub mod client;
 pub mod edit;
 pub mod event;
 pub mod face_sets;
+pub mod guests;
 pub mod layers;
 pub mod method;
 pub mod people;

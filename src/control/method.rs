@@ -24,6 +24,9 @@ use crate::face_sets::{
     FaceSetExtractParams, FaceSetMakeParams, FaceSetNameParams, FaceSetParams, FaceSetRegionParams,
     FaceSetReply, FaceSetShowParams, FaceSetsReply,
 };
+use crate::guests::{
+    GuestInviteParams, GuestLink, GuestRevokeParams, GuestRevokeReply, GuestsReply,
+};
 use crate::layers::{
     LayerActivateParams, LayerAddParams, LayerMoveParams, LayerParams, LayerRenameParams,
     LayerReply, LayerSetParams, LayersReply,
@@ -204,6 +207,12 @@ methods! {
     "stroke" Stroke stroke(StrokeParams) -> StrokeReply;
     /// Who shares the sculpture: names, roles, colours, and where their pens meet the clay.
     "people" People people(NoParams) -> PeopleReply;
+    /// Lists the guests who joined in a browser, and the links by which guests join.
+    "guests.list" GuestsList guests_list(NoParams) -> GuestsReply;
+    /// Makes a link by which guests join in a browser.
+    "guests.invite" GuestsInvite guests_invite(GuestInviteParams) -> GuestLink;
+    /// Revokes a link: the guests who joined by it are disconnected.
+    "guests.revoke" GuestsRevoke guests_revoke(GuestRevokeParams) -> GuestRevokeReply;
     /// Changes the named settings of the camera, and answers with all.
     "camera" Camera camera(CameraSettings) -> CameraSettings;
     /// Undoes one step; of a shared sculpture the person's newest step, unless somebody else has

@@ -9,15 +9,19 @@ use sculptd_devices::tablet::TabletError;
 use sculptd_devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial
-/// ports from 100, the tracker 200, recordings from 300, the window's own pointer 400, the pen of
-/// the control socket's strokes 401.
+/// ports from 100, the tracker 200, the demo's devices from 201, attract films from 230, the window's
+/// own pointer 246, the pen of the control socket's strokes 247, browsers that serve as a tablet
+/// from 248. All are below 256: the upper byte of an id is the number of the person whose device it
+/// is. Played recordings take the ids of tablets.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
 /// Ids of tablets and serial pens, which a desktop may move its pointer by.
 pub const TABLET_IDS: std::ops::Range<u16> = 0..TRACKER_ID.0;
-pub const RECORDING_IDS: u16 = 300;
-pub const POINTER_ID: DeviceId = DeviceId(400);
-pub const CONTROL_PEN_ID: DeviceId = DeviceId(401);
+pub const DEMO_IDS: [DeviceId; 3] = [DeviceId(201), DeviceId(202), DeviceId(203)];
+pub const ATTRACT_IDS: std::ops::Range<u16> = 230..246;
+pub const POINTER_ID: DeviceId = DeviceId(246);
+pub const CONTROL_PEN_ID: DeviceId = DeviceId(247);
+pub const BROWSER_TABLET_IDS: std::ops::Range<u16> = 248..256;
 
 /// Running adaptors; they stop when this is dropped.
 #[derive(Debug, Default)]

@@ -4,15 +4,16 @@
 
 use std::time::Duration;
 
+use crate::adaptors::DEMO_IDS;
 use crate::simulated_loop::Feed;
 use sculptd_devices::catalogue::{Catalogue, Found, Identification};
 use sculptd_devices::queue::SenderFactory;
 use sculptd_devices::{Clock, DeviceId, hid, leap, serial, sim};
 
 /// Ids of the ghosts, apart from those of real devices (see [`super::adaptors`]).
-const TABLET: DeviceId = DeviceId(500);
-const SERIAL: DeviceId = DeviceId(501);
-const HANDS: DeviceId = DeviceId(502);
+const TABLET: DeviceId = DEMO_IDS[0];
+const SERIAL: DeviceId = DEMO_IDS[1];
+const HANDS: DeviceId = DEMO_IDS[2];
 
 /// The tablet that the ghost holds: a common one with tilt, hover distance and an eraser.
 const MODEL: &str = "Wacom PTK-440";

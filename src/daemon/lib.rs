@@ -43,7 +43,10 @@ pub mod polygons;
 pub mod present_latency;
 pub mod priority;
 pub mod published;
+pub mod qr_code;
 pub mod quad_job;
+#[cfg(unix)]
+pub mod random_token;
 pub mod remesh_job;
 pub mod scene_jobs;
 #[cfg(unix)]
@@ -65,6 +68,8 @@ pub mod tick;
 pub mod tick_statistics;
 pub mod toml_text;
 pub mod trim;
+#[cfg(unix)]
+pub mod web;
 pub mod window_link;
 
 pub use published::{Published, Publisher};

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use arc_swap::ArcSwap;
+use arc_swap::{ArcSwap, ArcSwapOption};
 use crossbeam_channel as cc;
 
 use super::pacer::Pacer;
@@ -21,6 +21,7 @@ use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand, command_
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
+use crate::people::PeopleHere;
 use crate::priority::raise_priority;
 use crate::session::writer::WriterThread;
 use crate::shared_input::{NextTick, SharedInput};
@@ -54,6 +55,8 @@ pub struct Live {
     pub published: Arc<ArcSwap<Published>>,
     /// Positions of tablet pens over time, for the window.
     pub pen_trail: PenTrail,
+    /// Guests of this daemon, which the loop shows; `None` if there are none.
+    pub guests: Arc<ArcSwapOption<PeopleHere>>,
     /// The loop stops when this is dropped.
     running: cc::Sender<Infallible>,
     thread: JoinHandle<Ended>,
@@ -127,6 +130,7 @@ impl Live {
         let published = publisher.reader();
         let (running, stopped) = cc::bounded(0);
         let (trail, pen_trail) = pen_trail();
+        let guests: Arc<ArcSwapOption<PeopleHere>> = Arc::default();
         let ticking = Ticking {
             world,
             receiver,
@@ -141,6 +145,7 @@ impl Live {
             garbage,
             pages,
             shared,
+            guests: guests.clone(),
             writing: Vec::new(),
             trail,
             // Without its thread the hands' menu cannot join: that is said when it is asked to.
@@ -150,7 +155,7 @@ impl Live {
             .name("sculptd-tick".into())
             .spawn(move || ticking.run())
             .map_err(LiveError::Start)?;
-        Ok(Live { commands, published, pen_trail, running, thread })
+        Ok(Live { commands, published, pen_trail, guests, running, thread })
     }
 
     pub fn is_running(&self) -> bool {
@@ -180,6 +185,7 @@ struct Ticking {
     garbage: GarbageThread,
     pages: PageSupply,
     shared: Option<Box<dyn SharedInput>>,
+    guests: Arc<ArcSwapOption<PeopleHere>>,
     /// Of the journals that took the place of the first one.
     writing: Vec<WriterThread>,
     trail: PenTrailSender,
@@ -320,6 +326,8 @@ impl Ticking {
                 if let Some(ahead) = shared.ahead(&self.world) {
                     state.show_ahead(ahead);
                 }
+            } else {
+                state.people = self.guests.load_full();
             }
             self.publisher.publish(state, &garbage);
             // A layer is asked for and its pages follow: until then nothing of it is seen.

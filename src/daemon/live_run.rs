@@ -67,6 +67,9 @@ pub struct LiveOptions {
     /// Address at which metrics are served; `None`: not served.
     #[cfg(unix)]
     pub metrics: Option<std::net::SocketAddr>,
+    /// The page on which others join; `None`: not served.
+    #[cfg(unix)]
+    pub web: Option<crate::web::WebOptions>,
     /// Options for exporting metrics and logs to a collector.
     #[cfg(unix)]
     pub telemetry: Option<crate::telemetry::TelemetryOptions>,
@@ -108,6 +111,9 @@ pub struct LiveRun {
     pub kiosk: Option<keeper::Screen>,
     /// The user's bindings of tablet controls.
     pub controls: TabletControls,
+    /// The page by which guests join; `None` if it is not served.
+    #[cfg(unix)]
+    pub web: Option<Arc<crate::web::Web>>,
     /// State of the window.
     pub window: WindowLink,
     /// Notices about how the run began, one sentence each.
@@ -235,6 +241,8 @@ impl LiveRun {
             })?;
         }
         #[cfg(unix)]
+        let mut web = None;
+        #[cfg(unix)]
         let _served = {
             let pen = crate::control::stroke::VirtualPen::new(&factory, clock.clone());
             let host = crate::control::Host {
@@ -249,6 +257,12 @@ impl LiveRun {
                     options.presets.clone(),
                 )
             };
+            if let Some(wanted) = options.web.take() {
+                let (page, links) = serve_page(&wanted, &live, &factory, &clock, &options, &stop)?;
+                notices.extend(links);
+                web = Some(page);
+            }
+            let host = crate::control::Host { web: web.clone(), ..host };
             Served::start(&options, config, host, watched, &mut notices)?
         };
         #[cfg(not(unix))]
@@ -277,6 +291,8 @@ impl LiveRun {
             history,
             kiosk,
             controls: options.controls,
+            #[cfg(unix)]
+            web,
             window,
             notices,
             demo,
@@ -414,6 +430,42 @@ impl Served {
             _service: service,
         })
     }
+}
+
+/// Starts to serve the page on which others join. Returns it, and a sentence for each first link.
+#[cfg(unix)]
+fn serve_page(
+    web: &crate::web::WebOptions,
+    live: &Live,
+    factory: &SenderFactory,
+    clock: &Clock,
+    options: &LiveOptions,
+    stop: &Arc<AtomicBool>,
+) -> Result<(Arc<crate::web::Web>, Vec<String>), LiveRunError> {
+    use crate::web::{Web, WebRole, WebState};
+    let state = WebState {
+        published: live.published.clone(),
+        commands: live.commands.clone(),
+        factory: factory.clone(),
+        presets: options.presets.clone(),
+        clock: clock.clone(),
+        stop: stop.clone(),
+        keys: Default::default(),
+        guests: crate::web::GuestList::shown_by(live.guests.clone()),
+    };
+    let failed = |source| LiveRunError::Service { what: format!("page on {}", web.at), source };
+    let page = Web::start(web, state).map_err(failed)?;
+    let roles = [
+        (WebRole::Sculptor, "to sculpt together"),
+        (WebRole::Viewer, "to watch"),
+        (WebRole::Device, "to use a tablet or a telephone as your pen"),
+    ];
+    let mut links = Vec::new();
+    for (role, purpose) in roles {
+        let key = page.state.keys.issue(role, web.lasts, clock.now_us()).map_err(failed)?;
+        links.push(format!("{purpose}: {}", page.link(&key)));
+    }
+    Ok((Arc::new(page), links))
 }
 
 /// Starts the keeper of an installation.

@@ -55,7 +55,7 @@ use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
 /// `StepReport::ignored` counts it.
-pub const MAX_PENS: usize = 16;
+pub const MAX_PENS: usize = 32;
 
 /// Result of one step. Reused from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -232,7 +232,9 @@ impl World {
         self.timeline.set_person(self.person());
         self.author(None);
         for command in commands {
+            self.act_for(command);
             let answer = self.apply_command(command);
+            self.author(None);
             self.answers.push(answer);
         }
         for sample in samples {
@@ -406,20 +408,29 @@ impl World {
         }
     }
 
+    /// Index of the slot of a pen. A new one takes a free slot, or that of a pen which is away.
+    /// `None`: every pen is in range or has dabs to lay.
+    fn pen_slot(&mut self, device: DeviceId) -> Option<usize> {
+        let known = self.pens.iter().position(|s| s.device == device);
+        if known.is_some() {
+            return known;
+        }
+        let new = PenSlot { device, track: PenTrack::default(), stroke: Stroke::default() };
+        if self.pens.len() < MAX_PENS {
+            self.pens.push(new);
+            return Some(self.pens.len() - 1);
+        }
+        let away = self.pens.iter().position(|s| s.track.is_away());
+        if let Some(at) = away {
+            self.pens[at] = new;
+        }
+        away
+    }
+
     fn apply_sample(&mut self, sample: &Sample) {
         match &sample.body {
             Body::Pen(pen) => {
-                let index =
-                    self.pens.iter().position(|s| s.device == sample.device).or_else(|| {
-                        (self.pens.len() < MAX_PENS).then(|| {
-                            self.pens.push(PenSlot {
-                                device: sample.device,
-                                track: PenTrack::default(),
-                                stroke: Stroke::default(),
-                            });
-                            self.pens.len() - 1
-                        })
-                    });
+                let index = self.pen_slot(sample.device);
                 if !self.people.is_nobody() {
                     self.act_as(self.people.of_device(sample.device));
                 }

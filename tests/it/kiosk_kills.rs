@@ -48,15 +48,21 @@ fn sculpt(daemon: &Daemon) {
     until("the stroke sculpts", || hash(daemon) != before);
 }
 
-/// Strokes until a visit has begun and the clay holds still but for them: the film has stopped.
+/// Strokes until a visit has begun and the first stroke is over.
 fn visit(daemon: &Daemon) {
+    let begun = || {
+        let lines = daemon.told.lock().expect("no panic");
+        lines.iter().filter(|l| l.contains("a visit begins")).count()
+    };
+    let before = begun();
     daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+    until("a visit has begun", || begun() > before);
     let still = || {
         let before = hash(daemon);
         pause(300);
         hash(daemon) == before
     };
-    until("the film has stopped", still);
+    until("the first stroke is over", still);
     sculpt(daemon);
     until("the stroke is over", still);
 }

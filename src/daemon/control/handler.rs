@@ -16,7 +16,7 @@ use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
-use super::{history, mask, measurement, people_reply, retopology, scene, snap};
+use super::{guests_reply, history, mask, measurement, people_reply, retopology, scene, snap};
 use crate::operations::{OperationError, Target};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
@@ -27,6 +27,7 @@ use sculptd_clay::{LayerEdit, LayerId};
 use sculptd_control::brush as asked;
 use sculptd_control::edit::{self, LevelStep, TrimRegion};
 use sculptd_control::face_sets as asked_sets;
+use sculptd_control::guests;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::people::PeopleReply;
@@ -298,6 +299,21 @@ impl Handler for Host {
 
     fn people(&self, _: NoParams) -> Result<PeopleReply, RpcError> {
         Ok(people_reply::people(&self.published.load()))
+    }
+
+    fn guests_list(&self, _: NoParams) -> Result<guests::GuestsReply, RpcError> {
+        Ok(guests_reply::list(self))
+    }
+
+    fn guests_invite(&self, p: guests::GuestInviteParams) -> Result<guests::GuestLink, RpcError> {
+        guests_reply::invite(self, &p)
+    }
+
+    fn guests_revoke(
+        &self,
+        p: guests::GuestRevokeParams,
+    ) -> Result<guests::GuestRevokeReply, RpcError> {
+        guests_reply::revoke(self, &p)
     }
 
     fn scene_list(&self, _: NoParams) -> Result<asked_scene::SceneReply, RpcError> {

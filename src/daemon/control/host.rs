@@ -12,6 +12,7 @@ use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::operations::{self, Computed, Installed, OperationError};
 use crate::session::Health;
 use crate::session::history::Handle;
+use crate::web::Web;
 use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
 use sculptd_control::RpcError;
@@ -45,6 +46,8 @@ pub struct Host {
     pub history: Option<Handle>,
     /// The pen of `stroke`; `None` if nothing receives its samples.
     pub pen: Option<Arc<Mutex<VirtualPen>>>,
+    /// The page on which others join; `None` if it is not served.
+    pub web: Option<Arc<Web>>,
     /// State of the window, and the request for a new one.
     pub window: WindowLink,
     /// Set by `shutdown` and `window`.
@@ -69,6 +72,7 @@ impl Host {
             journal: None,
             history: None,
             pen: None,
+            web: None,
             window: WindowLink::default(),
             stop: Arc::default(),
             effect: Arc::default(),

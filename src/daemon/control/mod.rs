@@ -14,6 +14,7 @@
 
 pub mod events;
 mod face_sets;
+mod guests_reply;
 pub mod handler;
 mod history;
 pub mod host;

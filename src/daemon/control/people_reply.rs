@@ -24,11 +24,13 @@ pub(super) fn people(shown: &Published) -> PeopleReply {
         }
     };
     let (refused, input) = (shown.undo_refused, shown.own_input);
+    // Guests in a browser are people too, and nothing is shared over the network.
+    let shared = known.own != 0;
     PeopleReply {
-        shared: true,
+        shared,
         own: known.own,
         people: known.all.iter().map(info).collect(),
-        own_input: Some(people::OwnInput {
+        own_input: shared.then_some(people::OwnInput {
             transitions: input.transitions,
             batches: input.batches,
             ordered: input.ordered,

@@ -13,6 +13,7 @@ use hyper::header::{self, HeaderMap, HeaderValue};
 use hyper::{Method, Request, Response, StatusCode};
 
 use super::bounds::{OutgoingRate, PIECE};
+use super::upgrade::Upgrade;
 
 /// Why a request gets nothing, in words for its sender.
 pub type Refusal = (StatusCode, &'static str);
@@ -23,7 +24,14 @@ pub struct Answer {
     status: StatusCode,
     kind: &'static str,
     content: Content,
+    /// Value of `Content-Security-Policy`.
+    policy: &'static str,
+    /// What follows on the same connection.
+    pub(super) upgrade: Option<Upgrade>,
 }
+
+/// Policy of an answer that loads nothing.
+const LOADS_NOTHING: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 #[derive(Debug)]
 enum Content {
@@ -34,7 +42,24 @@ enum Content {
 impl Answer {
     /// Status 200 with a text of this media type.
     pub fn text(kind: &'static str, text: String) -> Self {
-        Answer { status: StatusCode::OK, kind, content: Content::Text(text.into()) }
+        Answer::of(StatusCode::OK, kind, Content::Text(text.into()))
+    }
+
+    /// Status 200 with bytes of the program, which may load what this policy names.
+    pub fn of_program(kind: &'static str, bytes: &'static [u8], policy: &'static str) -> Self {
+        let content = Content::Text(Bytes::from_static(bytes));
+        Answer { policy, ..Answer::of(StatusCode::OK, kind, content) }
+    }
+
+    /// Status 101: the connection speaks another protocol from now on.
+    pub fn switched(upgrade: Upgrade) -> Self {
+        let nothing = Content::Text(Bytes::new());
+        let switched = StatusCode::SWITCHING_PROTOCOLS;
+        Answer { upgrade: Some(upgrade), ..Answer::of(switched, "", nothing) }
+    }
+
+    fn of(status: StatusCode, kind: &'static str, content: Content) -> Self {
+        Answer { status, kind, content, policy: LOADS_NOTHING, upgrade: None }
     }
 
     /// Status 200 with the bytes that the file has now.
@@ -48,7 +73,7 @@ impl Answer {
             return Err(std::io::Error::other("not a regular file"));
         }
         let content = Content::File { file, bytes: facts.len() };
-        Ok(Answer { status: StatusCode::OK, kind, content })
+        Ok(Answer::of(StatusCode::OK, kind, content))
     }
 
     /// The response with the headers that keep a browser from guessing, storing and telling.
@@ -57,12 +82,16 @@ impl Answer {
             Response::new(Pieces { rest: self.content.into(), pace, wait: None, reserved: false });
         *response.status_mut() = self.status;
         let headers = response.headers_mut();
+        if let Some(upgrade) = &self.upgrade {
+            upgrade.set_headers(headers);
+            return response;
+        }
         let mut set = |name, value| headers.insert(name, HeaderValue::from_static(value));
         set(header::CONTENT_TYPE, self.kind);
         set(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
         set(header::REFERRER_POLICY, "no-referrer");
         set(header::CACHE_CONTROL, "no-store");
-        set(header::CONTENT_SECURITY_POLICY, "default-src 'none'; style-src 'unsafe-inline'");
+        set(header::CONTENT_SECURITY_POLICY, self.policy);
         response
     }
 }
@@ -70,7 +99,7 @@ impl Answer {
 impl From<Refusal> for Answer {
     fn from((status, why): Refusal) -> Self {
         let content = Content::Text(format!("{why}\n").into());
-        Answer { status, kind: "text/plain; charset=utf-8", content }
+        Answer::of(status, "text/plain; charset=utf-8", content)
     }
 }
 
@@ -160,14 +189,31 @@ pub fn permitted<'a>(
     at: SocketAddr,
     name: &str,
 ) -> Result<&'a str, Refusal> {
-    const BAD: Refusal = (StatusCode::BAD_REQUEST, "not a request");
-    let headers = request.headers();
-    if headers.contains_key(header::ORIGIN) {
+    if request.headers().contains_key(header::ORIGIN) {
         return Err((StatusCode::FORBIDDEN, "no web page may read this"));
     }
+    permitted_to_page(request, at, name)
+}
+
+/// As [`permitted`], also for pages that this server gave out: an `Origin` must be our own.
+///
+/// # Errors
+/// The refusal that the sender gets.
+pub fn permitted_to_page<'a>(
+    request: &'a Request<()>,
+    at: SocketAddr,
+    name: &str,
+) -> Result<&'a str, Refusal> {
+    const BAD: Refusal = (StatusCode::BAD_REQUEST, "not a request");
+    let headers = request.headers();
     let host = only_host(headers).ok_or(BAD)?;
     if !(ours(host, at) || named(host, at, name)) {
         return Err((StatusCode::FORBIDDEN, "another host was asked for"));
+    }
+    let mut origins = headers.get_all(header::ORIGIN).iter();
+    let own = |o: &HeaderValue| o.to_str().is_ok_and(|o| o.strip_prefix("http://") == Some(host));
+    if !origins.all(own) {
+        return Err((StatusCode::FORBIDDEN, "a page of another origin may not read this"));
     }
     if request.method() != Method::GET {
         return Err((StatusCode::METHOD_NOT_ALLOWED, "GET only"));
@@ -247,6 +293,16 @@ mod tests {
         assert_eq!(refusal("GET", "/metrics", &[("accept", "*/*")]), Some(400));
         assert_eq!(refusal("POST", "/metrics", &[ours]), Some(405));
         assert_eq!(refusal("GET", "http://evil.example/metrics", &[ours]), Some(400));
+        let page = |origin: &str| {
+            let request = Request::builder().uri("/").header("host", "127.0.0.1:9000");
+            let request = request.header("origin", origin).body(()).expect("a request");
+            let at = "127.0.0.1:9000".parse().expect("an address");
+            permitted_to_page(&request, at, "").is_ok()
+        };
+        assert!(page("http://127.0.0.1:9000"));
+        for foreign in ["http://127.0.0.1:9001", "https://127.0.0.1:9000", "null", ""] {
+            assert!(!page(foreign), "{foreign}");
+        }
         let v6: SocketAddr = "[::]:9000".parse().expect("an address");
         assert!(super::ours("[fe80::1]:9000", v6) && !super::ours("evil.example:9000", v6));
     }

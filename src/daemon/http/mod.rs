@@ -1,5 +1,5 @@
-//! The one HTTP server (RFC 9112, by the `hyper` library) behind the metrics page and the downloads
-//! of a kiosk's visitors.
+//! The one HTTP server (RFC 9112, by the `hyper` library) behind the metrics page, the downloads of
+//! a kiosk's visitors, and the page on which others join.
 //!
 //! Laws kept here:
 //! * Nobody holds up anybody else: connections are tasks of one thread, and none of them waits for
@@ -16,6 +16,7 @@
 pub mod answer;
 pub mod bounds;
 pub mod server;
+pub mod upgrade;
 
 pub use answer::{Answer, Refusal};
 pub use server::HttpServer;

@@ -23,6 +23,7 @@ use super::bounds::{
     ConnectionTable, HEAD_BYTES, HEAD_FIELDS, HEAD_TIME, OutgoingRate, PIECE, Progress,
     SOCKET_BUFFER,
 };
+use super::upgrade::{Follow, Upgrade};
 use sculptd_devices::Clock;
 
 /// Interval at which the bounds of connections are checked.
@@ -161,7 +162,11 @@ async fn serve(
     let service = service_fn(move |request: Request<hyper::body::Incoming>| {
         asked.asked(time.now_us());
         // The body of a request is not read.
-        let answer = handler(&request.map(|_| ()));
+        let mut request = request.map(|_| ());
+        let mut answer = handler(&request);
+        if let Some(follows) = answer.upgrade.as_mut().and_then(Upgrade::take) {
+            tokio::spawn(follow(hyper::upgrade::on(&mut request), follows));
+        }
         ready(Ok::<_, Infallible>(answer.respond(pace.clone())))
     });
     let connection = http1::Builder::new()
@@ -172,12 +177,24 @@ async fn serve(
         .max_buf_size(PIECE)
         .timer(TokioTimer::new())
         .header_read_timeout(HEAD_TIME)
-        .serve_connection(stream, service);
+        .serve_connection(stream, service)
+        .with_upgrades();
     let mut connection = pin!(connection);
     while tokio::time::timeout(LOOK, connection.as_mut()).await.is_err() {
         if !progress.within_bounds(clock.now_us()) {
             return;
         }
+    }
+}
+
+/// Hands the socket over once the response to its request has gone out.
+async fn follow(upgraded: hyper::upgrade::OnUpgrade, follows: Follow) {
+    let Ok(upgraded) = upgraded.await else { return };
+    let Ok(parts) = upgraded.downcast::<CountedStream>() else { return };
+    let stream = parts.io.inner.into_inner().into_std();
+    match stream.and_then(|s| s.set_nonblocking(false).map(|()| s)) {
+        Ok(stream) => follows(stream, parts.read_buf.to_vec()),
+        Err(e) => tracing::warn!("a connection was lost as it changed its protocol: {e}"),
     }
 }
 

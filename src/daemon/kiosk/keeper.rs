@@ -18,7 +18,7 @@ use super::spool::Spool;
 use super::visit_journal::PutAway;
 use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, ScreenSettings, Stage, View};
 use crate::Published;
-use crate::adaptors::RECORDING_IDS;
+use crate::adaptors::ATTRACT_IDS;
 use crate::command_queue::{CommandSender, QueuedCommand};
 use sculptd_clay::Clay;
 use sculptd_clay::brush::BrushSettings;
@@ -33,9 +33,6 @@ use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
-/// Ids of attract recordings: what they draw is nobody's touch.
-const ATTRACT_IDS: std::ops::Range<u16> = RECORDING_IDS + 50..RECORDING_IDS + 66;
-
 /// Id of the hands in the list of touching pens.
 const HAND: u16 = u16::MAX;
 
@@ -246,6 +243,7 @@ impl KioskThread {
             None => {}
             Some(KioskAct::Quit) => self.stop.store(true, Relaxed),
             Some(KioskAct::Begin) => {
+                tracing::info!("kiosk: a visit begins");
                 if std::mem::take(&mut self.playing) {
                     self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
                 }

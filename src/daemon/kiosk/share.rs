@@ -15,31 +15,12 @@ use hyper::{Request, StatusCode};
 
 use crate::http::answer::permitted;
 use crate::http::{Answer, HttpServer, Refusal};
+use crate::qr_code::Code;
+use crate::random_token::random_token;
 use sculptd_devices::Clock;
 
 /// Links that are good at a time; the oldest goes first.
 const LINKS: usize = 1024;
-
-/// A QR code (ISO/IEC 18004), as squares.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Code {
-    /// Squares a side, the quiet border not counted.
-    pub side: usize,
-    /// Row by row; true is dark.
-    pub dark: Vec<bool>,
-}
-
-impl Code {
-    /// `None` for a text that no code holds.
-    pub fn of(text: &str) -> Option<Code> {
-        let code = qrcodegen::QrCode::encode_text(text, qrcodegen::QrCodeEcc::Medium).ok()?;
-        let side = code.size();
-        let dark = (0..side)
-            .flat_map(|y| (0..side).map(move |x| (x, y)))
-            .map(|(x, y)| code.get_module(x, y));
-        Some(Code { side: side as usize, dark: dark.collect() })
-    }
-}
 
 /// A link, for the screen.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,20 +45,6 @@ pub struct Share {
     lasts: Duration,
     links: Arc<Mutex<BTreeMap<String, ServedFile>>>,
     clock: Clock,
-}
-
-/// 128 bits that nobody can guess, as hexadecimal digits.
-fn token() -> std::io::Result<String> {
-    let mut bytes = [0u8; 16];
-    #[cfg(unix)]
-    std::io::Read::read_exact(&mut std::fs::File::open("/dev/urandom")?, &mut bytes)?;
-    #[cfg(not(unix))]
-    for half in bytes.chunks_mut(8) {
-        use std::hash::{BuildHasher, Hasher};
-        // Keyed by the system's random numbers.
-        half.copy_from_slice(&std::hash::RandomState::new().build_hasher().finish().to_le_bytes());
-    }
-    Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
 impl Share {
@@ -110,7 +77,7 @@ impl Share {
 
     /// Returns a link to a file, valid from now on.
     pub fn link(&self, file: &Path) -> std::io::Result<Link> {
-        let token = token()?;
+        let token = random_token()?;
         let host = match self.name.parse::<IpAddr>() {
             Ok(IpAddr::V6(ip)) => format!("[{ip}]"),
             _ => self.name.clone(),

@@ -12,9 +12,9 @@ use std::thread::JoinHandle;
 
 use crossbeam_channel as cc;
 
-use crate::session::format::Settings;
+use crate::session::format::{Settings, append};
 use crate::session::history::Handle;
-use crate::session::writer::WriterThread;
+use crate::session::writer::{KEPT_BYTES, WriterThread};
 use crate::session::{self, Health, SessionWriter, catalog};
 use crate::tick::Journal;
 use sculptd_devices::Sample;
@@ -33,14 +33,39 @@ pub struct VisitJournal {
     /// The file of the visit in progress.
     now: Option<SessionWriter>,
     visiting: bool,
+    /// The visit's input for as long as its file is still being made.
+    early: Option<EarlyInput>,
     prepared: cc::Receiver<SessionWriter>,
     /// Takes the file of each visit that ended; `None` if the visit was not recorded.
     ended: cc::Sender<Option<SessionWriter>>,
     desktop: Option<Command>,
 }
 
+/// Encoded input of a visit that began before its file was made.
+#[derive(Debug)]
+struct EarlyInput {
+    first: u64,
+    last: u64,
+    encoded: Vec<u8>,
+}
+
+impl EarlyInput {
+    fn new(tick: u64) -> EarlyInput {
+        EarlyInput { first: tick, last: tick, encoded: Vec::new() }
+    }
+
+    fn add(&mut self, tick: u64, samples: &[Sample], commands: &[Command]) {
+        if !(samples.is_empty() && commands.is_empty()) {
+            self.last = tick;
+            append(&mut self.encoded, tick, samples, commands);
+        }
+    }
+}
+
 impl VisitJournal {
     fn end(&mut self) {
+        self.take_file();
+        self.early = None;
         if std::mem::take(&mut self.visiting) {
             // One visit at a time is under way, so there is room.
             let _ = self.ended.try_send(self.now.take());
@@ -48,30 +73,45 @@ impl VisitJournal {
     }
 
     /// Begins a visit with the commands that follow the reset.
-    fn begin(&mut self, tick: u64, samples: &[Sample], after: &[Command], world: &mut World) {
+    fn begin(&mut self, tick: u64, samples: &[Sample], after: &[Command]) {
         self.visiting = true;
-        if let Ok(mut next) = self.prepared.try_recv() {
-            let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
-            next.tick(tick, samples, &first, world);
-            self.now = Some(next);
+        let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
+        let mut early = EarlyInput::new(tick);
+        early.add(tick, samples, &first);
+        self.early = Some(early);
+        self.take_file();
+    }
+
+    /// Hands over to the visit's file, if it has been made, what came before it.
+    fn take_file(&mut self) {
+        if self.early.is_some()
+            && let Ok(next) = self.prepared.try_recv()
+            && let Some(early) = self.early.take()
+        {
+            self.now = Some(next.after((early.first, early.last), early.encoded));
         }
     }
 }
 
 impl Journal for VisitJournal {
     fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World) {
+        self.take_file();
         let layout = commands.iter().rfind(|c| matches!(c, Command::DesktopLayout(_)));
         let reset = commands.iter().rposition(|c| matches!(c, Command::Begin(_)));
-        match reset {
-            None => {
-                if let Some(now) = &mut self.now {
-                    now.tick(tick, samples, commands, world);
+        match (reset, &mut self.now, &mut self.early) {
+            (None, Some(now), _) => now.tick(tick, samples, commands, world),
+            (None, None, Some(early)) => {
+                early.add(tick, samples, commands);
+                if early.encoded.len() > KEPT_BYTES {
+                    // The disk makes no file, and the fault shows it.
+                    self.early = None;
                 }
             }
-            Some(at) => {
+            (None, None, None) => {}
+            (Some(at), ..) => {
                 self.end();
                 if !self.film.load(Relaxed) {
-                    self.begin(tick, samples, &commands[at + 1..], world);
+                    self.begin(tick, samples, &commands[at + 1..]);
                 }
             }
         }
@@ -81,7 +121,7 @@ impl Journal for VisitJournal {
     }
 
     fn has_waiting(&self) -> bool {
-        self.now.as_ref().is_some_and(Journal::has_waiting)
+        self.early.is_some() || self.now.as_ref().is_some_and(Journal::has_waiting)
     }
 }
 
@@ -142,7 +182,7 @@ pub fn start(
     let thread = std::thread::Builder::new()
         .name("sculptd-visits".into())
         .spawn(move || files.run(&calls))?;
-    let journal = VisitJournal { film, now, visiting, prepared, ended: end, desktop };
+    let journal = VisitJournal { film, now, visiting, early: None, prepared, ended: end, desktop };
     Ok(VisitRecording { journal, put_away, health, history, thread })
 }
 

@@ -38,7 +38,7 @@ const BUFFERS: usize = 256;
 /// First size of a buffer; a tick of a few pens fits.
 const BUFFER_BYTES: usize = 4096;
 /// Groups kept in memory while the disk takes nothing: more than an hour of a pen at 250 Hz.
-const KEPT_BYTES: usize = 64 << 20;
+pub const KEPT_BYTES: usize = 64 << 20;
 /// Longest time between two signs of life of the writing thread.
 const IDLE: Duration = Duration::from_millis(1000);
 /// Interval at which the file's location is checked.
@@ -67,6 +67,13 @@ pub struct SessionWriter {
 }
 
 impl SessionWriter {
+    /// Begins with the encoded input of these ticks, which came before the file was made.
+    #[must_use]
+    pub fn after(mut self, (first, last): (u64, u64), encoded: Vec<u8>) -> SessionWriter {
+        (self.carry, self.carry_ticks) = (encoded, (first, last));
+        self
+    }
+
     /// From now on the history is kept too, a checkpoint first.
     pub fn keep(&mut self, history: Handle) {
         self.history = Some(history);

@@ -270,6 +270,12 @@ impl PenTrack {
         self.waiting.is_empty()
     }
 
+    /// Returns true if the pen is out of range and nothing of its strokes is left to do.
+    pub fn is_away(&self) -> bool {
+        let quiet = !self.open && self.waiting.is_empty() && self.draft.is_empty();
+        quiet && self.seen.is_none() && self.on_tablet.is_none()
+    }
+
     /// Walks one waiting event over the surface; returns `None` if there is none.
     pub fn walk_one(&mut self, aspect: f32, on: &mut dyn Surface) -> Option<Walked> {
         let event = *self.waiting.front()?;

@@ -146,14 +146,26 @@ impl World {
         !self.people.is_nobody()
     }
 
-    /// The first person's settings are the only ones.
+    /// The first person's settings are the only ones: number 1 where people sculpt over a network,
+    /// else number 0, whom guests have joined.
     pub(super) fn forget_people(&mut self) {
         if self.people.other(1).is_some() {
             self.act_as(1);
+        } else if self.people.current != 1 {
+            self.act_as(0);
         }
         self.people = People::default();
         self.timeline.set_person(None);
         self.scene.objects_mut().iter_mut().for_each(|o| o.clay.set_author(Author::Nobody));
+    }
+
+    /// A command without a person, in a world of several, is that of number 0.
+    pub(super) fn act_for(&mut self, command: &Command) {
+        if !self.people.is_nobody() && !matches!(command, Command::OfPerson(_)) {
+            self.act_as(0);
+            self.timeline.set_person(self.person());
+            self.author(self.person());
+        }
     }
 
     /// A command of a person.

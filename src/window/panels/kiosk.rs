@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use egui::{Align2, Area, Button, Id, RichText, vec2};
 
 use super::state::{KioskPad, UiRequest, UiState, View};
-use super::{fonts, theme};
+use super::{fonts, qr_code, theme};
 use crate::language::ENGLISH;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
@@ -184,21 +184,7 @@ fn kept(
         ui.vertical_centered(|ui| {
             ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
             ui.add_space(10.0);
-            // Four squares of quiet on each side, as the standard asks.
-            let squares = link.code.side + 8;
-            let square = (360.0 / squares as f32).floor().max(4.0);
-            let (rect, _) = ui.allocate_exact_size(
-                egui::Vec2::splat(square * squares as f32),
-                egui::Sense::hover(),
-            );
-            let paint = ui.painter();
-            paint.rect_filled(rect, 0.0, egui::Color32::WHITE);
-            for (i, _) in link.code.dark.iter().enumerate().filter(|(_, dark)| **dark) {
-                let (x, y) = (i % link.code.side + 4, i / link.code.side + 4);
-                let min = rect.min + vec2(x as f32, y as f32) * square;
-                let one = egui::Rect::from_min_size(min, egui::Vec2::splat(square));
-                paint.rect_filled(one, 0.0, egui::Color32::BLACK);
-            }
+            qr_code::ui(ui, &link.code, 360.0);
             ui.add_space(10.0);
             ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
             ui.label(RichText::new(&link.url).size(13.0).monospace());

@@ -38,6 +38,7 @@ pub mod outliner;
 pub mod people;
 pub mod preferences;
 pub mod pressure_curve;
+pub mod qr_code;
 pub mod radial;
 pub mod region;
 pub mod remesh;

@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, FontId, Rect, pos2, vec2};
 use glam::Vec3;
 
+use super::qr_code;
 use super::rows;
 use super::state::View;
 use super::theme;
@@ -15,11 +16,30 @@ fn colour(number: u8) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The list: those who are here, then those who have gone. Nothing where nothing is shared.
+/// The list: those who are here, then those who have gone, then the code by which guests join.
+/// Nothing where nobody can join.
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
-    let Some(people) = &view.state.people else { return };
+    if view.state.people.is_none() && view.invitation.is_none() {
+        return;
+    }
     ui.add_space(8.0);
     ui.strong(tr!("people-heading"));
+    if let Some(people) = &view.state.people {
+        list(ui, people);
+    }
+    if let Some(invitation) = view.invitation {
+        egui::CollapsingHeader::new(tr!("people-invite")).id_salt("invitation").show(ui, |ui| {
+            ui.label(tr!("people-invite-about"));
+            qr_code::ui(ui, &invitation.code, 190.0);
+            ui.add(egui::Label::new(egui::RichText::new(&invitation.url).small()).wrap());
+            if ui.button(tr!("people-invite-copy")).clicked() {
+                ui.copy_text(invitation.url.clone());
+            }
+        });
+    }
+}
+
+fn list(ui: &mut egui::Ui, people: &PeopleHere) {
     for person in people.all.iter().filter(|p| p.here) {
         row(ui, person, people);
     }

@@ -137,6 +137,7 @@ impl WindowState {
             adapter: &self.adapter,
             frame: self.figures,
             latency: wiring.link.present_latency(),
+            invitation: wiring.invitation.as_ref(),
             demo_runs: wiring.clock.now_us() < wiring.demo_until_us,
         };
         let ui_state = &mut self.ui_state;

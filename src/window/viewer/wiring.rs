@@ -64,6 +64,8 @@ pub struct Wiring {
     pub link: WindowLink,
     /// The screen of an installation, which replaces the panels.
     pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
+    /// Link by which guests join in a browser; `None` if no page is served.
+    pub invitation: Option<sculptd_daemon::qr_code::Invitation>,
 }
 
 impl std::fmt::Debug for Wiring {

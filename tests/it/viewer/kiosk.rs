@@ -45,6 +45,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             adapter: "an adapter",
             frame: FrameFigures::default(),
             latency: Default::default(),
+            invitation: None,
             demo_runs: false,
         };
         kiosk::ui(ui, &view, &screen, &mut s.ui_state, &mut s.asked);

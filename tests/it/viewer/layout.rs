@@ -282,6 +282,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 adapter: "an adapter",
                 frame: FrameFigures::default(),
                 latency: Default::default(),
+                invitation: None,
                 demo_runs: false,
             };
             *free = all(ui, &view, &mut s.ui_state, &mut s.asked);

@@ -27,6 +27,7 @@ pub(super) struct State {
     pub ui_state: UiState,
     pub asked: Vec<UiRequest>,
     pub devices: Vec<String>,
+    pub invitation: Option<sculptd_daemon::qr_code::Invitation>,
     pub demo_runs: bool,
     pub tablet: Option<TabletKeys>,
     pub views: Views,
@@ -46,6 +47,7 @@ pub(super) fn state(tab: Tab) -> State {
         ui_state: UiState { tab, prefs: english(), ..Default::default() },
         asked: Vec::new(),
         devices: Vec::new(),
+        invitation: None,
         demo_runs: false,
         tablet: None,
         views: Views::default(),
@@ -71,6 +73,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         adapter: "an adapter",
         frame: FrameFigures::default(),
         latency: Default::default(),
+        invitation: s.invitation.as_ref(),
         demo_runs: s.demo_runs,
     };
     all(ui, &view, &mut s.ui_state, &mut s.asked);

@@ -40,6 +40,8 @@ pub struct View<'a> {
     pub frame: FrameFigures,
     /// Latency from a sample to the screen.
     pub latency: PresentLatency,
+    /// Link by which guests join in a browser; `None` if no page is served.
+    pub invitation: Option<&'a sculptd_daemon::qr_code::Invitation>,
     /// The demo performs.
     pub demo_runs: bool,
 }

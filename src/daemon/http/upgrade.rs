@@ -1,0 +1,57 @@
+//! Connections that go on as WebSockets (RFC 6455) after the first request.
+
+use std::net::TcpStream;
+
+use hyper::header::{self, HeaderMap, HeaderValue};
+use hyper::{Request, StatusCode};
+use tungstenite::handshake::derive_accept_key;
+
+use super::Refusal;
+
+/// Takes the socket, and what has been read from it beyond the request.
+pub type Follow = Box<dyn FnOnce(TcpStream, Vec<u8>) + Send>;
+
+/// The change of a connection to a WebSocket.
+pub struct Upgrade {
+    accept: HeaderValue,
+    follow: Option<Follow>,
+}
+
+impl std::fmt::Debug for Upgrade {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Upgrade").finish_non_exhaustive()
+    }
+}
+
+impl Upgrade {
+    /// Accepts a request for a WebSocket. `follow` gets the socket; it must return at once.
+    ///
+    /// # Errors
+    /// The refusal of a request that is none.
+    pub fn accept(request: &Request<()>, follow: Follow) -> Result<Upgrade, Refusal> {
+        const BAD: Refusal = (StatusCode::BAD_REQUEST, "a WebSocket of version 13 is expected");
+        let headers = request.headers();
+        let has = |name, word: &str| {
+            let value = headers.get(name).and_then(|v: &HeaderValue| v.to_str().ok());
+            value.is_some_and(|v| v.split(',').any(|w| w.trim().eq_ignore_ascii_case(word)))
+        };
+        let key = headers.get(header::SEC_WEBSOCKET_KEY).ok_or(BAD)?;
+        let asked = has(header::CONNECTION, "upgrade") && has(header::UPGRADE, "websocket");
+        if !asked || !has(header::SEC_WEBSOCKET_VERSION, "13") {
+            return Err(BAD);
+        }
+        let accept = derive_accept_key(key.as_bytes());
+        let accept = HeaderValue::from_str(&accept).map_err(|_| BAD)?;
+        Ok(Upgrade { accept, follow: Some(follow) })
+    }
+
+    pub(super) fn take(&mut self) -> Option<Follow> {
+        self.follow.take()
+    }
+
+    pub(super) fn set_headers(&self, headers: &mut HeaderMap) {
+        headers.insert(header::CONNECTION, HeaderValue::from_static("Upgrade"));
+        headers.insert(header::UPGRADE, HeaderValue::from_static("websocket"));
+        headers.insert(header::SEC_WEBSOCKET_ACCEPT, self.accept.clone());
+    }
+}

@@ -1,0 +1,280 @@
+// The page: joins the daemon that gave it out, shows its clay and lets a pen sculpt it.
+
+import { eye, project, slid, turned, viewHeight, zoomed } from "./camera";
+import { ClayPicture } from "./clay";
+import { Connection, pageTime } from "./connection";
+import { Hand } from "./hand";
+import { Panel } from "./panel";
+import type { Brush, Camera, OthersPen, Person, Role, ShownObject, Tell, Vec3 } from "./protocol";
+import { say, setLanguage } from "./text";
+
+const canvas = document.getElementById("clay") as HTMLCanvasElement;
+const ring = document.getElementById("ring") as HTMLDivElement;
+const penLayer = document.getElementById("pens") as HTMLDivElement;
+
+/** Camera of the clay's own material, linear enough for the eye. */
+const CLAY: Vec3 = [0.86, 0.62, 0.46];
+
+let role: Role = "viewer";
+let camera: Camera | null = null;
+let home: Camera | null = null;
+let brush: Brush | null = null;
+let extent = 1;
+let people: Person[] = [];
+let pens: OthersPen[] = [];
+let objects: ShownObject[] = [];
+let dirty = true;
+let cameraAsked = false;
+let isConnected = false;
+
+setLanguage();
+document.title = "sculptd";
+
+function start(): void {
+  const key = location.hash.slice(1);
+  const panel = new Panel({
+    brush: (change) => connection?.ask({ do: "brush", at: pageTime(), ...change }),
+    undo: () => undo(),
+    redo: () => redo(),
+    home: () => home && look(home),
+  });
+  if (!/^[0-9a-f]{32}$/.test(key)) {
+    panel.end(say("noKey"));
+    return;
+  }
+  let picture: ClayPicture;
+  try {
+    picture = new ClayPicture(canvas);
+  } catch (e) {
+    panel.end(e instanceof Error ? e.message : String(e));
+    return;
+  }
+  panel.state(say("connecting"));
+  const name = new URLSearchParams(location.search).get("name") ?? "";
+  const connection = new Connection(key, name, {
+    tell: (message) => take(message),
+    page: (message) => {
+      picture.take(message);
+      dirty = true;
+    },
+    connected: (yes) => {
+      isConnected = yes;
+      if (!yes && !document.body.classList.contains("ended")) panel.state(say("lost"));
+      if (yes && camera) sendCamera();
+    },
+  });
+  const undo = (): void => connection.ask({ do: "undo", at: pageTime() });
+  const redo = (): void => connection.ask({ do: "redo", at: pageTime() });
+
+  function take(message: Tell): void {
+    switch (message.is) {
+      case "welcome":
+        role = message.role;
+        extent = message.extent;
+        if (!camera) {
+          home = camera = { ...message.camera, aspect: aspect() };
+          sendCamera();
+        }
+        if (!message.resumed && objects.length > 0) {
+          picture.list([]);
+          objects = [];
+        }
+        if (!brush || !message.resumed) brush = message.brush;
+        panel.show(role, message.brushes);
+        panel.showBrush(brush);
+        showState();
+        break;
+      case "refused":
+        panel.end(message.why);
+        panel.state("");
+        break;
+      case "objects":
+        objects = message.objects;
+        picture.list(objects);
+        picture.radius = reach(objects, extent);
+        showState();
+        break;
+      case "host":
+        home = { ...message.camera, aspect: aspect() };
+        if (panel.follows && camera) look(home);
+        break;
+      case "people":
+        people = message.people;
+        panel.showPeople(people);
+        break;
+      case "pens":
+        pens = message.pens;
+        break;
+      case "brush":
+        brush = message.brush;
+        panel.showBrush(brush);
+        break;
+      case "note":
+        panel.tell(message.text);
+        break;
+      case "complete":
+        document.body.dataset.complete = String(message.bytes);
+        break;
+      case "taken":
+        if (role === "device") showState();
+    }
+    dirty = true;
+  }
+
+  function showState(): void {
+    const what = { viewer: "watching", sculptor: "sculpting", device: "tablet" } as const;
+    const total = objects.reduce((sum, o) => sum + o.vertices, 0);
+    const figure =
+      role === "device"
+        ? `${connection.roundTrip.toFixed(0)} ms`
+        : `${total.toLocaleString()} ${say("vertices")}`;
+    panel.state(`${say(what[role])} · ${figure}`);
+  }
+
+  /** The view of the guest: from here on, strokes go through it. */
+  function look(next: Camera): void {
+    camera = next;
+    dirty = true;
+    cameraAsked = true;
+  }
+
+  function sendCamera(): void {
+    if (camera) connection.ask({ do: "camera", camera, at: pageTime() });
+    cameraAsked = false;
+  }
+
+  new Hand(canvas, {
+    camera: () => camera ?? fallback(),
+    look: (next) => {
+      panel.follows = false;
+      look(next);
+    },
+    extent: () => extent,
+    isClayAt: (x, y) => {
+      if (role === "device") return true;
+      draw();
+      const scale = canvas.width / canvas.clientWidth;
+      return picture.isClayAt(Math.round(x * scale), Math.round(y * scale));
+    },
+    pen: (bytes) => {
+      // A stroke through a view that the daemon does not know yet would go elsewhere.
+      if (cameraAsked) sendCamera();
+      return isConnected && connection.pen(bytes);
+    },
+    canSculpt: () => role !== "viewer" && isConnected,
+    fingerSculpts: () => role === "device" || panel.fingerSculpts,
+    pointerAt: (event) => showRing(event),
+    undo,
+    redo,
+  });
+
+  addEventListener("keydown", (event) => {
+    const onField = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      event.preventDefault();
+      (event.shiftKey ? redo : undo)();
+      return;
+    }
+    if (onField || event.ctrlKey || event.metaKey || event.altKey || !camera) return;
+    const step = 0.04;
+    const move = event.shiftKey ? slid : turned;
+    const moves: Record<string, () => Camera> = {
+      ArrowLeft: () => move(camera ?? fallback(), -step, 0),
+      ArrowRight: () => move(camera ?? fallback(), step, 0),
+      ArrowUp: () => move(camera ?? fallback(), 0, -step),
+      ArrowDown: () => move(camera ?? fallback(), 0, step),
+      "+": () => zoomed(camera ?? fallback(), 1.1, extent),
+      "-": () => zoomed(camera ?? fallback(), 1 / 1.1, extent),
+    };
+    const act = moves[event.key];
+    if (act) {
+      event.preventDefault();
+      look(act());
+    } else if (brush && (event.key === "[" || event.key === "]")) {
+      const radius = brush.radius * (event.key === "]" ? 1.1 : 1 / 1.1);
+      connection.ask({ do: "brush", at: pageTime(), radius });
+    } else if (brush && event.key.toLowerCase() === "x") {
+      connection.ask({ do: "brush", at: pageTime(), negative: !brush.negative });
+    }
+  });
+
+  function showRing(event: PointerEvent | null): void {
+    ring.hidden = !event || !camera || !brush || role !== "sculptor";
+    if (!event || !camera || !brush) return;
+    const pixels = (brush.radius * extent * 2 * canvas.clientHeight) / viewHeight(camera);
+    ring.style.width = ring.style.height = `${pixels}px`;
+    ring.style.left = `${event.clientX - pixels / 2}px`;
+    ring.style.top = `${event.clientY - pixels / 2}px`;
+  }
+
+  function draw(): void {
+    if (!camera) return;
+    const view = picture.draw(camera, CLAY);
+    const dots = pens.flatMap((pen) => {
+      const at = project(view, pen.position);
+      if (!at) return [];
+      const dot = document.createElement("span");
+      const colour = people.find((p) => p.person === pen.person)?.colour ?? [255, 255, 255];
+      dot.style.setProperty("--colour", `rgb(${colour.join(" ")})`);
+      dot.style.left = `${at[0] * 100}%`;
+      dot.style.top = `${at[1] * 100}%`;
+      dot.classList.toggle("down", pen.down);
+      return [dot];
+    });
+    penLayer.replaceChildren(...dots);
+  }
+
+  function frame(): void {
+    if (cameraAsked) sendCamera();
+    if (dirty && !document.hidden) {
+      dirty = false;
+      draw();
+    }
+    connection.acknowledge();
+    requestAnimationFrame(frame);
+  }
+
+  function fit(): void {
+    const scale = Math.min(devicePixelRatio || 1, 2);
+    canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
+    canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
+    if (camera) look({ ...camera, aspect: aspect() });
+    dirty = true;
+  }
+
+  new ResizeObserver(fit).observe(canvas);
+  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+  canvas.addEventListener("webglcontextrestored", () => {
+    picture = new ClayPicture(canvas);
+    objects = [];
+    connection.forget();
+  });
+  // A hidden page draws no frames; what it receives is acknowledged all the same.
+  setInterval(() => document.hidden && connection.acknowledge(), 200);
+  fit();
+  frame();
+  Object.assign(window, {
+    sculptd: { figures: () => picture.figures, roundTrip: () => connection.roundTrip, camera: () => camera, connection },
+  });
+}
+
+function aspect(): number {
+  return canvas.clientWidth / Math.max(1, canvas.clientHeight);
+}
+
+function fallback(): Camera {
+  return {
+    target: [0, 0, 0], yaw: 0, pitch: 0, distance: 3, fov_y: 0.698, aspect: aspect(), orthographic: false,
+  };
+}
+
+/** How far the farthest object may reach from the target of a camera that shows the work. */
+function reach(all: ShownObject[], extent: number): number {
+  const from = camera ? eye(camera) : [0, 0, 0];
+  const far = all.map((o) =>
+    Math.hypot((o.matrix[12] ?? 0) - (from[0] ?? 0), (o.matrix[13] ?? 0) - (from[1] ?? 0), (o.matrix[14] ?? 0) - (from[2] ?? 0)),
+  );
+  return Math.max(extent * 2, ...far);
+}
+
+start();

@@ -1,0 +1,84 @@
+// The page in a real browser: it shows the clay, its pen sculpts, and what it sent is what the
+// session holds. `node test/sculpt.mjs BINARY CHROMIUM [FOLDER FOR PICTURES]`; STROKES sets how
+// many strokes are drawn.
+import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { join } from "node:path";
+import { Chromium, Daemon, until, wait } from "./browser.mjs";
+
+const [binary, program, pictures] = process.argv.slice(2);
+const strokes = Number(process.env.STROKES ?? 40);
+const keep = (name, bytes) => {
+  if (!pictures) return;
+  mkdirSync(pictures, { recursive: true });
+  writeFileSync(join(pictures, name), bytes);
+};
+let seed = 12345;
+const dice = () => ((seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32);
+
+const daemon = await Daemon.start(binary, (home) => ["--session", join(home, "web.sculpt")]);
+const chromium = await Chromium.start(program);
+const [sculptor, viewer] = daemon.links;
+try {
+  const page = await chromium.open(sculptor);
+  await page.complete();
+  const shown = await page.run("sculptd.figures()");
+  const before = daemon.ctl("status");
+  assert.equal(shown.triangles, before.triangles, "all triangles are on the page");
+  keep("desktop.png", await page.picture());
+
+  const small = { width: 500, height: 350, deviceScaleFactor: 1, mobile: false };
+  await page.send("Emulation.setDeviceMetricsOverride", small);
+  // Each stroke: what the browser injected, and what came of it.
+  const session = join(daemon.home, "web.sculpt");
+  let points = 0;
+  for (let n = 0; n < strokes; n++) {
+    const [x, y, turn] = [220 + dice() * 60, 130 + dice() * 60, dice() * 6.28];
+    const path = Array.from({ length: 12 }, (_, i) => ({
+      x: x + Math.cos(turn) * i * 2, y: y + Math.sin(turn) * i * 2,
+      force: 0.2 + 0.6 * dice(), tilt: [Math.round(dice() * 80 - 40), Math.round(dice() * 80 - 40)],
+    }));
+    await page.stroke(path);
+    points += path.length;
+  }
+  const after = await until("all strokes are steps", () => {
+    const now = daemon.ctl("status");
+    return now.dabs > before.dabs && daemon.ctl("people") && now;
+  });
+  await wait(500);
+  await page.complete();
+  keep("sculpted.png", await page.picture());
+
+  // A viewer sees, and does not sculpt.
+  const watching = await chromium.open(viewer, { width: 390, height: 844, scale: 2, touch: true });
+  await watching.complete();
+  const hash = daemon.ctl("hash").hash;
+  await watching.stroke([{ x: 190, y: 400, force: 0.9 }, { x: 230, y: 420, force: 0.9 }, { x: 260, y: 440, force: 0.9 }]);
+  await wait(300);
+  assert.equal(daemon.ctl("hash").hash, hash, "a viewer changes nothing");
+  keep("phone.png", await watching.picture());
+
+  // The guest undoes every stroke, one by one, and nothing of them is left.
+  const guests = daemon.ctl("guests.list");
+  assert.deepEqual(guests.guests.map((g) => g.role), ["sculptor", "viewer"]);
+  const start = daemon.ctl("status").undo_steps;
+  assert.equal(start, strokes, "each stroke is a step");
+
+  // A revoked link disconnects its guest.
+  const key = guests.links.find((l) => l.role === "viewer").key;
+  assert.equal(daemon.ctl("guests.revoke", { key }).guests, 1);
+  await until("the viewer is told", () => watching.run("document.body.classList.contains('ended')"));
+  const again = await chromium.open(viewer);
+  await until("its link is refused", () => again.run("document.body.classList.contains('ended')"));
+  keep("revoked.png", await again.picture());
+
+  await daemon.stop();
+  const replay = JSON.parse(execFileSync(binary, ["--json", "replay", session], { env: daemon.env, encoding: "utf8" }));
+  assert.equal(replay.hash ?? replay.mesh_hash, hash, "the session replays to the same clay");
+  console.log(`${strokes} strokes of ${points} points, ${after.dabs} dabs: replayed to ${hash}`);
+} finally {
+  await chromium.stop();
+  if (daemon.process.exitCode === null) await daemon.stop("SIGKILL");
+  daemon.remove();
+}
