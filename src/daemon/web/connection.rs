@@ -77,7 +77,7 @@ pub fn run(stream: TcpStream, read: Vec<u8>, state: &Arc<WebState>, _place: Plac
     let now = state.clock.now_us();
     let Some(key) = state.keys.find(&hello.key, now) else {
         tracing::warn!("web: {peer} was refused: its link is not valid");
-        let why = "this link is not valid, or no longer. Ask for a new one".into();
+        let why = "This link is not valid, or has expired. Ask for a new one.".into();
         return refuse(&mut socket, why);
     };
     let joined = state.guests.join(&key, hello.ticket.as_deref(), &hello.name, now);
@@ -223,6 +223,7 @@ impl<'a> ConnectedPage<'a> {
         }
         let welcome = Tell::Welcome {
             role: self.guest.role.name(),
+            guest: self.guest.number,
             person: self.guest.person,
             ticket: self.guest.ticket.clone(),
             resumed: self.resumed,
@@ -238,11 +239,11 @@ impl<'a> ConnectedPage<'a> {
     /// Returns the reason to end the connection, if there is one.
     fn ends(&mut self, now: u64) -> Option<String> {
         if self.state.stop.load(Relaxed) {
-            let _ = tell(&mut self.socket, &Tell::Note { text: "the daemon has ended".into() });
+            let _ = tell(&mut self.socket, &Tell::Note { text: "The daemon has ended.".into() });
             return Some("the daemon ends".into());
         }
         if !self.state.keys.is_valid(self.guest.key, now) {
-            let why = "this link is no longer valid. Ask for a new one".to_owned();
+            let why = "This link is no longer valid. Ask for a new one.".to_owned();
             refuse(&mut self.socket, why);
             return Some("its key is no longer valid".into());
         }
@@ -276,7 +277,7 @@ impl<'a> ConnectedPage<'a> {
             self.heard_us = now;
             let within = self.messages.take(1, now) && self.bytes.take(message.len() as u64, now);
             if !within {
-                refuse(&mut self.socket, "this page sends too much".into());
+                refuse(&mut self.socket, "This page sends too much.".into());
                 return Err("it sends too much".into());
             }
             match message {
@@ -309,7 +310,7 @@ impl<'a> ConnectedPage<'a> {
 
     fn take_pen(&mut self, number: u32, records: &[u8], now: u64) -> Result<(), String> {
         let Some((pen, sender)) = &mut self.pen else {
-            return self.note("you are watching: this link does not sculpt");
+            return self.note("You are watching: this link does not sculpt.");
         };
         if number <= self.last_batch {
             // It came before the cut already.
@@ -331,6 +332,10 @@ impl<'a> ConnectedPage<'a> {
             Ok(ask) => ask,
             Err(e) => return self.note(&format!("not understood: {e}")),
         };
+        if let Ask::Name { name } = &ask {
+            self.state.guests.rename(self.connection, name);
+            return Ok(());
+        }
         if self.guest.role != WebRole::Sculptor {
             return match ask {
                 // The pages in front of a viewer's camera come first.
@@ -338,7 +343,7 @@ impl<'a> ConnectedPage<'a> {
                     self.camera = camera;
                     Ok(())
                 }
-                _ => self.note("you are watching: this link does not sculpt"),
+                _ => self.note("You are watching: this link does not sculpt."),
             };
         }
         match &ask {
@@ -362,6 +367,7 @@ impl<'a> ConnectedPage<'a> {
                 self.send_command(command, Some((*at, now)), Some(send));
                 self.asked.push_back(Asked { answer, redo });
             }
+            Ask::Name { .. } => {}
         }
         Ok(())
     }
@@ -435,10 +441,12 @@ impl<'a> ConnectedPage<'a> {
             self.asked.pop_front();
             told = true;
             match answer {
-                Some(Ok(Answer::NothingInMemory)) => self.note(&format!("nothing to {word}"))?,
+                Some(Ok(Answer::NothingInMemory)) => {
+                    self.note(&format!("There is nothing to {word}."))?
+                }
                 Some(Ok(_)) => {}
-                Some(Err(why)) => self.note(&format!("{word} failed: {why}"))?,
-                None => self.note(&format!("{word} was not carried out"))?,
+                Some(Err(why)) => self.note(&format!("No {word}: {why}."))?,
+                None => self.note(&format!("The {word} was not carried out."))?,
             }
         }
         Ok(told)
@@ -503,6 +511,7 @@ impl<'a> ConnectedPage<'a> {
 
 fn person(guest: &Guest) -> PersonShown {
     PersonShown {
+        guest: guest.number,
         person: guest.person,
         name: guest.name.clone(),
         role: guest.role.name(),

@@ -21,6 +21,8 @@ const FIRST: u8 = 128;
 /// A page that has joined.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Guest {
+    /// Number of the guest; it is never used again.
+    pub number: u64,
     /// Lets the page resume after a cut; a secret.
     pub ticket: String,
     /// Number of the key that it joined with.
@@ -127,10 +129,20 @@ impl GuestList {
         };
         let ticket = random_token().map_err(|e| e.to_string())?;
         let name = short(name);
-        let guest = Guest { ticket, key: key.id, role: key.role, person, pen, name };
+        let guest =
+            Guest { number: connection, ticket, key: key.id, role: key.role, person, pen, name };
         list.entries.push(Entry { guest: guest.clone(), connection, away: None });
         self.show(&list);
         Ok(Joined { guest, connection, resumed: None })
+    }
+
+    /// Gives a guest another name.
+    pub fn rename(&self, connection: u64, name: &str) {
+        let mut list = locked(&self.list);
+        if let Some(entry) = list.entries.iter_mut().find(|e| e.connection == connection) {
+            entry.guest.name = short(name);
+        }
+        self.show(&list);
     }
 
     /// Returns true while this connection is the newest of its guest.

@@ -47,6 +47,8 @@ pub enum Ask {
         symmetry: Option<[bool; 3]>,
         at: f64,
     },
+    /// The guest wants to be called so.
+    Name { name: String },
     /// Undoes the guest's last step.
     Undo { at: f64 },
     /// Redoes the guest's step that was undone last.
@@ -90,6 +92,8 @@ pub struct PenShown {
 /// A person who is connected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PersonShown {
+    /// Number of the guest, also of those who are no person of the world.
+    pub guest: u64,
     pub person: u8,
     pub name: String,
     pub role: &'static str,
@@ -103,6 +107,7 @@ pub enum Tell {
     /// The answer to [`Hello`].
     Welcome {
         role: &'static str,
+        guest: u64,
         person: u8,
         ticket: String,
         /// True if the page goes on where it was.

@@ -31,6 +31,9 @@ export class Connection {
   private ended = false;
   /** Times at which batches were sent, for the round trip. */
   private sent = new Map<number, number>();
+  private cutAt = 0;
+  /** Longest time from a cut until the page was back, ms. */
+  longestAway = 0;
   /** Milliseconds from a batch to its confirmation, smoothed. */
   roundTrip = 0;
 
@@ -63,6 +66,7 @@ export class Connection {
     socket.onclose = () => {
       if (this.socket !== socket) return;
       this.socket = null;
+      if (this.cutAt === 0) this.cutAt = performance.now();
       this.events.connected(false);
       if (this.ended) return;
       setTimeout(() => this.open(), this.wait);
@@ -83,6 +87,10 @@ export class Connection {
       this.wait = FIRST_WAIT;
       this.batch = 0;
       this.sent.clear();
+      if (this.cutAt > 0) {
+        this.longestAway = Math.max(this.longestAway, performance.now() - this.cutAt);
+        this.cutAt = 0;
+      }
       if (!message.resumed) this.received = this.acknowledged = 0;
       this.events.connected(true);
     } else if (message.is === "refused") {

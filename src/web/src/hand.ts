@@ -66,14 +66,15 @@ export class Hand {
     return event.pointerType === "touch" && event.timeStamp - this.penSeen < PALM_MS;
   }
 
-  /** Ends every stroke: what was drawn by a finger that turned out to be one of two. */
-  private lift(): void {
+  /** Ends every stroke until the pointer comes down again: a finger turned out to be one of two,
+   * or the connection was cut. */
+  lift(): void {
+    this.waiting = [];
     for (const [id, deed] of this.deeds) if (deed === "sculpt") this.deeds.set(id, "ignore");
   }
 
   private down(event: PointerEvent): void {
     event.preventDefault();
-    this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     if (event.pointerType === "pen") this.penSeen = event.timeStamp;
     if (this.isPalm(event)) {
@@ -85,10 +86,7 @@ export class Hand {
       this.touches.set(event.pointerId, { x: event.clientX, y: event.clientY });
       this.tapped = Math.max(this.tapped, this.touches.size);
       if (this.touches.size > 1) {
-        if (this.waiting.length > 0) {
-          this.waiting = [];
-          this.lift();
-        }
+        if (this.waiting.length > 0) this.lift();
         for (const [id, deed] of this.deeds) {
           if (deed === "sculpt" && this.touches.has(id)) this.send([withoutButtons(event)], false);
         }

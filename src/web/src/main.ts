@@ -19,6 +19,7 @@ let role: Role = "viewer";
 let camera: Camera | null = null;
 let home: Camera | null = null;
 let brush: Brush | null = null;
+let own = 0;
 let extent = 1;
 let people: Person[] = [];
 let pens: OthersPen[] = [];
@@ -36,7 +37,11 @@ function start(): void {
     brush: (change) => connection?.ask({ do: "brush", at: pageTime(), ...change }),
     undo: () => undo(),
     redo: () => redo(),
-    home: () => home && look(home),
+    home: () => home && look(fitted(home)),
+    name: (name) => {
+      localStorage.setItem("name", name);
+      connection?.ask({ do: "name", name });
+    },
   });
   if (!/^[0-9a-f]{32}$/.test(key)) {
     panel.end(say("noKey"));
@@ -50,7 +55,8 @@ function start(): void {
     return;
   }
   panel.state(say("connecting"));
-  const name = new URLSearchParams(location.search).get("name") ?? "";
+  const name = localStorage.getItem("name") ?? "";
+  panel.name.value = name;
   const connection = new Connection(key, name, {
     tell: (message) => take(message),
     page: (message) => {
@@ -59,6 +65,7 @@ function start(): void {
     },
     connected: (yes) => {
       isConnected = yes;
+      if (!yes) hand.lift();
       if (!yes && !document.body.classList.contains("ended")) panel.state(say("lost"));
       if (yes && camera) sendCamera();
     },
@@ -70,9 +77,11 @@ function start(): void {
     switch (message.is) {
       case "welcome":
         role = message.role;
+        own = message.guest;
         extent = message.extent;
         if (!camera) {
-          home = camera = { ...message.camera, aspect: aspect() };
+          home = message.camera;
+          camera = fitted(home);
           sendCamera();
         }
         if (!message.resumed && objects.length > 0) {
@@ -95,12 +104,12 @@ function start(): void {
         showState();
         break;
       case "host":
-        home = { ...message.camera, aspect: aspect() };
-        if (panel.follows && camera) look(home);
+        home = message.camera;
+        if (panel.follows && camera) look(fitted(home));
         break;
       case "people":
         people = message.people;
-        panel.showPeople(people);
+        panel.showPeople(people, own);
         break;
       case "pens":
         pens = message.pens;
@@ -143,7 +152,7 @@ function start(): void {
     cameraAsked = false;
   }
 
-  new Hand(canvas, {
+  const hand = new Hand(canvas, {
     camera: () => camera ?? fallback(),
     look: (next) => {
       panel.follows = false;
@@ -216,8 +225,8 @@ function start(): void {
       const dot = document.createElement("span");
       const colour = people.find((p) => p.person === pen.person)?.colour ?? [255, 255, 255];
       dot.style.setProperty("--colour", `rgb(${colour.join(" ")})`);
-      dot.style.left = `${at[0] * 100}%`;
-      dot.style.top = `${at[1] * 100}%`;
+      dot.style.left = `${at[0] * canvas.clientWidth}px`;
+      dot.style.top = `${at[1] * canvas.clientHeight}px`;
       dot.classList.toggle("down", pen.down);
       return [dot];
     });
@@ -260,6 +269,12 @@ function start(): void {
 
 function aspect(): number {
   return canvas.clientWidth / Math.max(1, canvas.clientHeight);
+}
+
+/** The view of another screen on this one: what fits there across fits here too. */
+function fitted(camera: Camera): Camera {
+  const narrow = Math.max(1, Math.min(camera.aspect, 1.2) / aspect());
+  return { ...camera, aspect: aspect(), distance: camera.distance * narrow };
 }
 
 function fallback(): Camera {

@@ -14,6 +14,7 @@ export interface PanelEvents {
   undo(): void;
   redo(): void;
   home(): void;
+  name(name: string): void;
 }
 
 /** Radius of a brush by a slider from 0 to 1: fine where it is small. */
@@ -31,6 +32,7 @@ export class Panel {
   private readonly mirror = the<HTMLButtonElement>("mirror");
   private readonly finger = the<HTMLButtonElement>("finger");
   private readonly follow = the<HTMLButtonElement>("follow");
+  readonly name = the<HTMLInputElement>("name");
   private readonly note = the<HTMLParagraphElement>("note");
   private noteTimer = 0;
 
@@ -67,6 +69,9 @@ export class Panel {
     toggle(this.mirror, (on) => events.brush({ symmetry: [on, false, false] }));
     toggle(this.finger, () => {});
     toggle(this.follow, () => {});
+    this.name.placeholder = say("name");
+    this.name.setAttribute("aria-label", say("name"));
+    this.name.onchange = () => events.name(this.name.value);
     the("undo").onclick = events.undo;
     the("redo").onclick = events.redo;
     the("home").onclick = events.home;
@@ -107,8 +112,10 @@ export class Panel {
     press(this.mirror, brush.symmetry[0]);
   }
 
-  showPeople(people: Person[]): void {
-    const items = people.map((p) => {
+  showPeople(people: Person[], own: number): void {
+    // Oneself is the field of the name.
+    const others = people.filter((p) => p.guest !== own);
+    const items = others.map((p) => {
       const item = document.createElement("li");
       item.textContent = p.name || p.role;
       item.style.setProperty("--colour", css(p.colour));

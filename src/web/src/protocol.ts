@@ -33,6 +33,7 @@ export interface ShownObject {
 }
 
 export interface Person {
+  guest: number;
   person: number;
   name: string;
   role: Role;
@@ -51,6 +52,7 @@ export type Role = "viewer" | "sculptor" | "device";
 export interface Welcome {
   is: "welcome";
   role: Role;
+  guest: number;
   person: number;
   ticket: string;
   resumed: boolean;
@@ -76,6 +78,7 @@ export type Tell =
 export type Ask =
   | { do: "camera"; camera: Camera; at: number }
   | ({ do: "brush"; at: number } & Partial<Brush>)
+  | { do: "name"; name: string }
   | { do: "undo"; at: number }
   | { do: "redo"; at: number };
 

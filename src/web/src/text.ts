@@ -22,6 +22,7 @@ const ENGLISH = {
   follow: "Follow host",
   host: "host",
   vertices: "vertices",
+  name: "Your name",
 };
 
 export type Word = keyof typeof ENGLISH;
@@ -33,7 +34,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "Öffne diese Seite über ihren Link oder Code: er enthält den Schlüssel.",
     tools: "Pinsel", kind: "Pinsel", radius: "Radius", strength: "Stärke", colour: "Farbe", negative: "Abtragen",
     mirror: "Spiegeln", finger: "Finger modelliert", undo: "Rückgängig", redo: "Wiederholen",
-    home: "Alles zeigen", follow: "Gastgeber folgen", host: "Gastgeber", vertices: "Punkte",
+    home: "Alles zeigen", follow: "Gastgeber folgen", host: "Gastgeber", vertices: "Punkte", name: "Dein Name",
   },
   fr: {
     title: "Sculpture", connecting: "Connexion…", lost: "Connexion perdue. Nouvel essai…",
@@ -41,7 +42,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "Ouvrez cette page par son lien ou son code : il contient la clé.",
     tools: "Brosse", kind: "Brosse", radius: "Rayon", strength: "Force", colour: "Couleur", negative: "Creuser",
     mirror: "Miroir", finger: "Le doigt sculpte", undo: "Annuler", redo: "Rétablir",
-    home: "Tout voir", follow: "Suivre l’hôte", host: "hôte", vertices: "sommets",
+    home: "Tout voir", follow: "Suivre l’hôte", host: "hôte", vertices: "sommets", name: "Votre nom",
   },
   es: {
     title: "Escultura", connecting: "Conectando…", lost: "Conexión perdida. Reintentando…",
@@ -49,7 +50,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "Abre esta página con su enlace o su código: contiene la clave.",
     tools: "Pincel", kind: "Pincel", radius: "Radio", strength: "Fuerza", colour: "Color", negative: "Tallar",
     mirror: "Espejo", finger: "El dedo esculpe", undo: "Deshacer", redo: "Rehacer",
-    home: "Ver todo", follow: "Seguir al anfitrión", host: "anfitrión", vertices: "vértices",
+    home: "Ver todo", follow: "Seguir al anfitrión", host: "anfitrión", vertices: "vértices", name: "Tu nombre",
   },
   it: {
     title: "Scultura", connecting: "Connessione…", lost: "Connessione persa. Nuovo tentativo…",
@@ -57,7 +58,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "Apri questa pagina dal suo link o codice: contiene la chiave.",
     tools: "Pennello", kind: "Pennello", radius: "Raggio", strength: "Forza", colour: "Colore", negative: "Scava",
     mirror: "Specchio", finger: "Il dito scolpisce", undo: "Annulla", redo: "Ripeti",
-    home: "Mostra tutto", follow: "Segui l’ospite", host: "ospite", vertices: "vertici",
+    home: "Mostra tutto", follow: "Segui l’ospite", host: "ospite", vertices: "vertici", name: "Il tuo nome",
   },
   el: {
     title: "Γλυπτό", connecting: "Σύνδεση…", lost: "Η σύνδεση χάθηκε. Νέα προσπάθεια…",
@@ -65,7 +66,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "Ανοίξτε τη σελίδα με τον σύνδεσμο ή τον κωδικό της: περιέχει το κλειδί.",
     tools: "Πινέλο", kind: "Πινέλο", radius: "Ακτίνα", strength: "Ένταση", colour: "Χρώμα", negative: "Αφαίρεση",
     mirror: "Καθρέφτης", finger: "Το δάχτυλο πλάθει", undo: "Αναίρεση", redo: "Επανάληψη",
-    home: "Προβολή όλων", follow: "Όπως ο οικοδεσπότης", host: "οικοδεσπότης", vertices: "κορυφές",
+    home: "Προβολή όλων", follow: "Όπως ο οικοδεσπότης", host: "οικοδεσπότης", vertices: "κορυφές", name: "Το όνομά σας",
   },
   ja: {
     title: "彫刻", connecting: "接続中…", lost: "接続が切れました。再接続中…",
@@ -73,7 +74,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "リンクまたはコードからこのページを開いてください。鍵が含まれています。",
     tools: "ブラシ", kind: "ブラシ", radius: "半径", strength: "強さ", colour: "色", negative: "削る",
     mirror: "対称", finger: "指で彫る", undo: "元に戻す", redo: "やり直す",
-    home: "全体表示", follow: "ホストに追従", host: "ホスト", vertices: "頂点",
+    home: "全体表示", follow: "ホストに追従", host: "ホスト", vertices: "頂点", name: "お名前",
   },
   zh: {
     title: "雕塑", connecting: "正在连接…", lost: "连接已断开，正在重试…",
@@ -81,7 +82,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     noKey: "请通过链接或二维码打开此页面：其中包含密钥。",
     tools: "笔刷", kind: "笔刷", radius: "半径", strength: "强度", colour: "颜色", negative: "雕除",
     mirror: "镜像", finger: "手指雕刻", undo: "撤销", redo: "重做",
-    home: "显示全部", follow: "跟随主机", host: "主机", vertices: "顶点",
+    home: "显示全部", follow: "跟随主机", host: "主机", vertices: "顶点", name: "您的名字",
   },
 };
 

@@ -123,7 +123,7 @@ export class Page {
   }
 
   /** Waits until the page shows all of the clay. */
-  complete() { return until("the page is complete", () => this.run("document.body.dataset.complete ?? ''")); }
+  complete() { return until("the page is complete", () => this.run("document.body?.dataset.complete ?? ''")); }
 
   pen(type, x, y, force = 0.5, tilt = [0, 0]) {
     const down = type !== "mouseReleased" && force > 0;
