@@ -44,6 +44,7 @@ CHAPTERS = [
         ("Gestures", "gestures.md"),
         ("Solids: join, measure, check", "solids.md"),
         ("Ready to print, ready to mould", "check.md"),
+        ("Join from a phone or an iPad", "join.md"),
         ("A kiosk, from an empty computer to opening day", "kiosk.md"),
         ("A fleet of installations", "fleet.md"),
         ("One sculpture, several people", "together.md"),

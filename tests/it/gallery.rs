@@ -8,9 +8,10 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, SystemTime};
 
 use crate::waiting::until;
-use sculptd_daemon::kiosk::share::{Code, Share};
+use sculptd_daemon::kiosk::share::Share;
 use sculptd_daemon::kiosk::spool::Spool;
 use sculptd_daemon::kiosk::{gallery, spool};
+use sculptd_daemon::qr_code::Code;
 use sculptd_devices::Clock;
 use sculptd_geometry::shapes;
 

@@ -67,6 +67,8 @@ mod tree;
 #[cfg(feature = "viewer")]
 mod viewer;
 mod waiting;
+#[cfg(unix)]
+mod web;
 
 /// The folder of real recordings and meshes, where the environment names one.
 pub fn corpus() -> Option<PathBuf> {

@@ -11,7 +11,7 @@ fetch_kernel
 # SCULPTD_VM_BINARY: a daemon that was built already.
 daemon=${SCULPTD_VM_BINARY:-$root/target/release/sculptd}
 [ -n "${SCULPTD_VM_BINARY:-}" ] || (cd "$root" && cargo build --release --no-default-features --bin sculptd)
-(cd "$root" && cargo build --release -p sculptd-devices --example vm_guest)
+(cd "$root" && cargo build --release --workspace --example vm_guest)
 
 initrd=$work/initrd
 rm -rf "$initrd"

@@ -284,12 +284,19 @@ impl ObjectPages {
 mod tests {
     use super::*;
     use crate::published::PublishedFigures;
+    use sculptd_clay::brush::BrushSettings;
+    use sculptd_clay::{Clay, Workers};
     use sculptd_engine::world::{World, WorldOptions};
+    use sculptd_geometry::job::Job;
     use sculptd_geometry::shapes;
 
     fn state(subdivisions: u32) -> Published {
         let mesh = shapes::icosphere(1.0, subdivisions);
-        let mut world = World::new(&mesh, WorldOptions::default());
+        let clay = Clay::build(&mesh, &Job::default()).expect("clay");
+        let options =
+            WorldOptions { dab_budget: 1 << 20, undo_bytes: 1 << 20, hands: Default::default() };
+        let (camera, brush) = (Camera::default(), BrushSettings::default());
+        let mut world = World::new(clay, camera, brush, Workers::new(1), options);
         Published::of(&mut world, PublishedFigures::default())
     }
 

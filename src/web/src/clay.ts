@@ -65,6 +65,7 @@ export class ClayPicture {
   private readonly program: WebGLProgram;
   private readonly at: Record<string, WebGLUniformLocation | null> = {};
   private readonly objects = new Map<number, ClayObject>();
+  private fence: WebGLSync | null = null;
   /** Half the diagonal of everything, world units. */
   radius = 1;
 
@@ -170,6 +171,13 @@ export class ClayPicture {
     return { pages, triangles };
   }
 
+  /** Whether the card has finished the last picture: a slow one gets no more than it can draw. */
+  get isDrawn(): boolean {
+    if (!this.fence) return true;
+    const status = this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) as number;
+    return status === this.gl.SIGNALED;
+  }
+
   draw(camera: Camera, clay: [number, number, number]): Mat4 {
     const gl = this.gl;
     const view = viewProjection(camera, this.radius);
@@ -194,6 +202,8 @@ export class ClayPicture {
       }
     }
     gl.bindVertexArray(null);
+    if (this.fence) gl.deleteSync(this.fence);
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     return view;
   }
 

@@ -5,6 +5,8 @@ import { ALIVE, type Ask, PEN_BATCH, type PageMessage, RECEIVED, readPage, type 
 
 /** Milliseconds between two signs of life. */
 const ALIVE_MS = 2000;
+/** Messages after which it is said that they have arrived. */
+const AT_ONCE = 16;
 /** First and longest wait before the next try, ms. */
 const FIRST_WAIT = 200;
 const LONGEST_WAIT = 2000;
@@ -79,6 +81,8 @@ export class Connection {
       const page = readPage(data);
       this.events.page(page);
       this.received = page.message;
+      // Without waiting for a frame: a card that draws slowly does not slow the line.
+      if (this.received - this.acknowledged >= AT_ONCE) this.acknowledge();
       return;
     }
     const message = JSON.parse(data) as Tell;

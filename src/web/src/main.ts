@@ -235,7 +235,7 @@ function start(): void {
 
   function frame(): void {
     if (cameraAsked) sendCamera();
-    if (dirty && !document.hidden) {
+    if (dirty && !document.hidden && picture.isDrawn) {
       dirty = false;
       draw();
     }

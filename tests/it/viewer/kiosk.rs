@@ -172,7 +172,8 @@ fn staff_types_a_number_that_is_not_shown() {
 #[cfg(unix)]
 #[test]
 fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
-    use sculptd_daemon::kiosk::share::{Code, Link};
+    use sculptd_daemon::kiosk::share::Link;
+    use sculptd_daemon::qr_code::Code;
     let screen = screen();
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");

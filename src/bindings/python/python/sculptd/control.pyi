@@ -312,6 +312,54 @@ class GroupParams(TypedDict):
     # The name of their group; without it they are in none.
     name: NotRequired[str | None]
 
+# A connected guest.
+class GuestInfo(TypedDict):
+    # Number of the link that the guest joined by.
+    key: int
+    # As the guest wants to be called.
+    name: str
+    # Number of the guest's person in the sculpture; 0 for a viewer or a tablet.
+    person: int
+    # Permissions of the guest.
+    role: PersonRole
+
+# Parameters of guests.invite.
+class GuestInviteParams(TypedDict):
+    # Minutes until it expires; without it, it is valid as long as the daemon runs.
+    minutes: NotRequired[float | None]
+    # Permissions of who has the link.
+    role: PersonRole
+
+# A link by which guests join.
+class GuestLink(TypedDict):
+    # Seconds until it expires; null: it is valid as long as the daemon runs.
+    expires_s: NotRequired[float | None]
+    # Number of the link, for guests.revoke.
+    key: int
+    # The link with its secret: give it to guests only.
+    link: str
+    # Permissions of who has it.
+    role: PersonRole
+
+# Parameters of guests.revoke.
+class GuestRevokeParams(TypedDict):
+    # Number of the link.
+    key: int
+
+# Reply of guests.revoke.
+class GuestRevokeReply(TypedDict):
+    # Number of guests who had joined by it; they are disconnected.
+    guests: int
+
+# Reply of guests.list.
+class GuestsReply(TypedDict):
+    # Who is connected, in the order in which they joined.
+    guests: Sequence[GuestInfo]
+    # The valid links, the oldest first.
+    links: Sequence[GuestLink]
+    # True if the daemon serves a page for guests: it was started with --web.
+    served: bool
+
 # Reply of hash.
 class HashReply(TypedDict):
     # 16 hexadecimal digits over the whole mesh.
@@ -1117,6 +1165,17 @@ type WindowStatus = Literal['headless', 'opening', 'open', 'lost']
 # An axis of the world.
 type WorldAxis = Literal['x', 'y', 'z']
 
+class _Guests:
+    def invite(self, *, role: PersonRole, minutes: float | None = ...) -> GuestLink:
+        """Makes a link by which guests join in a browser."""
+        ...
+    def list(self) -> GuestsReply:
+        """Lists the guests who joined in a browser, and the links by which guests join."""
+        ...
+    def revoke(self, *, key: int) -> GuestRevokeReply:
+        """Revokes a link: the guests who joined by it are disconnected."""
+        ...
+
 class _Layers:
     def activate(self, *, layer: int | None = ...) -> LayerReply:
         """Makes a layer, or the base, the one that strokes change."""
@@ -1285,6 +1344,8 @@ class Client:
     def export(self, path: str | PathLike[str]) -> ExportReply: ...
     def load(self, path: str | PathLike[str]) -> LoadReply: ...
     def hello(self) -> HelloReply: ...
+    @property
+    def guests(self) -> _Guests: ...
     @property
     def layers(self) -> _Layers: ...
     @property
