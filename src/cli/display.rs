@@ -100,13 +100,14 @@ pub fn window(
     Ok(move || sculptd_window::viewer::run(wiring).map_err(|e| e.to_string()))
 }
 
-/// The newest link by which guests sculpt.
+/// The newest link by which guests sculpt, or else any.
 #[cfg(all(feature = "viewer", unix))]
 fn invitation(run: &LiveRun) -> Option<sculptd_daemon::qr_code::Invitation> {
     use sculptd_daemon::qr_code::{Code, Invitation};
     let web = run.web.as_ref()?;
     let keys = web.state.keys.all(run.clock.now_us());
-    let key = keys.iter().rfind(|k| k.role == sculptd_daemon::web::WebRole::Sculptor)?;
+    let sculptor = keys.iter().rfind(|k| k.role == sculptd_daemon::web::WebRole::Sculptor);
+    let key = sculptor.or(keys.first())?;
     let url = web.link(key);
     Some(Invitation { code: Code::of(&url)?, url })
 }

@@ -233,7 +233,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             #[cfg(unix)]
             telemetry,
             #[cfg(unix)]
-            web: args.web.options(),
+            web: args.web.options(args.kiosk),
             window: WindowLink::new(session.map(PathBuf::as_path)),
             shared,
         };

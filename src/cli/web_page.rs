@@ -45,9 +45,10 @@ pub struct WebArgs {
 }
 
 impl WebArgs {
-    /// Returns the options of the page, if it is wanted.
-    pub fn options(&self) -> Option<WebOptions> {
+    /// Returns the options of the page, if it is wanted. `kiosk`: of an installation.
+    pub fn options(&self, kiosk: bool) -> Option<WebOptions> {
         let at = self.web?;
-        Some(WebOptions { at, name: self.web_name.clone(), files: FILES, lasts: None })
+        let name = self.web_name.clone();
+        Some(WebOptions { at, name, files: FILES, lasts: None, own_views: !kiosk })
     }
 }

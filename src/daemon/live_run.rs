@@ -451,6 +451,7 @@ fn serve_page(
         clock: clock.clone(),
         stop: stop.clone(),
         keys: Default::default(),
+        own_views: web.own_views,
         guests: crate::web::GuestList::shown_by(live.guests.clone()),
     };
     let failed = |source| LiveRunError::Service { what: format!("page on {}", web.at), source };
@@ -461,7 +462,7 @@ fn serve_page(
         (WebRole::Device, "to use a tablet or a telephone as your pen"),
     ];
     let mut links = Vec::new();
-    for (role, purpose) in roles {
+    for (role, purpose) in roles.into_iter().filter(|r| web.own_views || r.0 != WebRole::Sculptor) {
         let key = page.state.keys.issue(role, web.lasts, clock.now_us()).map_err(failed)?;
         links.push(format!("{purpose}: {}", page.link(&key)));
     }

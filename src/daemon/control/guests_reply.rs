@@ -33,6 +33,11 @@ pub(super) fn invite(host: &Host, params: &GuestInviteParams) -> Result<GuestLin
         PersonRole::Viewer => WebRole::Viewer,
         PersonRole::Device => WebRole::Device,
     };
+    if role == WebRole::Sculptor && !web.state.own_views {
+        let text = "in an installation guests watch, or draw as a tablet of the screen: choose \
+                    the role viewer or device";
+        return Err(RpcError::failed(text));
+    }
     let lasts = params.minutes.map(|m| Duration::from_secs_f64(m * 60.0));
     let now = web.state.clock.now_us();
     let key = web.state.keys.issue(role, lasts, now);

@@ -75,6 +75,9 @@ pub struct WebOptions {
     pub files: &'static [PageFile],
     /// Time for which the first keys are valid; `None`: as long as the program runs.
     pub lasts: Option<Duration>,
+    /// Guests may sculpt in views of their own. Not in an installation: the file of a visit holds
+    /// the visitor's view alone.
+    pub own_views: bool,
 }
 
 /// What every connection needs.
@@ -88,6 +91,8 @@ pub struct WebState {
     /// Set when the daemon ends.
     pub stop: Arc<AtomicBool>,
     pub keys: KeyRing,
+    /// See [`WebOptions::own_views`].
+    pub own_views: bool,
     pub guests: GuestList,
 }
 

@@ -19,6 +19,7 @@ export interface HandEvents {
   pen(records: Uint8Array): boolean;
   canSculpt(): boolean;
   fingerSculpts(): boolean;
+  penSeen(): void;
   pointerAt(event: PointerEvent | null): void;
   undo(): void;
   redo(): void;
@@ -62,6 +63,12 @@ export class Hand {
     return this.events.pen(records(events, this.canvas.getBoundingClientRect(), inRange));
   }
 
+  private look(event: PointerEvent): void {
+    if (event.pointerType !== "pen") return;
+    this.penSeen = event.timeStamp;
+    this.events.penSeen();
+  }
+
   private isPalm(event: PointerEvent): boolean {
     return event.pointerType === "touch" && event.timeStamp - this.penSeen < PALM_MS;
   }
@@ -76,7 +83,7 @@ export class Hand {
   private down(event: PointerEvent): void {
     event.preventDefault();
     this.canvas.setPointerCapture(event.pointerId);
-    if (event.pointerType === "pen") this.penSeen = event.timeStamp;
+    this.look(event);
     if (this.isPalm(event)) {
       this.deeds.set(event.pointerId, "ignore");
       return;
@@ -115,7 +122,7 @@ export class Hand {
   }
 
   private move(event: PointerEvent): void {
-    if (event.pointerType === "pen") this.penSeen = event.timeStamp;
+    this.look(event);
     this.events.pointerAt(event.pointerType === "touch" ? null : event);
     const deed = this.deeds.get(event.pointerId);
     if (this.touches.size > 1 && this.touches.has(event.pointerId)) return this.gesture(event);

@@ -81,7 +81,7 @@ function start(): void {
         extent = message.extent;
         if (!camera) {
           home = message.camera;
-          camera = fitted(home);
+          camera = role === "device" ? home : fitted(home);
           sendCamera();
         }
         if (!message.resumed && objects.length > 0) {
@@ -105,7 +105,9 @@ function start(): void {
         break;
       case "host":
         home = message.camera;
-        if (panel.follows && camera) look(fitted(home));
+        // A tablet lies over the view of the screen, edge on edge.
+        if (role === "device") camera = home;
+        else if (panel.follows && camera) look(fitted(home));
         break;
       case "people":
         people = message.people;
@@ -142,6 +144,7 @@ function start(): void {
 
   /** The view of the guest: from here on, strokes go through it. */
   function look(next: Camera): void {
+    if (role === "device") return;
     camera = next;
     dirty = true;
     cameraAsked = true;
@@ -172,6 +175,7 @@ function start(): void {
     },
     canSculpt: () => role !== "viewer" && isConnected,
     fingerSculpts: () => role === "device" || panel.fingerSculpts,
+    penSeen: () => panel.penSeen(),
     pointerAt: (event) => showRing(event),
     undo,
     redo,
@@ -273,7 +277,7 @@ function aspect(): number {
 
 /** The view of another screen on this one: what fits there across fits here too. */
 function fitted(camera: Camera): Camera {
-  const narrow = Math.max(1, Math.min(camera.aspect, 1.2) / aspect());
+  const narrow = Math.max(1, Math.min(camera.aspect, 1) / aspect());
   return { ...camera, aspect: aspect(), distance: camera.distance * narrow };
 }
 

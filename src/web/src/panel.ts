@@ -81,6 +81,13 @@ export class Panel {
     return isPressed(this.finger);
   }
 
+  /** A pen is here: from now on fingers move the view, unless the button says otherwise. */
+  penSeen(): void {
+    if (!this.finger.hidden) return;
+    this.finger.hidden = false;
+    press(this.finger, false);
+  }
+
   get follows(): boolean {
     return isPressed(this.follow);
   }
@@ -91,7 +98,7 @@ export class Panel {
 
   show(role: Role, brushes: string[]): void {
     the("tools").hidden = role !== "sculptor";
-    this.follow.hidden = role === "device";
+    this.follow.hidden = the("home").hidden = role === "device";
     if (this.kind.options.length === 0) {
       for (const name of brushes) {
         const text = name.replaceAll("_", " ");
