@@ -135,10 +135,10 @@
 //! * `sculptd-events`, made by `daemon::control::events`: sends events to one client. Waits for:
 //!   the published state.
 //! * `sculptd-metrics`, `sculptd-share`, `sculptd-web`, made by `daemon::http`: serve metrics, a
-//!   visitor's sculpture for download, and the page by which guests join, each to many clients. Wait
-//!   for: their socket, time.
-//! * `sculptd-page`, made by `daemon::web`: reads what one guest's page sends, and sends it the clay
-//!   that it lacks. Waits for: that page, time.
+//!   visitor's sculpture for download, and the page by which guests join, each to many clients.
+//!   Wait for: their socket, time.
+//! * `sculptd-page`, made by `daemon::web`: reads what one guest's page sends, and sends it the
+//!   clay that it lacks. Waits for: that page, time.
 //! * `sculptd-telemetry`, made by `daemon::telemetry`: sends metrics and the log to a collector.
 //!   Waits for: time, the collector.
 //! * `sculptd-service`, made by `daemon::service`: the watchdog of systemd, reload on SIGHUP. Waits

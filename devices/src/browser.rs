@@ -10,7 +10,7 @@
 //! | 2 | pressure, 0 to 65535 |
 //! | 1, 1 | tilt to the right and toward the user, degrees (i8) |
 //! | 2 | twist, degrees clockwise, 0 to 359 |
-//! | 1 | bits: 1 in range, 2 the tip touches, 4 eraser, 8 and 16 barrel buttons, 32 pressure is reported, 64 tilt and twist are reported |
+//! | 1 | bits: 1 in range, 2 tip, 4 eraser, 8 and 16 barrel buttons, 32 has pressure, 64 has tilt |
 //! | 1 | 0 pen, 1 mouse, 2 finger |
 //!
 //! Rules: nothing that a page can send panics, allocates without bound or yields a number that is
@@ -18,7 +18,6 @@
 
 use glam::Vec2;
 
-use crate::leap::ClockMap;
 use crate::{Body, DeviceId, Pen, Sample, Tool};
 
 /// Bytes of a record.
@@ -49,14 +48,14 @@ pub enum BatchError {
 #[derive(Debug)]
 pub struct BrowserPen {
     device: DeviceId,
-    clock: ClockMap,
+    clock: PageClock,
     last: Option<Pen>,
 }
 
 impl BrowserPen {
     /// Creates a pen with this id that is out of range.
     pub fn new(device: DeviceId) -> BrowserPen {
-        BrowserPen { device, clock: ClockMap::default(), last: None }
+        BrowserPen { device, clock: PageClock::default(), last: None }
     }
 
     /// Returns the samples of a batch. `aspect`: width over height of the page's view. `read_us`:
@@ -77,6 +76,10 @@ impl BrowserPen {
         if records.len() > MAX_RECORDS {
             return Err(BatchError::Records(records.len()));
         }
+        // The newest was on its way for the shortest time.
+        if let Some(newest) = records.iter().filter_map(|r| page_time(time_of(r))).max() {
+            self.clock.hear(newest, read_us);
+        }
         Ok(records.iter().map(|r| self.sample(r, aspect, read_us)).collect())
     }
 
@@ -95,13 +98,14 @@ impl BrowserPen {
 
     /// Returns the time of an event of the page on the clock of the samples.
     pub fn time(&mut self, page_us: f64, read_us: u64) -> u64 {
+        if let Some(page_us) = page_time(page_us) {
+            self.clock.hear(page_us, read_us);
+        }
         self.clock.map(page_time(page_us), read_us)
     }
 
     fn sample(&mut self, record: &[u8; RECORD], aspect: f32, read_us: u64) -> Sample {
         let two = |at: usize| u16::from_le_bytes([record[at], record[at + 1]]);
-        let mut time = [0; 8];
-        time.copy_from_slice(&record[..8]);
         let bits = record[18];
         let share = |at: usize| f32::from(two(at)) / 65_535.0;
         let area = Vec2::new(HEIGHT_MM * aspect.clamp(0.1, 10.0), HEIGHT_MM);
@@ -134,13 +138,56 @@ impl BrowserPen {
             buttons: u32::from(bits >> 3 & 3),
         };
         self.last = in_range.then_some(pen);
-        self.of(pen, page_time(f64::from_le_bytes(time)), read_us)
+        self.of(pen, page_time(time_of(record)), read_us)
     }
 
     fn of(&mut self, pen: Pen, page_us: Option<u64>, read_us: u64) -> Sample {
         let t_us = self.clock.map(page_us, read_us);
         Sample { device: self.device, t_us, device_t_us: page_us, body: Body::Pen(pen) }
     }
+}
+
+/// Beyond this the page's clock is held to have jumped, µs.
+const JUMP_US: i64 = 1_000_000;
+/// Greatest drift between the two clocks: 200 parts in a million.
+const DRIFT_PARTS: i64 = 5_000;
+
+/// The map from the page's clock to ours: the least delay seen is the best estimate of the offset,
+/// so the events of a burst keep their times.
+#[derive(Debug, Default)]
+struct PageClock {
+    /// The newest time of the page, and our time minus the page's.
+    seen: Option<(i64, i64)>,
+    last_us: u64,
+}
+
+impl PageClock {
+    fn hear(&mut self, page_us: u64, read_us: u64) {
+        let page = page_us as i64;
+        let apart = read_us as i64 - page;
+        let offset = match self.seen {
+            Some((_, offset)) if (apart - offset).abs() > JUMP_US => apart,
+            Some((at, offset)) => apart.min(offset + (page - at).max(0) / DRIFT_PARTS),
+            None => apart,
+        };
+        let newest = self.seen.map_or(page, |(at, _)| at.max(page));
+        self.seen = Some((newest, offset));
+    }
+
+    /// Never later than `read_us`, never before the time returned last.
+    fn map(&mut self, page_us: Option<u64>, read_us: u64) -> u64 {
+        let known = page_us.zip(self.seen);
+        let at = known.map_or(read_us as i64, |(page, (_, offset))| page as i64 + offset);
+        self.last_us = (at.max(0) as u64).clamp(self.last_us.min(read_us), read_us);
+        self.last_us
+    }
+}
+
+/// The time of a record, µs on the page's clock.
+fn time_of(record: &[u8; RECORD]) -> f64 {
+    let mut time = [0; 8];
+    time.copy_from_slice(&record[..8]);
+    f64::from_le_bytes(time)
 }
 
 /// A time that a page reports; `None` if it cannot be one.

@@ -9,10 +9,10 @@ use sculptd_devices::tablet::TabletError;
 use sculptd_devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial
-/// ports from 100, the tracker 200, the demo's devices from 201, attract films from 230, the window's
-/// own pointer 246, the pen of the control socket's strokes 247, browsers that serve as a tablet
-/// from 248. All are below 256: the upper byte of an id is the number of the person whose device it
-/// is. Played recordings take the ids of tablets.
+/// ports from 100, the tracker 200, the demo's devices from 201, attract films from 230, the
+/// window's own pointer 246, the pen of the control socket's strokes 247, browsers that serve as a
+/// tablet from 248. All are below 256: the upper byte of an id is the number of the person whose
+/// device it is. Played recordings take the ids of tablets.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
 /// Ids of tablets and serial pens, which a desktop may move its pointer by.

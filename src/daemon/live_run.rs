@@ -240,6 +240,13 @@ impl LiveRun {
                 source,
             })?;
         }
+        // Before anybody is answered: a touch that comes later is seen.
+        let (kiosk, keeper) = match options.kiosk.take().zip(first) {
+            Some((kiosk, first)) => {
+                screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?
+            }
+            None => (None, None),
+        };
         #[cfg(unix)]
         let mut web = None;
         #[cfg(unix)]
@@ -273,12 +280,6 @@ impl LiveRun {
             false => None,
         };
         play(options.players, &clock, &factory, &stop)?;
-        let (kiosk, keeper) = match options.kiosk.zip(first) {
-            Some((kiosk, first)) => {
-                screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?
-            }
-            None => (None, None),
-        };
         if let Some(seconds) = options.limit_s {
             end_after(seconds, &stop)?;
         }

@@ -87,6 +87,7 @@ impl Answer {
             return response;
         }
         let mut set = |name, value| headers.insert(name, HeaderValue::from_static(value));
+        set(header::CONNECTION, "close");
         set(header::CONTENT_TYPE, self.kind);
         set(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
         set(header::REFERRER_POLICY, "no-referrer");

@@ -170,7 +170,8 @@ async fn serve(
         ready(Ok::<_, Infallible>(answer.respond(pace.clone())))
     });
     let connection = http1::Builder::new()
-        .keep_alive(false)
+        // Every answer but a change of protocol says that it is the last.
+        .keep_alive(true)
         .half_close(true)
         .max_header_size(HEAD_BYTES)
         .max_headers(HEAD_FIELDS)

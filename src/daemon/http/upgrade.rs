@@ -2,11 +2,9 @@
 
 use std::net::TcpStream;
 
+use hyper::Request;
 use hyper::header::{self, HeaderMap, HeaderValue};
-use hyper::{Request, StatusCode};
 use tungstenite::handshake::derive_accept_key;
-
-use super::Refusal;
 
 /// Takes the socket, and what has been read from it beyond the request.
 pub type Follow = Box<dyn FnOnce(TcpStream, Vec<u8>) + Send>;
@@ -26,23 +24,21 @@ impl std::fmt::Debug for Upgrade {
 impl Upgrade {
     /// Accepts a request for a WebSocket. `follow` gets the socket; it must return at once.
     ///
-    /// # Errors
-    /// The refusal of a request that is none.
-    pub fn accept(request: &Request<()>, follow: Follow) -> Result<Upgrade, Refusal> {
-        const BAD: Refusal = (StatusCode::BAD_REQUEST, "a WebSocket of version 13 is expected");
+    /// `None`: the request asks for no WebSocket of version 13.
+    pub fn accept(request: &Request<()>, follow: Follow) -> Option<Upgrade> {
         let headers = request.headers();
         let has = |name, word: &str| {
             let value = headers.get(name).and_then(|v: &HeaderValue| v.to_str().ok());
             value.is_some_and(|v| v.split(',').any(|w| w.trim().eq_ignore_ascii_case(word)))
         };
-        let key = headers.get(header::SEC_WEBSOCKET_KEY).ok_or(BAD)?;
+        let key = headers.get(header::SEC_WEBSOCKET_KEY)?;
         let asked = has(header::CONNECTION, "upgrade") && has(header::UPGRADE, "websocket");
         if !asked || !has(header::SEC_WEBSOCKET_VERSION, "13") {
-            return Err(BAD);
+            return None;
         }
         let accept = derive_accept_key(key.as_bytes());
-        let accept = HeaderValue::from_str(&accept).map_err(|_| BAD)?;
-        Ok(Upgrade { accept, follow: Some(follow) })
+        let accept = HeaderValue::from_str(&accept).ok()?;
+        Some(Upgrade { accept, follow: Some(follow) })
     }
 
     pub(super) fn take(&mut self) -> Option<Follow> {

@@ -18,6 +18,7 @@ mod connection;
 mod create;
 pub mod film;
 pub mod format;
+mod health;
 pub mod history;
 mod input_end;
 pub mod place;
@@ -33,11 +34,12 @@ pub mod writer;
 
 pub use connection::in_use;
 pub use create::{CreateError, is_half_made};
+pub use health::{Fault, Health};
 pub use reader::{Loss, OpenError, Opened, open};
 pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
 pub use start::SessionStart;
-pub use writer::{Fault, Health, SessionWriter, create, create_with, resume};
+pub use writer::{SessionWriter, create, create_with, resume};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms
 /// that a crash may cost.

@@ -18,6 +18,7 @@ use super::GROUP_MS;
 use super::acknowledgement::{Acknowledgement, AcknowledgementPage, ENDED};
 use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
+use super::health::Health;
 use super::history::{Handle, keeper::Keeper};
 use super::input_end::{InputEnd, begin_log, upgrade};
 use super::place::{SessionPath, SessionPlace, Standing};
@@ -41,13 +42,8 @@ const BUFFER_BYTES: usize = 4096;
 pub const KEPT_BYTES: usize = 64 << 20;
 /// Longest time between two signs of life of the writing thread.
 const IDLE: Duration = Duration::from_millis(1000);
-/// Interval at which the file's location is checked.
+/// Interval at which the file's location is checked, and between retries after a full disk.
 const LOOK: Duration = Duration::from_millis(1000);
-/// Interval between retries after the disk was full.
-const RETRY: Duration = Duration::from_millis(1000);
-
-/// The journal's current fault, for people; `None` if there is none.
-pub type Fault = Arc<Mutex<Option<String>>>;
 
 /// The tick thread's end.
 #[derive(Debug)]
@@ -69,8 +65,8 @@ pub struct SessionWriter {
 impl SessionWriter {
     /// Begins with the encoded input of these ticks, which came before the file was made.
     #[must_use]
-    pub fn after(mut self, (first, last): (u64, u64), encoded: Vec<u8>) -> SessionWriter {
-        (self.carry, self.carry_ticks) = (encoded, (first, last));
+    pub fn after(mut self, ticks: (u64, u64), encoded: Vec<u8>) -> SessionWriter {
+        (self.carry, self.carry_ticks) = (encoded, ticks);
         self
     }
 
@@ -81,7 +77,7 @@ impl SessionWriter {
     }
 }
 
-/// The writing thread, to be waited for at the end.
+/// The writing thread.
 #[derive(Debug)]
 pub struct WriterThread {
     thread: JoinHandle<()>,
@@ -106,25 +102,6 @@ impl WriterThread {
         self.health
             .trouble()
             .or_else(|| history.map(|why| format!("the history is not whole: {why}")))
-    }
-}
-
-/// State of the journal, for `status`, the log and the watchdog.
-#[derive(Debug, Clone, Default)]
-pub struct Health {
-    pub fault: Fault,
-    /// Number of ticks whose input the file has lost.
-    pub lost: Arc<AtomicU64>,
-    /// The last tick on the disk.
-    pub written: Arc<AtomicU64>,
-    /// Grows with every turn of the writing thread: it is alive, whatever the disk does.
-    pub turns: Arc<AtomicU64>,
-}
-
-impl Health {
-    /// Returns the current fault, if any.
-    pub fn trouble(&self) -> Option<String> {
-        self.fault.lock().ok().and_then(|f| f.clone())
     }
 }
 
@@ -414,7 +391,7 @@ impl JournalThread {
             } else if self.groups.is_empty() {
                 IDLE
             } else {
-                RETRY
+                LOOK
             };
             let message = inbox.recv_timeout(patience);
             self.health.turns.fetch_add(1, Relaxed);

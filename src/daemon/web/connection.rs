@@ -12,9 +12,11 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::Cl
 use tungstenite::{Message, WebSocket};
 
 use super::delivery::{self, Delivery, ShownObject};
-use super::guests::{Guest, Joined, Place};
+use super::guests::{Guest, JoinedGuest, PagePlace};
 use super::keys::WebRole;
-use super::messages::{Ask, BrushShown, Hello, PenShown, PersonShown, Tell, changed_brush};
+use super::messages::{
+    BrushShown, GuestRequest, Hello, PenShown, PersonShown, Tell, changed_brush,
+};
 use super::rate::RateLimit;
 use super::{RESUMES, WebState};
 use crate::Published;
@@ -53,7 +55,7 @@ const RECEIVED: u8 = 2;
 const ALIVE: u8 = 3;
 
 /// Serves a page until it leaves, its key ends or the daemon does.
-pub fn run(stream: TcpStream, read: Vec<u8>, state: &Arc<WebState>, _place: Place) {
+pub fn run(stream: TcpStream, read: Vec<u8>, state: &Arc<WebState>, _place: PagePlace) {
     let peer = stream.peer_addr().map(|a| a.to_string()).unwrap_or_default();
     let timed = stream
         .set_read_timeout(Some(HELLO))
@@ -77,7 +79,7 @@ pub fn run(stream: TcpStream, read: Vec<u8>, state: &Arc<WebState>, _place: Plac
     let now = state.clock.now_us();
     let Some(key) = state.keys.find(&hello.key, now) else {
         tracing::warn!("web: {peer} was refused: its link is not valid");
-        let why = "This link is not valid, or has expired. Ask for a new one.".into();
+        let why = "This link is not valid, or has expired. GuestRequest for a new one.".into();
         return refuse(&mut socket, why);
     };
     let joined = state.guests.join(&key, hello.ticket.as_deref(), &hello.name, now);
@@ -117,7 +119,7 @@ fn tell(socket: &mut Socket, what: &Tell) -> Result<(), String> {
 }
 
 /// A request whose answer is awaited.
-struct Asked {
+struct AwaitedAnswer {
     answer: cc::Receiver<CommandAnswer>,
     redo: bool,
 }
@@ -144,7 +146,7 @@ struct ConnectedPage<'a> {
     pen: Option<(BrowserPen, Sender)>,
     camera: Camera,
     brush: BrushSettings,
-    asked: VecDeque<Asked>,
+    asked: VecDeque<AwaitedAnswer>,
     told: LastTold,
     last_batch: u32,
     heard_us: u64,
@@ -154,8 +156,8 @@ struct ConnectedPage<'a> {
 }
 
 impl<'a> ConnectedPage<'a> {
-    fn new(socket: Socket, state: &'a Arc<WebState>, joined: Joined, received: u32) -> Self {
-        let Joined { guest, connection, resumed } = joined;
+    fn new(socket: Socket, state: &'a Arc<WebState>, joined: JoinedGuest, received: u32) -> Self {
+        let JoinedGuest { guest, connection, resumed } = joined;
         let shown = state.published.load();
         let now = state.clock.now_us();
         let is_resumed = resumed.is_some();
@@ -243,7 +245,7 @@ impl<'a> ConnectedPage<'a> {
             return Some("the daemon ends".into());
         }
         if !self.state.keys.is_valid(self.guest.key, now) {
-            let why = "This link is no longer valid. Ask for a new one.".to_owned();
+            let why = "This link is no longer valid. GuestRequest for a new one.".to_owned();
             refuse(&mut self.socket, why);
             return Some("its key is no longer valid".into());
         }
@@ -328,18 +330,18 @@ impl<'a> ConnectedPage<'a> {
     }
 
     fn take_text(&mut self, text: &str, now: u64) -> Result<(), String> {
-        let ask: Ask = match serde_json::from_str(text) {
+        let ask: GuestRequest = match serde_json::from_str(text) {
             Ok(ask) => ask,
             Err(e) => return self.note(&format!("not understood: {e}")),
         };
-        if let Ask::Name { name } = &ask {
+        if let GuestRequest::Name { name } = &ask {
             self.state.guests.rename(self.connection, name);
             return Ok(());
         }
         if self.guest.role != WebRole::Sculptor {
             return match ask {
                 // The pages in front of a viewer's camera come first.
-                Ask::Camera { camera, .. } if camera.is_sane() => {
+                GuestRequest::Camera { camera, .. } if camera.is_sane() => {
                     self.camera = camera;
                     Ok(())
                 }
@@ -347,27 +349,27 @@ impl<'a> ConnectedPage<'a> {
             };
         }
         match &ask {
-            Ask::Camera { camera, at } => {
+            GuestRequest::Camera { camera, at } => {
                 if !camera.is_sane() {
                     return self.note("a view with numbers that are not finite");
                 }
                 self.camera = *camera;
                 self.send_command(Command::Camera(*camera), Some((*at, now)), None);
             }
-            Ask::Brush { at, .. } => {
+            GuestRequest::Brush { at, .. } => {
                 self.brush = changed_brush(&self.brush, &ask, &self.state.presets);
                 self.send_command(Command::Brush(self.brush), Some((*at, now)), None);
                 let brush = BrushShown::from(&self.brush);
                 return tell(&mut self.socket, &Tell::Brush { brush });
             }
-            Ask::Undo { at } | Ask::Redo { at } => {
-                let redo = matches!(ask, Ask::Redo { .. });
+            GuestRequest::Undo { at } | GuestRequest::Redo { at } => {
+                let redo = matches!(ask, GuestRequest::Redo { .. });
                 let (send, answer) = cc::bounded(1);
                 let command = if redo { Command::Redo } else { Command::Undo };
                 self.send_command(command, Some((*at, now)), Some(send));
-                self.asked.push_back(Asked { answer, redo });
+                self.asked.push_back(AwaitedAnswer { answer, redo });
             }
-            Ask::Name { .. } => {}
+            GuestRequest::Name { .. } => {}
         }
         Ok(())
     }

@@ -290,8 +290,8 @@ mod tests {
     use sculptd_geometry::job::Job;
     use sculptd_geometry::shapes;
 
-    fn state(subdivisions: u32) -> Published {
-        let mesh = shapes::icosphere(1.0, subdivisions);
+    fn state(parts: u32) -> Published {
+        let mesh = shapes::icosphere(1.0, parts);
         let clay = Clay::build(&mesh, &Job::default()).expect("clay");
         let options =
             WorldOptions { dab_budget: 1 << 20, undo_bytes: 1 << 20, hands: Default::default() };
@@ -306,7 +306,7 @@ mod tests {
 
     #[test]
     fn the_front_comes_first_and_everything_comes_once() {
-        let state = state(6);
+        let state = state(64);
         let mut delivery = Delivery::default();
         delivery.look(&state, &state.camera);
         let (mut seen, mut out) = (Vec::new(), Vec::new());
@@ -324,14 +324,15 @@ mod tests {
         };
         let (early, late) = seen.split_at(seen.len() / 3);
         assert_eq!(early.iter().filter(front).count(), early.len());
-        assert!(late.iter().filter(front).count() < late.len() / 2);
+        let front_late = late.iter().filter(front).count();
+        assert!(front_late < late.len() / 2, "{front_late} of {}", late.len());
         delivery.look(&state, &state.camera);
         assert!(!delivery.next(&mut out), "nothing changed");
     }
 
     #[test]
     fn a_page_that_acknowledges_nothing_is_sent_a_window_and_no_more() {
-        let state = state(7);
+        let state = state(128);
         let mut delivery = Delivery::default();
         delivery.look(&state, &state.camera);
         let (mut bytes, mut out, mut messages) = (0, Vec::new(), 0);

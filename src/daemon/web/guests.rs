@@ -38,9 +38,9 @@ pub struct Guest {
 
 /// Room for one connection; freed when dropped.
 #[derive(Debug)]
-pub struct Place(Arc<AtomicUsize>);
+pub struct PagePlace(Arc<AtomicUsize>);
 
-impl Drop for Place {
+impl Drop for PagePlace {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Relaxed);
     }
@@ -73,7 +73,7 @@ pub struct GuestList {
 
 /// A guest who has joined, and the number of the connection.
 #[derive(Debug)]
-pub struct Joined {
+pub struct JoinedGuest {
     pub guest: Guest,
     pub connection: u64,
     /// What the page had received before it was cut off.
@@ -87,10 +87,10 @@ impl GuestList {
     }
 
     /// Takes room for a connection; `None` if there is none.
-    pub fn enter(&self) -> Option<Place> {
+    pub fn enter(&self) -> Option<PagePlace> {
         let more = |n: usize| (n < MAX_PAGES).then_some(n + 1);
         self.connected.fetch_update(Relaxed, Relaxed, more).ok()?;
-        Some(Place(self.connected.clone()))
+        Some(PagePlace(self.connected.clone()))
     }
 
     /// Joins a page. `ticket`: the one that it had before it was cut off.
@@ -103,7 +103,7 @@ impl GuestList {
         ticket: Option<&str>,
         name: &str,
         now_us: u64,
-    ) -> Result<Joined, String> {
+    ) -> Result<JoinedGuest, String> {
         let mut list = locked(&self.list);
         list.forget_absent(now_us);
         list.connections += 1;
@@ -117,7 +117,7 @@ impl GuestList {
             let resumed = entry.away.take().map(|(delivery, _)| delivery);
             let guest = entry.guest.clone();
             self.show(&list);
-            return Ok(Joined { guest, connection, resumed });
+            return Ok(JoinedGuest { guest, connection, resumed });
         }
         let (person, pen) = match key.role {
             WebRole::Viewer => (0, None),
@@ -133,7 +133,7 @@ impl GuestList {
             Guest { number: connection, ticket, key: key.id, role: key.role, person, pen, name };
         list.entries.push(Entry { guest: guest.clone(), connection, away: None });
         self.show(&list);
-        Ok(Joined { guest, connection, resumed: None })
+        Ok(JoinedGuest { guest, connection, resumed: None })
     }
 
     /// Gives a guest another name.
@@ -271,7 +271,7 @@ mod tests {
         assert!(list.join(&sculptor, None, "", 0).is_err());
         let tablets = (0..9).map(|_| list.join(&key(WebRole::Device), None, "", 0));
         assert_eq!(tablets.filter(Result::is_ok).count(), 8);
-        let places: Vec<Place> = (0..MAX_PAGES).map_while(|_| list.enter()).collect();
+        let places: Vec<PagePlace> = (0..MAX_PAGES).map_while(|_| list.enter()).collect();
         assert!(places.len() == MAX_PAGES && list.enter().is_none());
         drop(places);
         assert!(list.enter().is_some());

@@ -28,7 +28,7 @@ pub struct Hello {
 /// request among the samples of its pen.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Ask {
+pub enum GuestRequest {
     /// The view that the guest has now.
     Camera { camera: Camera, at: f64 },
     /// Settings of the brush; those left out stay.
@@ -140,9 +140,9 @@ pub enum Tell {
     Note { text: String },
 }
 
-/// Applies the changes of a [`Ask::Brush`] to the settings.
-pub fn changed_brush(now: &BrushSettings, ask: &Ask, presets: &Presets) -> BrushSettings {
-    let Ask::Brush { kind, radius, strength, negative, colour, symmetry, .. } = ask else {
+/// Applies the changes of a [`GuestRequest::Brush`] to the settings.
+pub fn changed_brush(now: &BrushSettings, ask: &GuestRequest, presets: &Presets) -> BrushSettings {
+    let GuestRequest::Brush { kind, radius, strength, negative, colour, symmetry, .. } = ask else {
         return *now;
     };
     let mut brush = match kind.filter(|k| *k != now.kind) {

@@ -157,6 +157,7 @@ fn answer(
     state: &Arc<WebState>,
 ) -> Result<Answer, Refusal> {
     const NOTHING: Refusal = (StatusCode::NOT_FOUND, "there is nothing here");
+    const NO_SOCKET: Refusal = (StatusCode::BAD_REQUEST, "a WebSocket of version 13 is expected");
     const FULL: Refusal = (StatusCode::SERVICE_UNAVAILABLE, "too many pages are connected");
     let path = permitted_to_page(request, at, name)?;
     if path == "/join" {
@@ -170,7 +171,8 @@ fn answer(
                 tracing::error!("web: a page cannot be served: {e}");
             }
         };
-        return Ok(Answer::switched(Upgrade::accept(request, Box::new(follow))?));
+        let upgrade = Upgrade::accept(request, Box::new(follow)).ok_or(NO_SOCKET)?;
+        return Ok(Answer::switched(upgrade));
     }
     let path = if path == "/" { "/index.html" } else { path };
     let file = files.iter().find(|f| f.path == path).ok_or(NOTHING)?;

@@ -12,9 +12,9 @@
 //! in runs: first row, count (u16 each), the rows.
 //!
 //! A row: three u16, the place as steps from the box's lower corner; two i8, the normal as a point
-//! of an octahedron (Meyer et al. 2010); with colours also red, green, blue (sRGB) and the mask. The
-//! box is larger than the page by an eighth, so that a page which swells keeps it. The step is a
-//! power of two and the corner a multiple of it: pages of about the same size share one lattice,
+//! of an octahedron (Meyer et al. 2010); with colours also red, green, blue (sRGB) and the mask.
+//! The box is larger than the page by an eighth, so that a page which swells keeps it. The step is
+//! a power of two and the corner a multiple of it: pages of about the same size share one lattice,
 //! and no crack opens between them. A place is off by at most a 50,000th of the page's largest side
 //! on each axis.
 
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_page_arrives_as_it_is_within_the_stated_error() {
-        let mut clay = Clay::build(&shapes::icosphere(1.0, 5), &Job::default()).expect("clay");
+        let mut clay = Clay::build(&shapes::icosphere(1.0, 32), &Job::default()).expect("clay");
         let snapshot = clay.snapshot();
         let mut bytes = Vec::new();
         let page = snapshot.page(0);
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn pages_have_a_common_vertex_at_one_place() {
-        let mut clay = Clay::build(&shapes::icosphere(1.0, 6), &Job::default()).expect("clay");
+        let mut clay = Clay::build(&shapes::icosphere(1.0, 64), &Job::default()).expect("clay");
         let snapshot = clay.snapshot();
         let mut places = std::collections::HashMap::new();
         for page in snapshot.pages() {
@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn only_rows_that_changed_are_sent_until_one_leaves_the_box() {
-        let mut clay = Clay::build(&shapes::icosphere(1.0, 5), &Job::default()).expect("clay");
+        let mut clay = Clay::build(&shapes::icosphere(1.0, 32), &Job::default()).expect("clay");
         let before = clay.snapshot().page(0).clone();
         let mut bytes = Vec::new();
         let mut sent = whole(&before, NAMES, &mut bytes);
