@@ -1,0 +1,3 @@
+//! Bare hands from any webcam.
+
+pub mod inference;
