@@ -5,7 +5,7 @@
 //! (November 2026, AVX-512 machine, landmark lite and full): `rten` 0.27 took 20 and 32 ms,
 //! `tract` 0.23 took 31 and 31 ms; these take about 3 and 7 ms.
 //!
-//! * [`tflite`] reads the operators, [`plan`] fuses them and assigns memory, [`network`] runs them.
+//! * `tflite` reads the operators, `plan` fuses them and assigns memory, `network` runs them.
 //! * Convolutions are matrix products over packed weights (Goto and van de Geijn, TOMS 2008);
 //!   depthwise ones run over planes of one vector of channels.
 //! * `pulp` selects AVX-512, AVX2 or NEON at run time, without `unsafe` here.
@@ -16,11 +16,11 @@
 mod depthwise;
 mod elementwise;
 mod epilogue;
-pub mod flatbuffer;
+mod flatbuffer;
 mod matrix;
-pub mod network;
+mod network;
 mod plan;
-pub mod tflite;
+mod tflite;
 
 pub use flatbuffer::ModelError;
 pub use network::Network;
