@@ -7,9 +7,12 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
+use crate::drawn::DrawnScene;
 use crate::hand_camera::{CameraAdvice, CameraView, HandCamera, HandCameraSettings};
 use crate::hand_tracks::HandTracks;
+use crate::performance::performance;
 use crate::picture::Picture;
+use crate::source::drawn_script::DrawnScript;
 use crate::source::{self, CameraError, PictureSource};
 use sculptd_devices::device_thread::{self, DeviceThread, StopToken};
 use sculptd_devices::queue::Sender;
@@ -25,12 +28,14 @@ const SLICE: Duration = Duration::from_millis(40);
 const PREVIEW_WIDTH: usize = 320;
 
 /// Which camera to read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum CameraChoice {
     /// The number of `/dev/videoN`, or a device node.
     Device(String),
     /// A folder of pictures, Motion JPEG, or Y4M.
     File(std::path::PathBuf),
+    /// Drawn hands that perform the demo.
+    Drawn,
 }
 
 impl CameraChoice {
@@ -42,6 +47,11 @@ impl CameraChoice {
         } else {
             CameraChoice::File(text.into())
         }
+    }
+
+    /// Returns true if its pictures have times of their own.
+    pub fn is_recorded(&self) -> bool {
+        !matches!(self, CameraChoice::Device(_))
     }
 
     /// Opens it.
@@ -60,6 +70,9 @@ impl CameraChoice {
                 Err(CameraError::Absent(which.clone()))
             }
             CameraChoice::File(path) => source::open_file(path),
+            CameraChoice::Drawn => {
+                Ok(Box::new(DrawnScript::new(performance(), DrawnScene::default())))
+            }
         }
     }
 }
@@ -216,7 +229,7 @@ impl Looker {
                     self.shared.note(|s| {
                         (s.connected, s.last_error) = (false, Some(text));
                     });
-                    if matches!(self.config.choice, CameraChoice::File(_)) {
+                    if self.config.choice.is_recorded() {
                         return;
                     }
                 }
@@ -232,7 +245,7 @@ impl Looker {
         // One picture waits; a newer one takes its place.
         let (put, get) = cc::bounded::<Read>(1);
         let replace = get.clone();
-        let paced = matches!(self.config.choice, CameraChoice::File(_));
+        let paced = self.config.choice.is_recorded();
         let (clock, flag, shared) = (self.clock.clone(), stop.flag(), self.shared.clone());
         // It is not waited for: a camera that has stopped sending may block it for ever.
         let reader = std::thread::Builder::new().name("sculptd-camera-reader".into());

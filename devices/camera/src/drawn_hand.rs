@@ -54,9 +54,8 @@ impl DrawnHand {
         }
         let middle = [0, 5, 9, 13, 17].iter().map(|i| own[*i]).sum::<Vec3>() * 0.2;
         let [yaw, pitch, roll] = key.yaw_pitch_roll;
-        let turn = Quat::from_rotation_y(yaw)
-            * Quat::from_rotation_x(pitch)
-            * Quat::from_rotation_z(roll);
+        let turn =
+            Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch) * Quat::from_rotation_z(roll);
         let side = if left { -1.0 } else { 1.0 };
         let joints = own.map(|p| {
             let p = (p - middle) * scale;

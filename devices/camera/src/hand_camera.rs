@@ -10,6 +10,7 @@ use crate::landmarks::JOINTS;
 use crate::lens::Lens;
 use crate::picture::{Picture, Rotation};
 use crate::spatial::{Calibration, DepthFilter, place};
+use crate::steady_shape::SteadyShape;
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
 /// Settings of a camera that watches hands.
@@ -131,6 +132,7 @@ struct HandMemory {
     left: bool,
     confidence: f32,
     depth: DepthFilter,
+    shape: SteadyShape,
     velocity: Vec3,
     since_us: u64,
     t_us: u64,
@@ -183,7 +185,8 @@ impl HandCamera {
             let before = self.memory.iter().find(|m| m.id == track.id);
             let mut depth = before.map_or(DepthFilter::new(placed.depth, t_us), |m| m.depth);
             let steady = depth.take(placed.depth, t_us);
-            let placed = placed.at_depth(steady);
+            let mut shape = before.map_or(SteadyShape::new(&placed, t_us), |m| m.shape);
+            let placed = shape.apply(&placed, t_us).at_depth(steady).with_tips_joined();
             let (confidence, outside) = confidence(track, size, placed.misfit);
             let joints = placed.joints.map(|p| lens.to_tracker(p));
             let velocity = before.map_or(Vec3::ZERO, |m| {
@@ -201,6 +204,7 @@ impl HandCamera {
                 left: track.is_left(),
                 confidence,
                 depth,
+                shape,
                 velocity,
                 since_us: before.map_or(t_us, |m| m.since_us),
                 t_us,

@@ -28,6 +28,11 @@ const SEARCH_EVERY: u32 = 8;
 /// Pictures between two searches while no hand is seen: a third of the time, so that an empty
 /// room costs little.
 const EMPTY_SEARCH_EVERY: u32 = 2;
+/// Pictures between two searches for a second hand that was lost less than a second ago.
+const SOON: u32 = 3;
+const SOON_PICTURES: u32 = 30;
+/// A detected palm that is nearer to a hand than this share of its size is that hand's.
+const SAME_PLACE: f32 = 0.6;
 /// Two palms that are nearer than this share of their size are one hand.
 const ONE_HAND: f32 = 0.45;
 /// A second hand whose palm is smaller or larger than the first by this factor belongs to someone
@@ -65,6 +70,8 @@ pub struct HandTracks {
     tracks: Vec<HandTrack>,
     next_id: i32,
     since_search: u32,
+    /// Pictures since a hand was lost.
+    since_loss: u32,
     /// Hands of other people that the last search saw.
     pub ignored: usize,
     /// Score of the surest palm of the last search.
@@ -94,6 +101,7 @@ impl HandTracks {
             tracks: Vec::new(),
             next_id: 1,
             since_search: u32::MAX,
+            since_loss: u32::MAX,
             ignored: 0,
             best_score: 0.0,
             searches: 0,
@@ -111,7 +119,12 @@ impl HandTracks {
         self.drop_twins();
         let lost = self.tracks.len() < before;
         self.since_search = self.since_search.saturating_add(1);
-        let every = if self.tracks.is_empty() { EMPTY_SEARCH_EVERY } else { SEARCH_EVERY };
+        self.since_loss = if lost { 0 } else { self.since_loss.saturating_add(1) };
+        let every = match self.tracks.is_empty() {
+            true => EMPTY_SEARCH_EVERY,
+            false if self.since_loss < SOON_PICTURES => SOON,
+            false => SEARCH_EVERY,
+        };
         if self.tracks.len() < MAX_TRACKS && (lost || self.since_search >= every) {
             self.search(picture);
         }
@@ -132,7 +145,8 @@ impl HandTracks {
         let mut candidates = Vec::new();
         for palm in palms {
             let known = |t: &HandTrack| {
-                t.seen.palm().distance(palm.centre) < t.seen.palm_px().max(palm.size.max_element())
+                let size = t.seen.palm_px().max(palm.size.max_element());
+                t.seen.palm().distance(palm.centre) < SAME_PLACE * size
             };
             if !self.tracks.iter().any(known) {
                 candidates.push(palm);

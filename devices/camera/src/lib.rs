@@ -13,7 +13,8 @@
 //! | [`hand_tracks`] | hands from picture to picture |
 //! | [`spatial`], [`lens`] | pixels to millimetres in the tracker's axes |
 //! | [`hand_sample`] | joints to the hand that a tracker would report |
-//! | [`drawn`], [`drawn_hand`] | pictures of hands whose joints are known |
+//! | [`drawn`], [`drawn_hand`], [`performance`] | pictures of hands whose joints are known |
+//! | [`skeleton`] | the bones between joints, drawn over a picture |
 //!
 //! Rules:
 //! * Nothing that a camera or a file can send panics or allocates without bound.
@@ -35,7 +36,10 @@ pub mod lens;
 pub mod models;
 pub mod palm;
 mod palm_pose;
+pub mod performance;
 pub mod picture;
 pub mod sha256;
+pub mod skeleton;
 pub mod source;
 pub mod spatial;
+mod steady_shape;

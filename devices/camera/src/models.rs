@@ -49,7 +49,8 @@ pub enum ModelsError {
     /// No folder has them.
     #[error(
         "the hand models are not installed: {} is not in {}. Install them with: {SETUP_COMMAND}",
-        name, folders(looked)
+        name,
+        folders(looked)
     )]
     Missing {
         /// The first file that is missing.
@@ -156,7 +157,8 @@ pub fn install(package: &Path, folder: &Path) -> Result<(), ModelsError> {
     let mut archive = zip::ZipArchive::new(file).map_err(|e| broken(e.to_string()))?;
     let mut files = Vec::new();
     for model in MODEL_FILES {
-        let entry = archive.by_name(model.path).map_err(|e| broken(format!("{}: {e}", model.path)))?;
+        let entry =
+            archive.by_name(model.path).map_err(|e| broken(format!("{}: {e}", model.path)))?;
         let mut bytes = Vec::new();
         entry.take(MAX_MODEL).read_to_end(&mut bytes).map_err(failed)?;
         if sha256_hex(&bytes) != model.sha256 {

@@ -100,9 +100,8 @@ fn merge(mut found: Vec<Palm>) -> Vec<Palm> {
         let (same, other): (Vec<Palm>, Vec<Palm>) =
             found.into_iter().partition(|p| overlap(&best, p) > SAME_PALM || *p == best);
         let total: f32 = same.iter().map(|p| p.score).sum();
-        let mean = |of: &dyn Fn(&Palm) -> Vec2| {
-            same.iter().map(|p| of(p) * p.score).sum::<Vec2>() / total
-        };
+        let mean =
+            |of: &dyn Fn(&Palm) -> Vec2| same.iter().map(|p| of(p) * p.score).sum::<Vec2>() / total;
         let mut palm = best;
         (palm.centre, palm.size) = (mean(&|p| p.centre), mean(&|p| p.size));
         for k in 0..palm.points.len() {

@@ -23,9 +23,9 @@ const AVERAGE_PALM: [DVec3; 6] = [
 /// Length of that palm from wrist to middle knuckle, mm.
 const PALM_MM: f64 = 89.0;
 /// Expected error of a joint's pixel as a share of the palm's length.
-const PIXEL_SIGMA: f64 = 0.04;
+const PIXEL_SIGMA: f64 = 0.05;
 /// Expected error of the model's turn, radians.
-const TURN_SIGMA: f64 = 0.35;
+const TURN_SIGMA: f64 = 0.18;
 /// Steps of the fit; it converges in three or four.
 const STEPS: usize = 6;
 
@@ -113,11 +113,8 @@ pub(crate) fn fit_palm(
         }
     }
     let joints = palm.map(|p| turn * p + at);
-    let missed: f64 = joints
-        .iter()
-        .zip(&rays)
-        .map(|(p, ray)| (p.truncate() / p.z).distance_squared(*ray))
-        .sum();
+    let missed: f64 =
+        joints.iter().zip(&rays).map(|(p, ray)| (p.truncate() / p.z).distance_squared(*ray)).sum();
     let size = PALM_MM * f64::from(scale) / at.z;
     let spread = |p: &[DVec3; 6]| {
         let middle = p.iter().sum::<DVec3>() / 6.0;

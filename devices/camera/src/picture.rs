@@ -140,9 +140,8 @@ impl Crop {
             let (x, y) = ((i % side * taps) as f32, (i / side * taps) as f32);
             let mut sum = [0.0; 3];
             for tap in 0..taps * taps {
-                let at = corner
-                    + across * (x + (tap % taps) as f32)
-                    + down * (y + (tap / taps) as f32);
+                let at =
+                    corner + across * (x + (tap % taps) as f32) + down * (y + (tap / taps) as f32);
                 picture.add_bilinear(at, border, &mut sum);
             }
             for (to, sum) in pixel.iter_mut().zip(sum) {
@@ -163,7 +162,8 @@ impl Picture {
         if x >= 0 && y >= 0 && x + 1 < w && y + 1 < h {
             let top = (y * w + x) as usize * 3;
             let bottom = top + w as usize * 3;
-            if let (Some(a), Some(b)) = (self.rgb.get(top..top + 6), self.rgb.get(bottom..bottom + 6))
+            if let (Some(a), Some(b)) =
+                (self.rgb.get(top..top + 6), self.rgb.get(bottom..bottom + 6))
             {
                 for k in 0..3 {
                     sum[k] += weights[0] * f32::from(a[k])

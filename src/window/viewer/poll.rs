@@ -1,12 +1,15 @@
 //! Polling of the window between frames, at a separate pace: the published state, background tasks,
 //! the session's history, the devices. A frame follows only after a change.
 
+use std::sync::Arc;
+
 use super::state::WindowState;
 use super::tasks::TaskReport;
 use super::wiring::Wiring;
 use crate::language::tr;
 use crate::look::Map;
 use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
+use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::HeldObject;
 
@@ -74,6 +77,7 @@ impl WindowState {
                 changed = true;
             }
         }
+        changed |= self.follow_camera(wiring);
         match &wiring.kiosk {
             Some(screen) => {
                 let view = screen.desk.view.lock().ok().and_then(|v| *v);
@@ -85,6 +89,16 @@ impl WindowState {
         if changed {
             self.pacing.want();
         }
+    }
+
+    /// Takes the camera's newest picture while the page that shows it is open.
+    fn follow_camera(&mut self, wiring: &Wiring) -> bool {
+        let open = self.ui_state.tab == Tab::Devices && !self.ui_state.hidden;
+        let newest = open.then(|| (wiring.camera)()).flatten();
+        let address = |p: &Option<Arc<CameraPreview>>| p.as_ref().map(Arc::as_ptr);
+        let changed = address(&newest) != address(&self.camera_preview);
+        self.camera_preview = newest;
+        changed
     }
 
     /// Says whose step is in the way of an undo that was refused since the last look.

@@ -12,6 +12,8 @@ const SIZES: [(u32, u32); 4] = [(640, 480), (640, 360), (800, 600), (1280, 720)]
 const FORMATS: [&[u8; 4]; 3] = [b"MJPG", b"YUYV", b"GREY"];
 /// Pictures a second that are asked for.
 const RATES: [u32; 5] = [30, 25, 20, 15, 10];
+/// Formats that are looked at; a driver may list them without end.
+const MAX_FORMATS: usize = 64;
 /// Buffers of the driver: one is filled, one waits, one is read.
 const BUFFERS: u32 = 3;
 
@@ -80,7 +82,8 @@ impl CameraDevice {
         };
         let failed = |e| CameraError::of_system(&path, e);
         let mut camera = rscam::new(&path).map_err(failed)?;
-        let found: Vec<[u8; 4]> = camera.formats().flatten().map(|f| f.format).collect();
+        let found: Vec<[u8; 4]> =
+            camera.formats().map_while(Result::ok).take(MAX_FORMATS).map(|f| f.format).collect();
         let named = |f: &[u8; 4]| String::from_utf8_lossy(f).into_owned();
         let mut busy = false;
         for format in FORMATS.iter().filter(|f| found.contains(f)) {
@@ -179,7 +182,8 @@ mod tests {
     #[test]
     fn only_first_nodes_are_cameras() {
         let dir = tempfile::tempdir().expect("a folder");
-        for (node, index, name) in [("video0", "0", "Cam"), ("video1", "1", "Cam"), ("v", "0", "")] {
+        for (node, index, name) in [("video0", "0", "Cam"), ("video1", "1", "Cam"), ("v", "0", "")]
+        {
             let at = dir.path().join(node);
             std::fs::create_dir(&at).expect("a folder");
             for (file, text) in [("index", index), ("name", name)] {

@@ -15,8 +15,7 @@ pub(super) struct PictureFolder {
 
 impl PictureFolder {
     pub(super) fn open(folder: &Path) -> Result<Self, CameraError> {
-        let failed =
-            |source| CameraError::Io { name: folder.display().to_string(), source };
+        let failed = |source| CameraError::Io { name: folder.display().to_string(), source };
         let mut files = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(failed)? {
             let path = entry.map_err(failed)?.path();

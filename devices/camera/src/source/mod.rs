@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 pub mod device;
+pub mod drawn_script;
 mod folder;
 mod jpeg;
 mod motion_jpeg;
@@ -102,8 +103,8 @@ pub fn open_file(path: &Path) -> Result<Box<dyn PictureSource>, CameraError> {
         return Ok(Box::new(folder::PictureFolder::open(path)?));
     }
     let name = path.display().to_string();
-    let mut file =
-        std::fs::File::open(path).map_err(|source| CameraError::Io { name: name.clone(), source })?;
+    let mut file = std::fs::File::open(path)
+        .map_err(|source| CameraError::Io { name: name.clone(), source })?;
     let mut head = [0; 10];
     let got = std::io::Read::read(&mut file, &mut head)
         .map_err(|source| CameraError::Io { name: name.clone(), source })?;

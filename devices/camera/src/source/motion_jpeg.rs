@@ -48,9 +48,8 @@ impl MotionJpegFile {
 
 impl PictureSource for MotionJpegFile {
     fn next_picture(&mut self) -> Result<Option<(u64, Picture)>, CameraError> {
-        let mut piece = self
-            .piece()
-            .map_err(|source| CameraError::Io { name: self.name.clone(), source })?;
+        let mut piece =
+            self.piece().map_err(|source| CameraError::Io { name: self.name.clone(), source })?;
         if piece.is_empty() {
             return Ok(None);
         }

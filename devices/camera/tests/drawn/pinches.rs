@@ -44,8 +44,16 @@ fn pinches_are_seen_and_none_is_invented() {
             stage.scene.noise = dice.between(3.0, 8.0);
         }
         let base = HandKey {
-            palm: Vec3::new(dice.between(-60.0, 60.0), dice.between(180.0, 240.0), dice.between(-80.0, 80.0)),
-            yaw_pitch_roll: [dice.between(-0.3, 0.3), dice.between(1.2, 1.6), dice.between(-0.3, 0.3)],
+            palm: Vec3::new(
+                dice.between(-60.0, 60.0),
+                dice.between(180.0, 240.0),
+                dice.between(-80.0, 80.0),
+            ),
+            yaw_pitch_roll: [
+                dice.between(-0.3, 0.3),
+                dice.between(1.2, 1.6),
+                dice.between(-0.3, 0.3),
+            ],
             ..upright(450.0)
         };
         let size = dice.between(0.9, 1.1);
@@ -88,7 +96,9 @@ fn pinches_are_seen_and_none_is_invented() {
         let at = |q: f32| all.get((all.len() as f32 * q) as usize).copied().unwrap_or(f32::NAN);
         println!("gap mm: 1% {:.1} 50% {:.1} 99% {:.1}", at(0.01), at(0.5), at(0.99));
     }
-    println!("{seen} of {count} pinches seen, {invented} invented, {stuck} still closed at the end");
+    println!(
+        "{seen} of {count} pinches seen, {invented} invented, {stuck} still closed at the end"
+    );
     assert!(seen * 100 >= count * 99, "{seen} of {count} pinches seen");
     assert_eq!((invented, stuck), (0, 0), "invented, stuck");
 }
@@ -101,7 +111,8 @@ fn no_grab_is_stuck_after_a_dropout() {
     let mut dice = Dice(3);
     let mut stuck = 0;
     for i in 0..count {
-        let closed = if i % 2 == 0 { upright(450.0).pinched(1.0) } else { upright(450.0).curled(1.0) };
+        let closed =
+            if i % 2 == 0 { upright(450.0).pinched(1.0) } else { upright(450.0).curled(1.0) };
         for _ in 0..6 {
             let hands = stage.see(&[DrawnHand::new(&closed, false, 1.0)]);
             tools.take(CAMERA, stage.t_us, &hands);

@@ -23,19 +23,23 @@ const LAMPS: [(Vec3, f32); 5] = [
     (Vec3::new(-0.8, 0.1, -0.6), 0.6),
 ];
 
-/// The scale that a calibration with an open hand at 450 mm finds.
+/// The scale that a calibration finds, with an open hand at arm's length and then near.
 fn calibrated(size: f32) -> Option<HandCameraSettings> {
     let mut stage = Stage::new(HandCameraSettings::default())?;
-    let hand = DrawnHand::new(&upright(450.0), false, size);
-    let mut depths = Vec::new();
-    for i in 0..40 {
-        stage.see(&[hand]);
-        if i >= 10 {
-            depths.push(stage.camera.view().depth[0]);
+    let mut ratios = Vec::new();
+    for distance in [600.0, 350.0] {
+        let hand = DrawnHand::new(&upright(distance), false, size);
+        let mut depths = Vec::new();
+        for i in 0..40 {
+            stage.see(&[hand]);
+            if i >= 15 {
+                depths.push(stage.camera.view().depth[0]);
+            }
         }
+        ratios.push(distance / spread(&depths).0);
     }
-    let (mean, _) = spread(&depths);
-    Some(HandCameraSettings { hand_scale: 450.0 / mean, ..HandCameraSettings::default() })
+    let hand_scale = spread(&ratios).0;
+    Some(HandCameraSettings { hand_scale, ..HandCameraSettings::default() })
 }
 
 #[test]
@@ -66,7 +70,9 @@ fn a_resting_hand_is_steady() {
             .sum::<f32>()
             / 21.0;
         let (mean, noise) = spread(&depths);
-        println!("size {size} skin {skin} lamp {lamp}: jitter {jitter:.2} mm, depth {mean:.1} ± {noise:.2} mm");
+        println!(
+            "size {size} skin {skin} lamp {lamp}: jitter {jitter:.2} mm, depth {mean:.1} ± {noise:.2} mm"
+        );
         worst = (worst.0.max(jitter), worst.1.max(noise));
     }
     assert!(worst.0 <= 0.5, "joint jitter {} mm", worst.0);
@@ -138,7 +144,7 @@ fn two_hands_keep_their_sides_and_a_third_is_ignored() {
     let (mut both, mut swapped) = (0, 0);
     for i in 0..120 {
         // Apart, toward each other until they nearly touch, and apart again.
-        let x = 75.0 + 45.0 * (i as f32 * 0.05).cos();
+        let x = 95.0 + 40.0 * (i as f32 * 0.05).cos();
         let seen = stage.see(&[at(-x, true), at(x, false)]);
         if i >= 30 {
             both += usize::from(seen.count == 2);
@@ -148,7 +154,11 @@ fn two_hands_keep_their_sides_and_a_third_is_ignored() {
     }
     println!("two hands in {both} of 90 pictures, sides wrong in {swapped}");
     assert!(both >= 80 && swapped <= 3, "both {both}, wrong {swapped}");
-    let far = DrawnHand::new(&HandKey { palm: Vec3::new(0.0, 330.0, 900.0), ..upright(1350.0) }, false, 1.0);
+    let far = DrawnHand::new(
+        &HandKey { palm: Vec3::new(0.0, 330.0, 900.0), ..upright(1350.0) },
+        false,
+        1.0,
+    );
     for _ in 0..30 {
         let seen = stage.see(&[at(-110.0, true), at(110.0, false), far]);
         assert!(seen.as_slice().iter().all(|h| h.palm.z < 500.0), "a third hand acts");
