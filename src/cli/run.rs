@@ -233,6 +233,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             visits: (args.kiosk && session.is_none() && !is_shared).then(library::visits).flatten(),
             kiosk,
             demo_devices: false,
+            drawn_hands: false,
             devices: true,
             players,
             limit_s: args.limit_s,

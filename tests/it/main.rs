@@ -6,6 +6,7 @@ mod bad_input;
 mod boolean;
 mod brushes;
 mod check;
+mod camera;
 mod clay;
 #[cfg(unix)]
 mod control;

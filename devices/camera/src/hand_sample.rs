@@ -7,6 +7,8 @@ use sculptd_devices::{Finger, Hand};
 
 /// Widths of the fingers, thumb first, mm, of an average adult.
 const WIDTHS: [f32; 5] = [20.0, 18.0, 18.0, 17.0, 15.0];
+/// From wrist to elbow, mm.
+const FOREARM_MM: f32 = 250.0;
 /// Palm over the distance of the outer knuckles: a palm is wider than its bones.
 const PALM_OVER_KNUCKLES: f32 = 1.25;
 /// Below this confidence a pinch can neither begin nor end: the thumb is not reported.
@@ -63,8 +65,9 @@ pub fn hand_of(joints: &[Vec3; JOINTS], facts: &HandFacts) -> Hand {
         palm_width: Some(width),
         orientation: normal.map(|n| orientation(direction, n)),
         wrist: Some(wrist),
-        // A camera does not see the elbow; the tracker's consumers take a usual one.
-        elbow: None,
+        // A camera does not see the elbow: it is where a straight wrist puts it, on the table for
+        // a hand in the middle of the picture.
+        elbow: Some(wrist - direction * FOREARM_MM),
         fingers,
     }
 }

@@ -19,6 +19,8 @@ fn upright(seconds: f32, by: Vec3) -> HandKey {
 /// hand turns the view, and two open hands zoom.
 pub fn performance() -> HandScript {
     let point = |s: f32, by: Vec3| upright(s, by).pointing();
+    // Less than no spread: the fingers lie together.
+    let flat = |s: f32, by: Vec3| upright(s, by).spread(-0.7);
     let open = |s: f32, by: Vec3| upright(s, by).spread(0.9);
     let right = vec![
         // Push: the finger goes through the clay from the right, twice.
@@ -34,9 +36,9 @@ pub fn performance() -> HandScript {
         upright(7.2, vec3(115.0, 20.0, 0.0)).pinched(1.0),
         upright(7.5, vec3(115.0, 20.0, 0.0)),
         // Smooth: a flat palm over the surface.
-        upright(8.3, vec3(60.0, 10.0, 0.0)),
-        upright(9.3, vec3(-50.0, 0.0, 0.0)),
-        upright(10.3, vec3(60.0, -20.0, 0.0)),
+        flat(8.3, vec3(60.0, 10.0, 0.0)),
+        flat(9.3, vec3(-50.0, 0.0, 0.0)),
+        flat(10.3, vec3(60.0, -20.0, 0.0)),
         // Turn: an open hand sweeps across.
         open(11.2, vec3(90.0, 0.0, 40.0)),
         open(11.9, vec3(90.0, 0.0, 40.0)),

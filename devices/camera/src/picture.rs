@@ -1,6 +1,6 @@
 //! Pictures in memory, and the square crops that the models look at.
 
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 /// An RGB picture, row by row.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -138,14 +138,14 @@ impl Crop {
         let weight = 1.0 / (255.0 * (taps * taps) as f32);
         for (i, pixel) in out.chunks_exact_mut(3).take(side * side).enumerate() {
             let (x, y) = ((i % side * taps) as f32, (i / side * taps) as f32);
-            let mut sum = [0.0; 3];
+            let mut sum = Vec4::ZERO;
             for tap in 0..taps * taps {
                 let at =
                     corner + across * (x + (tap % taps) as f32) + down * (y + (tap / taps) as f32);
                 picture.add_bilinear(at, border, &mut sum);
             }
-            for (to, sum) in pixel.iter_mut().zip(sum) {
-                *to = sum * weight;
+            for (to, sum) in pixel.iter_mut().zip((sum * weight).to_array()) {
+                *to = sum;
             }
         }
     }
@@ -153,24 +153,28 @@ impl Crop {
 
 impl Picture {
     #[inline]
-    fn add_bilinear(&self, at: Vec2, border: Border, sum: &mut [f32; 3]) {
+    fn add_bilinear(&self, at: Vec2, border: Border, sum: &mut Vec4) {
         let (fx, fy) = (at.x.floor(), at.y.floor());
         let (ax, ay) = (at.x - fx, at.y - fy);
         let (x, y) = (fx as isize, fy as isize);
         let (w, h) = (self.width as isize, self.height as isize);
         let weights = [(1.0 - ax) * (1.0 - ay), ax * (1.0 - ay), (1.0 - ax) * ay, ax * ay];
-        if x >= 0 && y >= 0 && x + 1 < w && y + 1 < h {
+        // Away from the border: four bytes a corner, the fourth of which is not used.
+        if x >= 0 && y >= 0 && x + 2 < w && y + 1 < h {
             let top = (y * w + x) as usize * 3;
             let bottom = top + w as usize * 3;
-            if let (Some(a), Some(b)) =
-                (self.rgb.get(top..top + 6), self.rgb.get(bottom..bottom + 6))
-            {
-                for k in 0..3 {
-                    sum[k] += weights[0] * f32::from(a[k])
-                        + weights[1] * f32::from(a[k + 3])
-                        + weights[2] * f32::from(b[k])
-                        + weights[3] * f32::from(b[k + 3]);
-                }
+            if let (Some(top), Some(bottom)) = (
+                self.rgb[top..].first_chunk::<7>(),
+                self.rgb[bottom..].first_chunk::<7>(),
+            ) {
+                let texel = |row: &[u8; 7], from: usize| {
+                    let [r, g, b, over] = [row[from], row[from + 1], row[from + 2], row[from + 3]];
+                    Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(over))
+                };
+                *sum += texel(top, 0) * weights[0]
+                    + texel(top, 3) * weights[1]
+                    + texel(bottom, 0) * weights[2]
+                    + texel(bottom, 3) * weights[3];
             }
             return;
         }
@@ -180,9 +184,8 @@ impl Picture {
             if inside || border == Border::Nearest {
                 let (cx, cy) = (cx.clamp(0, w - 1), cy.clamp(0, h - 1));
                 let pixel = self.pixel(cx as usize, cy as usize);
-                for k in 0..3 {
-                    sum[k] += weight * f32::from(pixel[k]);
-                }
+                let [r, g, b] = pixel.map(f32::from);
+                *sum += Vec4::new(r, g, b, 0.0) * *weight;
             }
         }
     }

@@ -4,6 +4,7 @@
 //! The models must be installed (`sculptd camera setup`, or `SCULPTD_CAMERA_MODELS`); without them
 //! each test says that it is skipped. `SCULPTD_LONG=1` runs the full counts.
 
+mod costs;
 mod engines;
 mod pinches;
 mod places;
