@@ -9,9 +9,10 @@ use serde_json::Value;
 /// The folder of the hand models, where there is one.
 fn models() -> Option<PathBuf> {
     let named = std::env::var_os("SCULPTD_CAMERA_MODELS").map(PathBuf::from);
-    let own = std::env::var_os("HOME")
-        .map(|h| PathBuf::from(h).join(".local/share/sculptd/hand-models"));
-    let found = named.into_iter().chain(own).find(|f| f.join("hand_landmark_full.tflite").is_file());
+    let own =
+        std::env::var_os("HOME").map(|h| PathBuf::from(h).join(".local/share/sculptd/hand-models"));
+    let found =
+        named.into_iter().chain(own).find(|f| f.join("hand_landmark_full.tflite").is_file());
     if found.is_none() {
         println!("skipped: the hand models are not installed (sculptd camera setup)");
     }
@@ -37,9 +38,11 @@ fn words(out: &Output) -> String {
 #[test]
 fn without_models_the_one_command_is_named() {
     let nowhere = std::path::Path::new("/nonexistent");
-    for arguments in
-        [&["run", "--camera", "--headless"][..], &["demo", "--camera", "--headless"], &["camera", "test"]]
-    {
+    for arguments in [
+        &["run", "--camera", "--headless"][..],
+        &["demo", "--camera", "--headless"],
+        &["camera", "test"],
+    ] {
         let out = sculptd(arguments, nowhere);
         let told = words(&out);
         let named = told.contains("sculptd camera setup") || told.contains("there is no camera");

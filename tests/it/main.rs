@@ -5,8 +5,8 @@ mod allocations;
 mod bad_input;
 mod boolean;
 mod brushes;
-mod check;
 mod camera;
+mod check;
 mod clay;
 #[cfg(unix)]
 mod control;

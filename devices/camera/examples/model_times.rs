@@ -1,26 +1,33 @@
-//! Runs each model of a folder and prints what one run takes.
+//! Prints what one run of each hand model takes on one core, in milliseconds.
+//!
+//!     cargo run --release -p sculptd-camera --example model_times -- FOLDER
+#![allow(clippy::print_stdout)]
+
+use std::path::PathBuf;
+
 use sculptd_camera::inference::Network;
-#[allow(clippy::disallowed_methods)]
-fn main() {
-    let dir = std::env::args().nth(1).unwrap_or_default();
-    for name in
-        ["palm_detection_lite", "palm_detection_full", "hand_landmark_lite", "hand_landmark_full"]
-    {
-        let bytes = std::fs::read(format!("{dir}/{name}.tflite")).expect("a model");
-        let mut net = Network::load(&bytes).expect("loads");
-        let mut ts = vec![];
-        for _ in 0..40 {
-            net.input_mut().fill(0.5);
-            let t = std::time::Instant::now();
-            net.run();
-            ts.push(t.elapsed().as_secs_f64() * 1e3);
+use sculptd_devices::Clock;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = PathBuf::from(std::env::args().nth(1).ok_or("expected the folder of the models")?);
+    let clock = Clock::monotonic();
+    for entry in std::fs::read_dir(&folder)? {
+        let path = entry?.path();
+        if path.extension().is_none_or(|e| e != "tflite") {
+            continue;
         }
-        ts.sort_by(f64::total_cmp);
-        println!(
-            "{name}: median {:.2} min {:.2} ms; {:?}",
-            ts[20],
-            ts[0],
-            (0..net.output_count()).map(|i| net.output(i)[0]).collect::<Vec<_>>()
-        );
+        let mut network = Network::load(&std::fs::read(&path)?)?;
+        let mut times: Vec<u64> = (0..50)
+            .map(|_| {
+                network.input_mut().fill(0.5);
+                let begun = clock.now_us();
+                network.run();
+                clock.now_us() - begun
+            })
+            .collect();
+        times.sort_unstable();
+        let ms = |us: u64| us as f64 / 1e3;
+        println!("{}: median {:.2}, least {:.2}", path.display(), ms(times[25]), ms(times[0]));
     }
+    Ok(())
 }

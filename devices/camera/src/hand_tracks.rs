@@ -24,7 +24,7 @@ const HOPELESS: f32 = 0.1;
 /// Looks at a hand that appears, after the first one.
 const LOOKS: usize = 3;
 /// Pictures between two searches for a second hand while the first is followed.
-const SEARCH_EVERY: u32 = 8;
+const SEARCH_EVERY: u32 = 15;
 /// Pictures between two searches while no hand is seen: a third of the time, so that an empty
 /// room costs little.
 const EMPTY_SEARCH_EVERY: u32 = 2;

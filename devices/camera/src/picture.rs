@@ -1,6 +1,7 @@
 //! Pictures in memory, and the square crops that the models look at.
 
 use glam::{Vec2, Vec4};
+use pulp::{Arch, Scalar128b, Simd, WithSimd};
 
 /// An RGB picture, row by row.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -70,6 +71,7 @@ impl Picture {
     }
 
     /// Returns the colour of a pixel; black outside the picture.
+    #[inline(always)]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
         let at = (y * self.width + x) * 3;
         let inside = x < self.width;
@@ -128,45 +130,92 @@ impl Crop {
     /// Fills `out`, `side` by `side` pixels of three numbers from 0 to 1. Crops that are larger
     /// than the output are averaged, which also takes the noise out.
     pub fn sample(&self, picture: &Picture, border: Border, side: usize, out: &mut [f32]) {
-        let step = self.side / side as f32;
-        let taps = (step.ceil() as usize).clamp(1, 3);
-        let (across, down) = (
-            Vec2::from_angle(self.angle) * step / taps as f32,
-            Vec2::from_angle(self.angle).perp() * step / taps as f32,
-        );
-        let corner = self.to_picture(Vec2::ZERO) + (across + down) * 0.5 - 0.5;
-        let weight = 1.0 / (255.0 * (taps * taps) as f32);
-        for (i, pixel) in out.chunks_exact_mut(3).take(side * side).enumerate() {
-            let (x, y) = ((i % side * taps) as f32, (i / side * taps) as f32);
-            let mut sum = Vec4::ZERO;
-            for tap in 0..taps * taps {
-                let at =
-                    corner + across * (x + (tap % taps) as f32) + down * (y + (tap / taps) as f32);
-                picture.add_bilinear(at, border, &mut sum);
-            }
-            for (to, sum) in pixel.iter_mut().zip((sum * weight).to_array()) {
-                *to = sum;
-            }
+        let work = Sampling { crop: *self, picture, border, side, out };
+        match Arch::new() {
+            Arch::Scalar => Scalar128b.vectorize(work),
+            arch => arch.dispatch(work),
         }
     }
 }
 
+/// One sampling, to be compiled for the vectors that the processor has.
+struct Sampling<'a> {
+    crop: Crop,
+    picture: &'a Picture,
+    border: Border,
+    side: usize,
+    out: &'a mut [f32],
+}
+
+impl WithSimd for Sampling<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Sampling { crop, picture, border, side, out } = self;
+        let step = crop.side / side as f32;
+        let taps = (step.ceil() as usize).clamp(1, 3);
+        let (across, down) = (
+            Vec2::from_angle(crop.angle) * step / taps as f32,
+            Vec2::from_angle(crop.angle).perp() * step / taps as f32,
+        );
+        let corner = crop.to_picture(Vec2::ZERO) + (across + down) * 0.5 - 0.5;
+        let weight = 1.0 / (255.0 * (taps * taps) as f32);
+        for (i, pixel) in out.chunks_exact_mut(3).take(side * side).enumerate() {
+            let (x, y) = ((i % side * taps) as f32, (i / side * taps) as f32);
+            let mut sum = Vec4::ZERO;
+            let mut line = corner + across * x + down * y;
+            for _ in 0..taps {
+                let mut at = line;
+                for _ in 0..taps {
+                    if taps == 3 {
+                        // Nine of them need no interpolation.
+                        picture.add_nearest(at, border, &mut sum);
+                    } else {
+                        picture.add_bilinear(at, border, &mut sum);
+                    }
+                    at += across;
+                }
+                line += down;
+            }
+            pixel.copy_from_slice(&(sum * weight).to_array()[..3]);
+        }
+    }
+}
+
+/// Rounds down; quicker than `floor` on processors without such an instruction.
+#[inline(always)]
+fn round_down(x: f32) -> i32 {
+    const SHIFT: f32 = 65_536.0;
+    (x + SHIFT) as i32 - SHIFT as i32
+}
+
 impl Picture {
-    #[inline]
+    #[inline(always)]
+    fn add_nearest(&self, at: Vec2, border: Border, sum: &mut Vec4) {
+        let (x, y) = (round_down(at.x + 0.5), round_down(at.y + 0.5));
+        let (w, h) = (self.width as i32, self.height as i32);
+        let inside = x >= 0 && y >= 0 && x < w && y < h;
+        if inside || border == Border::Nearest {
+            let (x, y) = (x.clamp(0, w - 1), y.clamp(0, h - 1));
+            let [r, g, b] = self.pixel(x as usize, y as usize).map(f32::from);
+            *sum += Vec4::new(r, g, b, 0.0);
+        }
+    }
+
+    #[inline(always)]
     fn add_bilinear(&self, at: Vec2, border: Border, sum: &mut Vec4) {
-        let (fx, fy) = (at.x.floor(), at.y.floor());
-        let (ax, ay) = (at.x - fx, at.y - fy);
-        let (x, y) = (fx as isize, fy as isize);
-        let (w, h) = (self.width as isize, self.height as isize);
+        let (x, y) = (round_down(at.x), round_down(at.y));
+        let (ax, ay) = (at.x - x as f32, at.y - y as f32);
+        let (w, h) = (self.width as i32, self.height as i32);
         let weights = [(1.0 - ax) * (1.0 - ay), ax * (1.0 - ay), (1.0 - ax) * ay, ax * ay];
         // Away from the border: four bytes a corner, the fourth of which is not used.
         if x >= 0 && y >= 0 && x + 2 < w && y + 1 < h {
             let top = (y * w + x) as usize * 3;
             let bottom = top + w as usize * 3;
-            if let (Some(top), Some(bottom)) = (
-                self.rgb[top..].first_chunk::<7>(),
-                self.rgb[bottom..].first_chunk::<7>(),
-            ) {
+            if let (Some(top), Some(bottom)) =
+                (self.rgb[top..].first_chunk::<7>(), self.rgb[bottom..].first_chunk::<7>())
+            {
                 let texel = |row: &[u8; 7], from: usize| {
                     let [r, g, b, over] = [row[from], row[from + 1], row[from + 2], row[from + 3]];
                     Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(over))
@@ -179,7 +228,7 @@ impl Picture {
             return;
         }
         for (corner, weight) in weights.iter().enumerate() {
-            let (cx, cy) = (x + corner as isize % 2, y + corner as isize / 2);
+            let (cx, cy) = (x + corner as i32 % 2, y + corner as i32 / 2);
             let inside = cx >= 0 && cy >= 0 && cx < w && cy < h;
             if inside || border == Border::Nearest {
                 let (cx, cy) = (cx.clamp(0, w - 1), cy.clamp(0, h - 1));
@@ -218,7 +267,9 @@ mod tests {
                 // A pixel's middle lies half a pixel from its corner.
                 let want = crop.to_picture(at) - 0.5;
                 let got = Vec2::new(pixels[i * 3], pixels[i * 3 + 1]) * 255.0;
-                assert!(got.distance(want) < 0.02, "{got} instead of {want}");
+                // Nine nearest pixels instead of one place between four.
+                let off = if side / out as f32 > 2.0 { 0.4 } else { 0.02 };
+                assert!(got.distance(want) < off, "{got} instead of {want}");
             }
         }
     }

@@ -124,15 +124,15 @@ pub struct DepthFilter {
     speed: f32,
     /// Covariance of the two: place, both, speed.
     covariance: [f32; 3],
-    /// Smoothed square of the surprise over its expectation.
+    /// Smoothed surprise over its expectation, with its sign: a hand that moves is always behind.
     surprise: f32,
     t_us: u64,
 }
 
 /// Noise of one measurement, as a share of the distance.
-const DEPTH_NOISE: f32 = 0.008;
+const DEPTH_NOISE: f32 = 0.01;
 /// Acceleration of a resting hand and of a moving one, mm/s².
-const REST_MM_S2: f32 = 12.0;
+const REST_MM_S2: f32 = 3.0;
 const MOVING_MM_S2: f32 = 6_000.0;
 /// Gap after which the filter starts anew, microseconds.
 const STALE_US: u64 = 300_000;
@@ -141,7 +141,7 @@ impl DepthFilter {
     /// A hand that appears at this distance.
     pub fn new(depth: f32, t_us: u64) -> Self {
         let noise = (DEPTH_NOISE * depth).powi(2);
-        DepthFilter { depth, speed: 0.0, covariance: [noise, 0.0, 1e5], surprise: 1.0, t_us }
+        DepthFilter { depth, speed: 0.0, covariance: [noise, 0.0, 1e5], surprise: 0.0, t_us }
     }
 
     /// Takes one measurement and returns the smoothed distance.
@@ -153,8 +153,8 @@ impl DepthFilter {
         }
         let dt = gap as f32 * 1e-6;
         self.t_us = t_us;
-        // A resting hand surprises by its noise alone.
-        let moves = ((self.surprise - 1.5) / 3.0).clamp(0.0, 1.0);
+        // A resting hand surprises by its noise alone, as often this way as that.
+        let moves = ((self.surprise.abs() - 0.3) / 0.7).clamp(0.0, 1.0);
         let push = REST_MM_S2 + (MOVING_MM_S2 - REST_MM_S2) * moves * moves;
         let q = push * push;
         let [a, b, c] = self.covariance;
@@ -166,10 +166,8 @@ impl DepthFilter {
         self.depth += self.speed * dt;
         let noise = (DEPTH_NOISE * self.depth).powi(2);
         let off = measured - self.depth;
-        self.surprise += 0.25 * (off * off / (a + noise) - self.surprise);
-        if off * off > 36.0 * (a + noise) {
-            self.surprise = self.surprise.max(4.5);
-        }
+        let sigma = (a + noise).sqrt();
+        self.surprise += 0.25 * ((off / sigma).clamp(-4.0, 4.0) - self.surprise);
         let (gain, gain_speed) = (a / (a + noise), b / (a + noise));
         self.depth += gain * off;
         self.speed += gain_speed * off;

@@ -11,7 +11,7 @@ use crate::landmarks::JOINTS;
 use crate::spatial::PlacedHand;
 
 /// Cutoff of a joint that does not move, Hz.
-const REST_HZ: f32 = 0.25;
+const REST_HZ: f32 = 0.15;
 /// Cutoff for each mm/s across the line of sight, Hz.
 const HZ_PER_MM_S: f32 = 0.035;
 /// Speed that pixel noise alone shows, mm/s.

@@ -1,6 +1,8 @@
 //! Cameras that misbehave: garbage, cut pictures, one picture a second, silence, absence. None of
 //! these needs a model except where a hand is looked for.
 
+#![allow(clippy::print_stdout)] // Skips are told on standard output.
+
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -164,10 +166,15 @@ fn a_slow_camera_releases_its_hands_between_pictures() {
         .spread(0.3);
     let hand = sculptd_camera::drawn_hand::DrawnHand::new(&key, false, 1.0);
     let Picture { rgb, .. } = draw(&scene, &[hand]);
-    let mut bytes = b"YUV4MPEG2 W320 H240 F1:1 Cmono XCOLORRANGE=FULL\n".to_vec();
+    let mut bytes = b"YUV4MPEG2 W320 H240 F1:1 C444 XCOLORRANGE=FULL\n".to_vec();
     for _ in 0..3 {
         bytes.extend(b"FRAME\n");
-        bytes.extend(rgb.chunks_exact(3).map(|p| p[1]));
+        for [r, g, b, offset] in
+            [[0.299, 0.587, 0.114, 0.0], [-0.169, -0.331, 0.5, 128.0], [0.5, -0.419, -0.081, 128.0]]
+        {
+            let of = |p: &[u8]| f32::from(p[0]) * r + f32::from(p[1]) * g + f32::from(p[2]) * b;
+            bytes.extend(rgb.chunks_exact(3).map(|p| (of(p) + offset) as u8));
+        }
     }
     write(&path, &bytes);
     let (factory, mut receiver) = queue::channel(64);

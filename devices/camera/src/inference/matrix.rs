@@ -12,7 +12,8 @@ const BLOCK: usize = 48;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PackedConvolution {
     pub window: Window,
-    /// Two vectors of output channels for each input number, panel by panel.
+    /// Two vectors of output channels for each input number, panel by panel; the last panel has one
+    /// vector if that is enough.
     panels: Vec<f32>,
     /// Input numbers of one output: window times channels.
     depth: usize,
@@ -23,13 +24,15 @@ impl PackedConvolution {
     /// Packs `[output][input]` weights for vectors of `lanes` numbers.
     pub fn new(weights: &[f32], outputs: usize, window: Window, lanes: usize) -> Self {
         let depth = weights.len() / outputs.max(1);
-        let width = 2 * lanes;
-        let count = outputs.div_ceil(width);
-        let mut panels = vec![0.0; count * depth * width];
+        let vectors = outputs.div_ceil(lanes);
+        let mut panels = vec![0.0; vectors * depth * lanes];
         for (output, row) in weights.chunks_exact(depth.max(1)).enumerate() {
-            let (panel, lane) = (output / width, output % width);
+            let (panel, lane) = (output / (2 * lanes), output % (2 * lanes));
+            // Vectors of this panel.
+            let width = 2.min(vectors - 2 * panel) * lanes;
+            let from = panel * depth * 2 * lanes;
             for (i, weight) in row.iter().enumerate() {
-                panels[(panel * depth + i) * width + lane] = *weight;
+                panels[from + i * width + lane] = *weight;
             }
         }
         PackedConvolution { window, panels, depth, outputs }
@@ -82,41 +85,30 @@ impl PackedConvolution {
         out: &mut [f32],
         residual: Option<&[f32]>,
     ) {
-        let width = 2 * S::F32_LANES;
+        let lanes = S::F32_LANES;
         let most = if S::REGISTER_COUNT >= 32 { 12 } else { 6 };
         let count = out.len() / self.outputs;
         // Tiles of equal height, so that none is left with a single row.
         let tall = count.div_ceil(count.div_ceil(most).max(1));
-        for (panel, weights) in self.panels.chunks_exact(self.depth * width).enumerate() {
-            let column = panel * width;
+        for (panel, weights) in self.panels.chunks(self.depth * 2 * lanes).enumerate() {
             let (vectors, _) = S::as_simd_f32s(weights);
-            let (pairs, _) = vectors.as_chunks::<2>();
+            let is_wide = vectors.len() == 2 * self.depth;
             let mut row = 0;
             while row < count {
                 let here = tall.min(count - row);
                 let tile = Tile {
-                    pairs,
+                    vectors,
                     rows: &rows[row * self.depth..],
                     epilogue,
-                    column,
+                    column: panel * 2 * lanes,
                     outputs: self.outputs,
                 };
                 let at = row * self.outputs;
                 let residual = residual.map(|r| &r[at..]);
-                let out = &mut out[at..];
-                match here {
-                    1 => tile.run::<1>(simd, out, residual),
-                    2 => tile.run::<2>(simd, out, residual),
-                    3 => tile.run::<3>(simd, out, residual),
-                    4 => tile.run::<4>(simd, out, residual),
-                    5 => tile.run::<5>(simd, out, residual),
-                    6 => tile.run::<6>(simd, out, residual),
-                    7 => tile.run::<7>(simd, out, residual),
-                    8 => tile.run::<8>(simd, out, residual),
-                    9 => tile.run::<9>(simd, out, residual),
-                    10 => tile.run::<10>(simd, out, residual),
-                    11 => tile.run::<11>(simd, out, residual),
-                    _ => tile.run::<12>(simd, out, residual),
+                if is_wide {
+                    tile.of_height::<2>(simd, here, &mut out[at..], residual);
+                } else {
+                    tile.of_height::<1>(simd, here, &mut out[at..], residual);
                 }
                 row += here;
             }
@@ -126,7 +118,7 @@ impl PackedConvolution {
 
 /// A few rows times one panel.
 struct Tile<'a, S: Simd> {
-    pairs: &'a [[S::f32s; 2]],
+    vectors: &'a [S::f32s],
     rows: &'a [f32],
     epilogue: &'a Epilogue,
     column: usize,
@@ -135,18 +127,49 @@ struct Tile<'a, S: Simd> {
 
 impl<S: Simd> Tile<'_, S> {
     #[inline(always)]
-    fn run<const ROWS: usize>(&self, simd: S, out: &mut [f32], residual: Option<&[f32]>) {
-        let (pairs, depth) = (self.pairs, self.pairs.len());
+    fn of_height<const WIDE: usize>(
+        &self,
+        simd: S,
+        height: usize,
+        out: &mut [f32],
+        residual: Option<&[f32]>,
+    ) {
+        match height {
+            1 => self.run::<1, WIDE>(simd, out, residual),
+            2 => self.run::<2, WIDE>(simd, out, residual),
+            3 => self.run::<3, WIDE>(simd, out, residual),
+            4 => self.run::<4, WIDE>(simd, out, residual),
+            5 => self.run::<5, WIDE>(simd, out, residual),
+            6 => self.run::<6, WIDE>(simd, out, residual),
+            7 => self.run::<7, WIDE>(simd, out, residual),
+            8 => self.run::<8, WIDE>(simd, out, residual),
+            9 => self.run::<9, WIDE>(simd, out, residual),
+            10 => self.run::<10, WIDE>(simd, out, residual),
+            11 => self.run::<11, WIDE>(simd, out, residual),
+            _ => self.run::<12, WIDE>(simd, out, residual),
+        }
+    }
+
+    #[inline(always)]
+    fn run<const ROWS: usize, const WIDE: usize>(
+        &self,
+        simd: S,
+        out: &mut [f32],
+        residual: Option<&[f32]>,
+    ) {
+        let (steps, _) = self.vectors.as_chunks::<WIDE>();
+        let depth = steps.len();
         let mut rows = [&self.rows[..0]; ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             *row = &self.rows[i * depth..][..depth];
         }
-        let mut sums = [[simd.splat_f32s(0.0); 2]; ROWS];
-        for (k, [first, second]) in pairs.iter().enumerate() {
+        let mut sums = [[simd.splat_f32s(0.0); WIDE]; ROWS];
+        for (k, weights) in steps.iter().enumerate() {
             for (sum, row) in sums.iter_mut().zip(&rows) {
                 let x = simd.splat_f32s(row[k]);
-                sum[0] = simd.mul_add_e_f32s(x, *first, sum[0]);
-                sum[1] = simd.mul_add_e_f32s(x, *second, sum[1]);
+                for (sum, weight) in sum.iter_mut().zip(weights) {
+                    *sum = simd.mul_add_e_f32s(x, *weight, *sum);
+                }
             }
         }
         for (i, sum) in sums.iter().enumerate() {

@@ -56,7 +56,7 @@ impl Network {
     /// Returns the input, to be filled before [`Network::run`].
     pub fn input_mut(&mut self) -> &mut [f32] {
         let place = self.plan.input;
-        &mut self.buffers[place.buffer][..place.shape.len()]
+        &mut self.buffers[place.buffer][..place.shape.count()]
     }
 
     /// Computes the outputs. The input is overwritten.
@@ -68,7 +68,7 @@ impl Network {
     /// Returns output `i` of the last run; empty if there is no such output.
     pub fn output(&self, i: usize) -> &[f32] {
         let place = self.plan.outputs.get(i);
-        place.map_or(&[], |p| &self.buffers[p.buffer][..p.shape.len()])
+        place.map_or(&[], |p| &self.buffers[p.buffer][..p.shape.count()])
     }
 
     /// Returns the number of outputs.
@@ -90,7 +90,7 @@ impl WithSimd for Pass<'_> {
         for step in &plan.steps {
             // Taken out while it is written; no input has the same buffer.
             let mut output = std::mem::take(&mut buffers[step.output.buffer]);
-            run_step(simd, step, buffers, &mut output[..step.output.shape.len()], scratch);
+            run_step(simd, step, buffers, &mut output[..step.output.shape.count()], scratch);
             buffers[step.output.buffer] = output;
         }
     }
@@ -104,7 +104,7 @@ fn run_step<S: Simd>(
     output: &mut [f32],
     scratch: &mut Vec<f32>,
 ) {
-    let numbers = |place: &plan::Place| &buffers[place.buffer][..place.shape.len()];
+    let numbers = |place: &plan::Place| &buffers[place.buffer][..place.shape.count()];
     let to = step.output.shape;
     let residual = step.residual.as_ref().map(numbers);
     let [first, ..] = step.inputs.as_slice() else { return };

@@ -176,8 +176,8 @@ fn check(graph: &Graph, step: &Fused) -> Result<(), ModelError> {
             && to.h <= from.h.div_ceil(window.stride.0)
             && to.w <= from.w.div_ceil(window.stride.1)
     };
-    let good = to.len() > 0
-        && from.len() > 0
+    let good = to.count() > 0
+        && from.count() > 0
         && step.residual.is_none_or(|r| graph.shapes[r] == to)
         && match &step.kernel {
             Kernel::Convolution(c, _) => {
@@ -193,12 +193,12 @@ fn check(graph: &Graph, step: &Fused) -> Result<(), ModelError> {
             Kernel::PadChannels => from.c <= to.c && (from.h, from.w) == (to.h, to.w),
             Kernel::MaxPool(window) => from.c == to.c && windowed(window),
             Kernel::Resize => from.c == to.c,
-            Kernel::Copy | Kernel::Logistic => from.len() == to.len(),
+            Kernel::Copy | Kernel::Logistic => from.count() == to.count(),
             Kernel::Concatenate => {
-                step.inputs.iter().map(|i| graph.shapes[*i].len()).sum::<usize>() == to.len()
+                step.inputs.iter().map(|i| graph.shapes[*i].count()).sum::<usize>() == to.count()
                     && step.inputs.iter().all(|i| graph.shapes[*i].c == to.c)
             }
-            Kernel::Mean => from.c == to.len(),
+            Kernel::Mean => from.c == to.count(),
         };
     let text = || format!("shapes {from:?} and {to:?} do not fit their operator");
     good.then_some(()).ok_or_else(|| ModelError::Inconsistent(text()))
@@ -221,7 +221,7 @@ fn place(graph: &Graph, steps: Vec<Fused>) -> Result<Plan, ModelError> {
     let mut allot = |tensor: usize, free: &mut Vec<usize>| {
         let shape = graph.shapes[tensor];
         // The smallest that is large enough, else the largest, which grows.
-        let fits = (0..free.len()).filter(|i| sizes[free[*i]] >= shape.len());
+        let fits = (0..free.len()).filter(|i| sizes[free[*i]] >= shape.count());
         let best = fits.min_by_key(|i| sizes[free[*i]]);
         let best = best.or_else(|| (0..free.len()).max_by_key(|i| sizes[free[*i]]));
         let buffer = best.map_or_else(
@@ -231,7 +231,7 @@ fn place(graph: &Graph, steps: Vec<Fused>) -> Result<Plan, ModelError> {
             },
             |i| free.swap_remove(i),
         );
-        sizes[buffer] = sizes[buffer].max(shape.len());
+        sizes[buffer] = sizes[buffer].max(shape.count());
         Place { buffer, shape }
     };
     places.insert(graph.input, allot(graph.input, &mut free));

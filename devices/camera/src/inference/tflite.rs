@@ -18,7 +18,7 @@ pub struct TensorShape {
 
 impl TensorShape {
     /// Returns the number of elements.
-    pub fn len(self) -> usize {
+    pub fn count(self) -> usize {
         self.h * self.w * self.c
     }
 }
@@ -201,7 +201,7 @@ impl Loader<'_> {
                 .collect(),
             other => return Err(ModelError::Unsupported(format!("tensor type {other}"))),
         };
-        let expected = self.shapes[tensor].len();
+        let expected = self.shapes[tensor].count();
         if numbers.len() != expected {
             return Err(ModelError::Inconsistent(format!(
                 "tensor {tensor} has {} numbers instead of {expected}",
@@ -267,7 +267,7 @@ impl Loader<'_> {
                 };
                 let window = Window { size: (1, 1), stride: (1, 1), pad: (0, 0) };
                 // A full connection is a convolution of one pixel.
-                let c = self.shapes[first].len();
+                let c = self.shapes[first].count();
                 self.shapes[first] = TensorShape { h: 1, w: 1, c };
                 (Operator::Convolution { window, weights, bias, range }, vec![first])
             }

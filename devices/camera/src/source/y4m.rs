@@ -41,7 +41,7 @@ impl Y4mFile {
             y4m.parameter(word).map_err(|why| y4m.damaged(why))?;
         }
         let (width, height) = y4m.size;
-        let pixels = width.checked_mul(height).unwrap_or(usize::MAX);
+        let pixels = width.saturating_mul(height);
         if width < 2 || height < 2 || pixels > MAX_PIXELS {
             return Err(y4m.damaged(format!("its size is {width} by {height} pixels")));
         }

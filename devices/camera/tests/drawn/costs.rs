@@ -29,9 +29,8 @@ fn a_picture_of_one_hand_and_of_two() {
         let tracks = models::load(&folder).expect("the models load");
         let mut camera = HandCamera::new(tracks, HandCameraSettings::default(), DeviceId(0));
         let scene = drawn::DrawnScene::default();
-        let pictures: Vec<_> = (0..8)
-            .map(|seed| drawn::draw(&drawn::DrawnScene { seed, ..scene }, &hands))
-            .collect();
+        let pictures: Vec<_> =
+            (0..8).map(|seed| drawn::draw(&drawn::DrawnScene { seed, ..scene }, &hands)).collect();
         let mut total = 0.0;
         for i in 0..96_u64 {
             let picture = pictures[i as usize % 8].clone();
@@ -61,8 +60,8 @@ fn a_sample_follows_its_picture() {
     let tracks = models::load(&folder).expect("the models load");
     let settings = HandCameraSettings::default();
     let config = CameraConfig { choice: CameraChoice::Drawn, settings, device: DeviceId(210) };
-    let handle = camera_thread::start(config, tracks, clock.clone(), factory.sender())
-        .expect("a thread");
+    let handle =
+        camera_thread::start(config, tracks, clock.clone(), factory.sender()).expect("a thread");
     let ends = clock.now_us() + if long() { 16_000_000 } else { 4_000_000 };
     let mut delays = Vec::new();
     while clock.now_us() < ends {
@@ -75,7 +74,11 @@ fn a_sample_follows_its_picture() {
     let status = handle.status();
     println!(
         "picture to sample: p50 {:.1} ms, p95 {:.1} ms; {} pictures, {} skipped, {:.1} a second",
-        at(50), at(95), status.pictures, status.skipped, status.rate
+        at(50),
+        at(95),
+        status.pictures,
+        status.skipped,
+        status.rate
     );
     assert!(delays.len() > 20, "{} samples", delays.len());
     if long() {

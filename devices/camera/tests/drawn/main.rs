@@ -4,6 +4,8 @@
 //! The models must be installed (`sculptd camera setup`, or `SCULPTD_CAMERA_MODELS`); without them
 //! each test says that it is skipped. `SCULPTD_LONG=1` runs the full counts.
 
+#![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
+
 mod costs;
 mod engines;
 mod pinches;
