@@ -157,6 +157,7 @@ struct TestAnswer {
     hands_percent: f32,
     distance_mm: Option<f32>,
     hand_scale: Option<f32>,
+    depth_offset_mm: Option<f32>,
     advice: &'static str,
 }
 
@@ -169,7 +170,7 @@ fn test(args: &TestArgs, json: bool) -> Outcome {
     let opened = choice.open(&Clock::monotonic()).map_err(|e| failed(&e.into()))?;
     let camera = opened.describe();
     drop(opened);
-    let mut ratios = Vec::new();
+    let mut pairs = Vec::new();
     let halves: Vec<Option<u32>> = match args.distance.as_slice() {
         [] => vec![None],
         some => some.iter().copied().map(Some).collect(),
@@ -187,13 +188,19 @@ fn test(args: &TestArgs, json: bool) -> Outcome {
                 let why = status.advice();
                 return Err(Fail::Check(format!("calibration failed: no hand was seen. {why}")));
             };
-            ratios.push(mm as f32 / found);
+            pairs.push((mm as f32, found));
         }
         last = Some((status, seen));
     }
     let Some((status, seen)) = last else { return Ok(()) };
-    let mean = ratios.iter().sum::<f32>() / ratios.len().max(1) as f32;
-    let scale = (!ratios.is_empty()).then_some(config.camera_settings.hand_scale * mean);
+    let found = (!pairs.is_empty()).then(|| config.camera_settings.calibration().corrected(&pairs));
+    if found == Some(None) {
+        return Err(Fail::Check(format!(
+            "calibration failed: the measured distances contradict each other ({pairs:?} mm). \
+             Repeat it with the palm to the camera"
+        )));
+    }
+    let found = found.flatten();
     let view = status.view.as_ref();
     let answer_ = TestAnswer {
         camera,
@@ -207,7 +214,8 @@ fn test(args: &TestArgs, json: bool) -> Outcome {
         palm_score: view.map_or(0.0, |v| v.palm_score),
         hands_percent: 100.0 * seen,
         distance_mm: depth,
-        hand_scale: scale,
+        hand_scale: found.map(|c| c.scale),
+        depth_offset_mm: found.map(|c| c.offset_mm),
         advice: status.advice(),
     };
     answer(json, &answer_, |out| {
@@ -228,9 +236,12 @@ fn test(args: &TestArgs, json: bool) -> Outcome {
         if let Some(mm) = a.distance_mm {
             writeln!(out, "distance        {mm:.0} mm")?;
         }
-        if let Some(scale) = a.hand_scale {
+        if let Some((scale, offset)) = a.hand_scale.zip(a.depth_offset_mm) {
             writeln!(out, "Write this into your settings, under [devices]:")?;
-            writeln!(out, "    camera_settings = {{ hand_scale = {scale:.3} }}")?;
+            writeln!(
+                out,
+                "    camera_settings = {{ hand_scale = {scale:.3}, depth_offset_mm = {offset:.1} }}"
+            )?;
         }
         writeln!(out, "{}", a.advice)
     });

@@ -324,6 +324,7 @@ impl Config {
         let camera = &self.devices.camera_settings;
         within("devices.camera_settings.fov_degrees", camera.fov_degrees, 20.0, 150.0)?;
         within("devices.camera_settings.hand_scale", camera.hand_scale, 0.4, 2.0)?;
+        within("devices.camera_settings.depth_offset_mm", camera.depth_offset_mm, -300.0, 300.0)?;
         for (name, calibration) in &self.devices.calibration {
             calibration.check().map_err(|e| format!("devices.calibration.\"{name}\".{e}"))?;
         }

@@ -26,6 +26,8 @@ pub struct HandCameraSettings {
     /// Size of the hand as a share of an average adult's; `sculptd camera test --distance` finds
     /// it.
     pub hand_scale: f32,
+    /// What is added to each distance, mm; found together with the scale.
+    pub depth_offset_mm: f32,
 }
 
 impl Default for HandCameraSettings {
@@ -36,6 +38,7 @@ impl Default for HandCameraSettings {
             from_behind: lens.from_behind,
             rotation: Rotation::None,
             hand_scale: Calibration::default().scale,
+            depth_offset_mm: Calibration::default().offset_mm,
         }
     }
 }
@@ -44,6 +47,11 @@ impl HandCameraSettings {
     /// Returns the lens.
     pub fn lens(&self) -> Lens {
         Lens { fov_degrees: self.fov_degrees, from_behind: self.from_behind }
+    }
+
+    /// Returns the calibration of the hand.
+    pub fn calibration(&self) -> Calibration {
+        Calibration { scale: self.hand_scale, offset_mm: self.depth_offset_mm }
     }
 }
 
@@ -171,22 +179,22 @@ impl HandCamera {
         let picture = picture.turned(self.settings.rotation);
         let size = picture.size();
         let lens = self.settings.lens();
-        let calibration = Calibration { scale: self.settings.hand_scale };
+        let calibration = self.settings.calibration();
         let (light, _) = picture.light();
         self.view.light = light;
         self.view.joints = [None; MAX_TRACKS];
         let mut advice = CameraAdvice::Good;
         let mut seen = Vec::new();
         for (slot, track) in self.tracks.look(&picture).iter().take(MAX_TRACKS).enumerate() {
-            let Some(placed) = place(&track.seen, track.is_left(), size, &lens, &calibration)
-            else {
+            let before = self.memory.iter().find(|m| m.id == track.id);
+            let mut shape = before.map_or(SteadyShape::new(&track.seen, t_us), |m| m.shape);
+            let steady = shape.apply(&track.seen, t_us);
+            let Some(placed) = place(&steady, track.is_left(), size, &lens, &calibration) else {
                 continue;
             };
-            let before = self.memory.iter().find(|m| m.id == track.id);
             let mut depth = before.map_or(DepthFilter::new(placed.depth, t_us), |m| m.depth);
             let steady = depth.take(placed.depth, t_us);
-            let mut shape = before.map_or(SteadyShape::new(&placed, t_us), |m| m.shape);
-            let placed = shape.apply(&placed, t_us).at_depth(steady).with_tips_joined();
+            let placed = placed.at_depth(steady).with_tips_joined();
             let (confidence, outside) = confidence(track, size, placed.misfit);
             let joints = placed.joints.map(|p| lens.to_tracker(p));
             let velocity = before.map_or(Vec3::ZERO, |m| {

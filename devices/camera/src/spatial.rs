@@ -24,11 +24,41 @@ const RANGE_MM: (f64, f64) = (80.0, 2500.0);
 pub struct Calibration {
     /// Size of the hand as a share of what the model takes it to be.
     pub scale: f32,
+    /// What is added to each distance, mm: a hand that is small in the picture seems larger than it
+    /// is, and so nearer.
+    pub offset_mm: f32,
 }
 
 impl Default for Calibration {
     fn default() -> Self {
-        Calibration { scale: 1.0 }
+        Calibration { scale: 1.0, offset_mm: 0.0 }
+    }
+}
+
+/// Least difference of the distances from which an offset is told, as a share.
+const APART: f32 = 0.2;
+/// Largest believed difference between the two scales, as a share.
+const BENT: f32 = 0.25;
+
+impl Calibration {
+    /// Returns the calibration under which the measured distances are the true ones; each pair is
+    /// `(true, measured)`, measured under `self`. One pair gives the scale, two give the offset too.
+    pub fn corrected(&self, pairs: &[(f32, f32)]) -> Option<Calibration> {
+        let own = |d: f32| d - self.offset_mm;
+        let ratios: Vec<f32> = pairs.iter().map(|(d, m)| d / own(*m)).collect();
+        let mean = ratios.iter().sum::<f32>() / ratios.len().max(1) as f32;
+        let (mut by, mut offset_mm) = (mean, 0.0);
+        if let [(far, seen_far), (near, seen_near)] = *pairs
+            && (far - near).abs() > APART * far.max(near)
+        {
+            let slope = (far - near) / (own(seen_far) - own(seen_near));
+            if (slope / mean - 1.0).abs() < BENT {
+                (by, offset_mm) = (slope, far - slope * own(seen_far));
+            }
+        }
+        let scale = self.scale * by;
+        (scale.is_finite() && (0.4..=2.0).contains(&scale))
+            .then_some(Calibration { scale, offset_mm })
     }
 }
 
@@ -74,7 +104,8 @@ pub fn place(
         let z = z.max(RANGE_MM.0 * 0.5) as f32;
         *joint = Vec3::new(ray.x * z, ray.y * z, z);
     }
-    Some(PlacedHand { joints, depth: depth as f32, misfit: palm.misfit as f32 })
+    let placed = PlacedHand { joints, depth: depth as f32, misfit: palm.misfit as f32 };
+    Some(placed.at_depth(placed.depth + calibration.offset_mm))
 }
 
 impl PlacedHand {
@@ -141,7 +172,7 @@ impl DepthFilter {
     /// A hand that appears at this distance.
     pub fn new(depth: f32, t_us: u64) -> Self {
         let noise = (DEPTH_NOISE * depth).powi(2);
-        DepthFilter { depth, speed: 0.0, covariance: [noise, 0.0, 1e5], surprise: 0.0, t_us }
+        DepthFilter { depth, speed: 0.0, covariance: [noise, 0.0, 2_500.0], surprise: 0.0, t_us }
     }
 
     /// Takes one measurement and returns the smoothed distance.
@@ -154,7 +185,7 @@ impl DepthFilter {
         let dt = gap as f32 * 1e-6;
         self.t_us = t_us;
         // A resting hand surprises by its noise alone, as often this way as that.
-        let moves = ((self.surprise.abs() - 0.3) / 0.7).clamp(0.0, 1.0);
+        let moves = ((self.surprise.abs() - 0.5) / 0.7).clamp(0.0, 1.0);
         let push = REST_MM_S2 + (MOVING_MM_S2 - REST_MM_S2) * moves * moves;
         let q = push * push;
         let [a, b, c] = self.covariance;
@@ -179,6 +210,19 @@ impl DepthFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_calibration_makes_its_distances_right() {
+        let before = Calibration { scale: 0.9, offset_mm: 12.0 };
+        let measure = |c: &Calibration, raw: f32| c.scale * raw + c.offset_mm;
+        let pairs = [(600.0, measure(&before, 640.0)), (350.0, measure(&before, 400.0))];
+        let after = before.corrected(&pairs).expect("a calibration");
+        assert!((measure(&after, 640.0) - 600.0).abs() < 0.1, "{after:?}");
+        assert!((measure(&after, 400.0) - 350.0).abs() < 0.1, "{after:?}");
+        let one = before.corrected(&pairs[..1]).expect("a calibration");
+        assert!((measure(&one, 640.0) - 600.0).abs() < 0.1 && one.offset_mm == 0.0);
+        assert!(before.corrected(&[]).is_none());
+    }
 
     #[test]
     fn a_resting_hand_is_steady_and_a_moving_one_is_followed() {

@@ -1,32 +1,32 @@
-//! Steadies what a single camera sees worst: how far each joint is before or behind the palm.
+//! Steadies what a single camera sees worst: the depth within a hand, and with it its turn.
 //!
-//! Pixels are good to a fraction of a millimetre, depth within the hand to several. So depth is a
+//! Pixels are good to a fraction of a millimetre, the model's shape to several. So the shape is a
 //! low pass whose cutoff rises with the speed across the line of sight alone, after One Euro
 //! (Casiez, Roussel and Vogel, CHI 2012): while no joint moves in the picture, none moves in
 //! depth; a finger that bends or a hand that turns moves in the picture too.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use crate::landmarks::JOINTS;
-use crate::spatial::PlacedHand;
+use crate::landmarks::{JOINTS, SeenHand};
 
 /// Cutoff of a joint that does not move, Hz.
-const REST_HZ: f32 = 0.15;
+const REST_HZ: f32 = 0.06;
 /// Cutoff for each mm/s across the line of sight, Hz.
 const HZ_PER_MM_S: f32 = 0.035;
 /// Speed that pixel noise alone shows, mm/s.
-const NOISE_MM_S: f32 = 8.0;
+const NOISE_MM_S: f32 = 16.0;
 /// Cutoff of the speed itself, Hz.
 const SPEED_HZ: f32 = 1.5;
 /// Gap after which the memory is forgotten, microseconds.
 const STALE_US: u64 = 250_000;
+/// Length of a palm, mm: the scale of speeds, which needs no calibration.
+const PALM_MM: f32 = 90.0;
 
-/// Memory of one hand's joints.
+/// Memory of one hand's shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SteadyShape {
-    /// Depth of each joint relative to the hand, mm.
-    relative: [f32; JOINTS],
-    across: [Vec2; JOINTS],
+    shape: [Vec3; JOINTS],
+    joints: [Vec2; JOINTS],
     speed: [Vec2; JOINTS],
     t_us: u64,
 }
@@ -38,36 +38,28 @@ fn share(cutoff: f32, dt: f32) -> f32 {
 
 impl SteadyShape {
     /// A hand that appears.
-    pub(crate) fn new(hand: &PlacedHand, t_us: u64) -> Self {
-        SteadyShape {
-            relative: hand.joints.map(|p| p.z - hand.depth),
-            across: hand.joints.map(|p| p.truncate()),
-            speed: [Vec2::ZERO; JOINTS],
-            t_us,
-        }
+    pub(crate) fn new(seen: &SeenHand, t_us: u64) -> Self {
+        SteadyShape { shape: seen.shape, joints: seen.joints, speed: [Vec2::ZERO; JOINTS], t_us }
     }
 
-    /// Takes the next picture's hand and returns it with steady depths.
-    pub(crate) fn apply(&mut self, hand: &PlacedHand, t_us: u64) -> PlacedHand {
+    /// Takes the hand of the next picture and returns it with a steady shape.
+    pub(crate) fn apply(&mut self, seen: &SeenHand, t_us: u64) -> SeenHand {
         let gap = t_us.saturating_sub(self.t_us);
         if gap > STALE_US || gap == 0 {
-            *self = SteadyShape::new(hand, t_us);
-            return *hand;
+            *self = SteadyShape::new(seen, t_us);
+            return *seen;
         }
         let dt = gap as f32 * 1e-6;
+        let mm = PALM_MM / seen.palm_px().max(1.0);
         self.t_us = t_us;
-        let mut steady = *hand;
-        for (i, joint) in steady.joints.iter_mut().enumerate() {
-            let across = joint.truncate();
-            let speed = (across - self.across[i]) / dt;
-            self.across[i] = across;
+        for i in 0..JOINTS {
+            let speed = (seen.joints[i] - self.joints[i]) * (mm / dt);
+            self.joints[i] = seen.joints[i];
             self.speed[i] = self.speed[i].lerp(speed, share(SPEED_HZ, dt));
             let moving = (self.speed[i].length() - NOISE_MM_S).max(0.0);
             let by = share(REST_HZ + HZ_PER_MM_S * moving, dt);
-            self.relative[i] += (joint.z - hand.depth - self.relative[i]) * by;
-            let z = (hand.depth + self.relative[i]).max(1.0);
-            *joint *= z / joint.z.max(1.0);
+            self.shape[i] = self.shape[i].lerp(seen.shape[i], by);
         }
-        steady
+        SeenHand { shape: self.shape, ..*seen }
     }
 }

@@ -23,9 +23,10 @@ ldd "$daemon" | grep -o '/[^ ]*' | while read -r library; do
     mkdir -p "$initrd$(dirname "$library")"
     cp -L "$library" "$initrd$library"
 done
-echo "nobody:x:65534:65534::/tmp:/bin/busybox" >"$initrd/etc/passwd"
-copy_modules "$initrd" cec mc videodev videobuf2-common videobuf2-memops videobuf2-v4l2 videobuf2-vmalloc videobuf2-dma-contig \
-    v4l2-dv-timings v4l2-tpg fb cfbfillrect cfbcopyarea cfbimgblt fb_sys_fops syscopyarea sysfillrect sysimgblt vivid
+ln -s busybox "$initrd/bin/sh"
+echo "nobody:x:65534:65534::/tmp:/bin/sh" >"$initrd/etc/passwd"
+copy_modules "$initrd" rc-core cec mc videodev videobuf2-common videobuf2-memops videobuf2-v4l2 videobuf2-vmalloc videobuf2-dma-contig \
+    v4l2-dv-timings v4l2-tpg vivid
 [ -f "$initrd/modules/vivid.ko" ] || skip "this kernel has no vivid"
 cat >"$initrd/init" <<'INIT'
 #!/bin/busybox sh
@@ -35,14 +36,15 @@ cat >"$initrd/init" <<'INIT'
 /bin/busybox mount -t tmpfs tmp /tmp
 export HOME=/tmp SCULPTD_CAMERA_MODELS=/models
 while read -r m; do
-    /bin/busybox insmod "/modules/$m" 2>/dev/null
+    /bin/busybox insmod "/modules/$m"
 done </modules/list
 echo "== pictures"
 /bin/sculptd camera test 0 --for 40
 echo "exit $?"
 echo "== permission"
 /bin/busybox chmod 600 /dev/video0
-/bin/busybox su -s /bin/busybox nobody -c "sh -c 'SCULPTD_CAMERA_MODELS=/models /bin/sculptd camera test 0; echo exit \$?'"
+/bin/busybox su nobody -c "SCULPTD_CAMERA_MODELS=/models /bin/sculptd camera test 0"
+echo "exit $?"
 echo "== no such camera"
 /bin/sculptd camera test 7
 echo "exit $?"

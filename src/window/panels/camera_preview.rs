@@ -22,7 +22,7 @@ pub fn ui(ui: &mut egui::Ui, preview: &Arc<CameraPreview>) {
     }
     ui.add_space(8.0);
     ui.strong(tr!("devices-camera"));
-    let (key, address) = (egui::Id::new("camera-preview"), Arc::as_ptr(preview) as usize);
+    let (key, address) = (egui::Id::unique("camera-preview"), Arc::as_ptr(preview) as usize);
     let known: Option<ShownPicture> = ui.data(|d| d.get_temp(key));
     let texture = match known.filter(|(shown, _)| *shown == address) {
         Some((_, texture)) => texture,

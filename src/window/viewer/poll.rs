@@ -19,9 +19,8 @@ const SECOND_US: u64 = 1_000_000;
 /// Returns true if two states look the same: everything that the window shows of them, except the
 /// figures of the Loop page.
 fn looks_the_same(a: &Published, b: &Published) -> bool {
-    let held = |t: &Option<HeldObject>| {
-        t.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place))
-    };
+    let held =
+        |t: &Option<HeldObject>| t.as_ref().map(|t| (Arc::as_ptr(&t.plain) as usize, t.place));
     a.mesh.revision() == b.mesh.revision()
         && a.camera == b.camera
         && a.brush == b.brush
@@ -77,7 +76,7 @@ impl WindowState {
                 changed = true;
             }
         }
-        changed |= self.follow_camera(wiring);
+        changed |= self.follow_hand_camera(wiring);
         match &wiring.kiosk {
             Some(screen) => {
                 let view = screen.desk.view.lock().ok().and_then(|v| *v);
@@ -92,7 +91,7 @@ impl WindowState {
     }
 
     /// Takes the camera's newest picture while the page that shows it is open.
-    fn follow_camera(&mut self, wiring: &Wiring) -> bool {
+    fn follow_hand_camera(&mut self, wiring: &Wiring) -> bool {
         let open = self.ui_state.tab == Tab::Devices && !self.ui_state.hidden;
         let newest = open.then(|| (wiring.camera)()).flatten();
         let address = |p: &Option<Arc<CameraPreview>>| p.as_ref().map(Arc::as_ptr);

@@ -5,7 +5,7 @@ use sculptd_camera::drawn_hand::DrawnHand;
 use sculptd_camera::hand_camera::HandCameraSettings;
 use sculptd_devices::DeviceId;
 use sculptd_devices::sim::hand::HandKey;
-use sculptd_engine::hand::{HandSettings, HandTools, Pose};
+use sculptd_engine::hand::{Act, HandSettings, HandTools, Pose};
 
 use crate::stage::{Stage, long, upright};
 
@@ -133,4 +133,30 @@ fn no_grab_is_stuck_after_a_dropout() {
         stuck += usize::from(tools.is_gripping());
     }
     assert_eq!(stuck, 0, "stuck after {count} dropouts");
+}
+
+#[test]
+fn the_performance_pushes_pinches_smooths_turns_and_zooms() {
+    let Some(mut stage) = Stage::new(HandCameraSettings::default()) else { return };
+    let script = sculptd_camera::performance::performance();
+    let mut tools = HandTools::new(HandSettings::default());
+    let mut acts = [0; 5];
+    let mut t_us = 0;
+    while t_us < script.end_us() {
+        let hands = stage.see(&DrawnHand::of_script(&script, t_us));
+        tools.take(CAMERA, stage.t_us, &hands);
+        t_us += crate::stage::FRAME_US;
+        while let Some(act) = tools.next_act() {
+            match act {
+                Act::Push(_) => acts[0] += 1,
+                Act::Drag(_) => acts[1] += 1,
+                Act::Palm(_) => acts[2] += 1,
+                Act::Orbit(_) => acts[3] += 1,
+                Act::Zoom(_) => acts[4] += 1,
+                _ => {}
+            }
+        }
+    }
+    println!("pushes, drags, palms, turns, zooms: {acts:?}");
+    assert!(acts.iter().all(|n| *n >= 10), "{acts:?}");
 }

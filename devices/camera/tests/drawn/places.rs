@@ -26,7 +26,7 @@ const LAMPS: [(Vec3, f32); 5] = [
 /// The scale that a calibration finds, with an open hand at arm's length and then near.
 fn calibrated(size: f32) -> Option<HandCameraSettings> {
     let mut stage = Stage::new(HandCameraSettings::default())?;
-    let mut ratios = Vec::new();
+    let mut pairs = Vec::new();
     for distance in [600.0, 350.0] {
         let hand = DrawnHand::new(&upright(distance), false, size);
         let mut depths = Vec::new();
@@ -36,10 +36,14 @@ fn calibrated(size: f32) -> Option<HandCameraSettings> {
                 depths.push(stage.camera.view().depth[0]);
             }
         }
-        ratios.push(distance / spread(&depths).0);
+        pairs.push((distance, spread(&depths).0));
     }
-    let hand_scale = spread(&ratios).0;
-    Some(HandCameraSettings { hand_scale, ..HandCameraSettings::default() })
+    let found = HandCameraSettings::default().calibration().corrected(&pairs)?;
+    Some(HandCameraSettings {
+        hand_scale: found.scale,
+        depth_offset_mm: found.offset_mm,
+        ..HandCameraSettings::default()
+    })
 }
 
 #[test]
