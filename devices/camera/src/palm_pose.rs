@@ -25,7 +25,7 @@ const PALM_MM: f64 = 89.0;
 /// Expected error of a joint's pixel as a share of the palm's length.
 const PIXEL_SIGMA: f64 = 0.05;
 /// Expected error of the model's turn, radians.
-const TURN_SIGMA: f64 = 0.18;
+const TURN_SIGMA: f64 = 0.15;
 /// Steps of the fit; it converges in three or four.
 const STEPS: usize = 6;
 

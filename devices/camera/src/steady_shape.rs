@@ -28,6 +28,8 @@ pub(crate) struct SteadyShape {
     shape: [Vec3; JOINTS],
     joints: [Vec2; JOINTS],
     speed: [Vec2; JOINTS],
+    /// Pictures over which each joint is averaged.
+    memory: [f32; JOINTS],
     t_us: u64,
 }
 
@@ -39,7 +41,13 @@ fn share(cutoff: f32, dt: f32) -> f32 {
 impl SteadyShape {
     /// A hand that appears.
     pub(crate) fn new(seen: &SeenHand, t_us: u64) -> Self {
-        SteadyShape { shape: seen.shape, joints: seen.joints, speed: [Vec2::ZERO; JOINTS], t_us }
+        SteadyShape {
+            shape: seen.shape,
+            joints: seen.joints,
+            speed: [Vec2::ZERO; JOINTS],
+            memory: [1.0; JOINTS],
+            t_us,
+        }
     }
 
     /// Takes the hand of the next picture and returns it with a steady shape.
@@ -58,7 +66,9 @@ impl SteadyShape {
             self.speed[i] = self.speed[i].lerp(speed, share(SPEED_HZ, dt));
             let moving = (self.speed[i].length() - NOISE_MM_S).max(0.0);
             let by = share(REST_HZ + HZ_PER_MM_S * moving, dt);
-            self.shape[i] = self.shape[i].lerp(seen.shape[i], by);
+            // A plain mean until the low pass would remember less: it settles at once.
+            self.memory[i] = (self.memory[i] + 1.0).min(1.0 / by);
+            self.shape[i] = self.shape[i].lerp(seen.shape[i], 1.0 / self.memory[i]);
         }
         SeenHand { shape: self.shape, ..*seen }
     }
