@@ -27,7 +27,7 @@ const SLICE: Duration = Duration::from_millis(40);
 /// Side of the preview's pictures along their width, pixels.
 const PREVIEW_WIDTH: usize = 320;
 
-/// Which camera to read.
+/// A camera or a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CameraChoice {
     /// The number of `/dev/videoN`, or a device node.
@@ -77,7 +77,7 @@ impl CameraChoice {
     }
 }
 
-/// What a running camera needs.
+/// Configuration of a running camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraConfig {
     /// The camera or file.
@@ -105,7 +105,7 @@ pub struct CameraStatus {
     pub rate: f32,
     /// From a picture to its sample, microseconds, smoothed.
     pub delay_us: u64,
-    /// What the newest picture showed.
+    /// Findings in the newest picture.
     pub view: Option<CameraView>,
     /// Why there are no pictures, or what was wrong last.
     pub last_error: Option<String>,
@@ -180,12 +180,22 @@ pub fn start(
         let mut sender = sender;
         sender.stop_when(stop.flag());
         let hands = HandCamera::new(tracks, config.settings, config.device);
-        Looker { config, hands, clock, sender, shared: own, last_us: 0, shown: false }.run(&stop);
+        Looker {
+            config,
+            hands,
+            clock,
+            sender,
+            shared: own,
+            last_us: 0,
+            shown: false,
+            warned: String::new(),
+        }
+        .run(&stop);
     })?;
     Ok(CameraHandle { shared, _thread: thread })
 }
 
-/// What the reading thread hands over.
+/// A message of the reading thread.
 enum Read {
     Picture(u64, Picture),
     Damaged(String),
@@ -202,6 +212,8 @@ struct Looker {
     last_us: u64,
     /// The last sample had hands in it.
     shown: bool,
+    /// The last reason that was logged.
+    warned: String,
 }
 
 impl Looker {
@@ -215,6 +227,9 @@ impl Looker {
                     });
                     let why = self.follow(source, stop);
                     self.release();
+                    if let Some(why) = &why {
+                        self.warn(why);
+                    }
                     self.shared.note(|s| {
                         s.connected = false;
                         s.last_error = why.clone().or(s.last_error.take());
@@ -226,6 +241,7 @@ impl Looker {
                 }
                 Err(e) => {
                     let text = e.to_string();
+                    self.warn(&text);
                     self.shared.note(|s| {
                         (s.connected, s.last_error) = (false, Some(text));
                     });
@@ -312,6 +328,14 @@ impl Looker {
                 s.rate = if s.pictures < 5 { now } else { s.rate + (now - s.rate) * 0.1 };
             }
         });
+    }
+
+    /// Logs why there are no pictures, once for each reason.
+    fn warn(&mut self, why: &str) {
+        if self.warned != why {
+            tracing::warn!("camera: {why}");
+            self.warned = why.to_owned();
+        }
     }
 
     /// Says that no hand is seen, once.

@@ -17,7 +17,7 @@ pub struct DrawnHand {
     pub left: bool,
 }
 
-/// First joint of each finger of a right hand, mm from the wrist: the palm lies in the plane of x
+/// First joint of each finger of a right hand, mm from the wrist: the palm is in the plane of x
 /// and z with its back up, and the fingers point along -z.
 const ROOTS: [Vec3; 5] = [
     vec3(-32.0, -6.0, -23.0),

@@ -26,7 +26,7 @@ pub struct HandCameraSettings {
     /// Size of the hand as a share of an average adult's; `sculptd camera test --distance` finds
     /// it.
     pub hand_scale: f32,
-    /// What is added to each distance, mm; found together with the scale.
+    /// Correction added to each distance, mm; found together with the scale.
     pub depth_offset_mm: f32,
 }
 
@@ -95,14 +95,14 @@ impl CameraAdvice {
     }
 }
 
-/// What the newest picture showed.
+/// Findings in the newest picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraView {
     /// Mean brightness, 0 to 1.
     pub light: f32,
     /// Score of the surest palm of the last search, 0 to 1.
     pub palm_score: f32,
-    /// What to change.
+    /// Advice for the person.
     pub advice: CameraAdvice,
     /// Hands of other people that were ignored.
     pub ignored: usize,
@@ -132,7 +132,7 @@ const BRIGHT: f32 = 0.93;
 const CLOSE: f32 = 0.55;
 const FAR: f32 = 0.06;
 
-/// What is kept of a hand from picture to picture.
+/// Memory of a hand from picture to picture.
 #[derive(Debug, Clone, Copy)]
 struct HandMemory {
     id: i32,

@@ -14,7 +14,7 @@ const PALM_OVER_KNUCKLES: f32 = 1.25;
 /// Below this confidence a pinch can neither begin nor end: the thumb is not reported.
 const PINCH_CONFIDENCE: f32 = 0.4;
 
-/// What is known of a hand besides its joints.
+/// Facts about a hand besides its joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandFacts {
     /// Number of the hand.

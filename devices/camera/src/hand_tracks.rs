@@ -202,7 +202,7 @@ impl HandTracks {
     }
 }
 
-/// What one picture says about the side: the log of the odds, limited.
+/// Evidence of one picture about the side: the log of the odds, limited.
 fn evidence(seen: &SeenHand) -> f32 {
     let p = seen.left.clamp(0.02, 0.98);
     (p / (1.0 - p)).ln() * seen.presence

@@ -82,7 +82,7 @@ pub enum ModelsError {
     Package {
         /// The package's file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         why: String,
     },
     /// A tested file could not be loaded.

@@ -19,13 +19,13 @@ use crate::palm_pose::fit_palm;
 /// Nearest and farthest believed distance, mm.
 const RANGE_MM: (f64, f64) = (80.0, 2500.0);
 
-/// What is known about a person's hand and the camera.
+/// A person's hand as the camera measures it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Size of the hand as a share of what the model takes it to be.
     pub scale: f32,
-    /// What is added to each distance, mm: a hand that is small in the picture seems larger than it
-    /// is, and so nearer.
+    /// Correction added to each distance, mm. A hand that is small in the picture seems larger than
+    /// it is, and so nearer.
     pub offset_mm: f32,
 }
 
@@ -35,7 +35,7 @@ impl Default for Calibration {
     }
 }
 
-/// Least difference of the distances from which an offset is told, as a share.
+/// Least difference of the distances from which an offset follows, as a share.
 const APART: f32 = 0.2;
 /// Largest believed difference between the two scales, as a share.
 const BENT: f32 = 0.25;
@@ -120,8 +120,8 @@ impl PlacedHand {
 /// Across the line of sight, tips that are nearer than the first are one behind the other or touch;
 /// beyond the second nothing is assumed. mm.
 const TIPS_MM: (f32, f32) = (30.0, 60.0);
-/// What is left of the difference in depth of tips that are near each other: the model's depth of
-/// a closed pinch is wrong by 20 to 40 mm, always the same way.
+/// Share of the difference in depth that tips near each other keep: the model's depth of a closed
+/// pinch is wrong by 20 to 40 mm, always the same way.
 const TIPS_DEPTH: f32 = 0.3;
 /// Landmarks are at the middle of a fingertip: tips that touch are this much nearer, mm.
 const TIPS_FLESH_MM: f32 = 9.0;
@@ -165,7 +165,7 @@ const DEPTH_NOISE: f32 = 0.01;
 /// Acceleration of a resting hand and of a moving one, mm/s².
 const REST_MM_S2: f32 = 3.0;
 const MOVING_MM_S2: f32 = 6_000.0;
-/// Gap after which the filter starts anew, microseconds.
+/// Gap after which the filter restarts, microseconds.
 const STALE_US: u64 = 300_000;
 
 impl DepthFilter {

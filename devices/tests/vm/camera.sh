@@ -39,7 +39,7 @@ while read -r m; do
     /bin/busybox insmod "/modules/$m"
 done </modules/list
 echo "== pictures"
-/bin/sculptd camera test 0 --for 40
+/bin/sculptd camera test 0 --for 15
 echo "exit $?"
 echo "== permission"
 /bin/busybox chmod 600 /dev/video0
@@ -49,8 +49,8 @@ echo "== no such camera"
 /bin/sculptd camera test 7
 echo "exit $?"
 echo "== unplugged"
-/bin/sculptd run --headless --camera 0 --for 60 >/tmp/run.log 2>&1 &
-/bin/busybox sleep 25
+/bin/sculptd run --headless --camera 0 --for 25 >/tmp/run.log 2>&1 &
+/bin/busybox sleep 12
 echo vivid.0 >/sys/bus/platform/drivers/vivid/unbind
 wait $!
 echo "exit $?"
@@ -69,6 +69,7 @@ timeout 280 qemu-system-x86_64 -accel tcg,thread=multi -cpu max -m 1024 -smp 2 -
 grep -Eq 'pictures +[0-9]+ .*, [1-9][0-9]* skipped, 0 damaged' "$work/camera.log"
 grep -q 'permission denied' "$work/camera.log"
 grep -q 'there is no camera /dev/video7' "$work/camera.log"
+grep -q 'camera: there is no camera /dev/video0' "$work/camera.log"
 grep -q '== done' "$work/camera.log"
 ! grep -q 'panicked' "$work/camera.log"
 echo "CAMERA PASSED"

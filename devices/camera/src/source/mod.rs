@@ -36,7 +36,7 @@ pub enum CameraError {
     Format {
         /// The camera.
         name: String,
-        /// What it offers.
+        /// The formats that it offers.
         found: String,
     },
     /// A picture is damaged.
@@ -46,7 +46,7 @@ pub enum CameraError {
         name: String,
         /// From 1.
         number: u64,
-        /// What is wrong.
+        /// The fault.
         why: String,
     },
     /// The file is of another kind.
@@ -54,7 +54,7 @@ pub enum CameraError {
     Unknown {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The reason.
         why: String,
     },
     /// The system's reason.
