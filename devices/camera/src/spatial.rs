@@ -1,10 +1,8 @@
 //! From pixels to millimetres: how far a hand is, and where its joints are.
 //!
-//! The landmark model gives the joints' pixels, and a shape of the hand in mm. [`palm_pose`] fits a
+//! The landmark model gives the joints' pixels, and a shape of the hand in mm. `palm_pose` fits a
 //! rigid palm to the pixels. The pixels then place each joint across the line of sight, and the
 //! palm and the shape of the fingers place it along.
-//!
-//! [`palm_pose`]: crate::palm_pose
 //!
 //! A camera cannot tell a small hand from a distant one, so depth is right up to one factor a
 //! person: [`Calibration::scale`].

@@ -153,7 +153,7 @@ impl<S: Simd> Strip<'_, S> {
         out: &mut [f32],
         residual: Option<&[f32]>,
     ) {
-        let mut sums = [simd.splat_f32s(0.0); COUNT];
+        let mut sums = [self.epilogue.bias(simd, self.channel); COUNT];
         let (taps, _) = self.taps.as_chunks::<COLUMNS>();
         for (row, taps) in rows.chunks_exact(line).zip(taps) {
             let Some(inputs) = row[x * STEP..].first_chunk::<READ>() else { return };
@@ -177,7 +177,7 @@ impl<S: Simd> Strip<'_, S> {
         residual: Option<&[f32]>,
     ) {
         for x in 0..out.len() / self.channels {
-            let mut sum = simd.splat_f32s(0.0);
+            let mut sum = self.epilogue.bias(simd, self.channel);
             for (row, taps) in rows.chunks_exact(line).zip(self.taps.chunks_exact(columns)) {
                 for (input, tap) in row[x * step..].iter().zip(taps) {
                     sum = simd.mul_add_e_f32s(*input, *tap, sum);

@@ -1,4 +1,4 @@
-//! What follows a sum of products: bias, clamping, a residual, slopes of a PReLU.
+//! What goes with a sum of products: bias, clamping, a residual, slopes of a PReLU.
 
 use pulp::Simd;
 
@@ -9,7 +9,7 @@ use super::tflite::OutputRange;
 pub(super) struct Epilogue {
     /// One a channel, filled up with zeros to whole vectors.
     pub bias: Vec<f32>,
-    /// Applied after the bias.
+    /// Applied to the sum.
     pub range: OutputRange,
     /// Slopes for negative results after the residual, filled up like the bias.
     pub slopes: Option<Vec<f32>>,
@@ -34,6 +34,13 @@ pub(super) fn store<S: Simd>(simd: S, to: &mut [f32], value: S::f32s) {
 }
 
 impl Epilogue {
+    /// Returns the bias of the vector of channels that begins at `channel`: sums begin with it, in
+    /// the order in which LiteRT adds.
+    #[inline(always)]
+    pub(super) fn bias<S: Simd>(&self, simd: S, channel: usize) -> S::f32s {
+        load(simd, self.bias.get(channel..).unwrap_or_default())
+    }
+
     /// Finishes the vector of channels that begins at `channel`; `residual` begins there too.
     #[inline(always)]
     pub(super) fn finish<S: Simd>(
@@ -43,7 +50,7 @@ impl Epilogue {
         channel: usize,
         residual: Option<&[f32]>,
     ) -> S::f32s {
-        let mut value = simd.add_f32s(sum, load(simd, &self.bias[channel..]));
+        let mut value = sum;
         if self.range != OutputRange::ALL {
             let (low, high) = (simd.splat_f32s(self.range.0), simd.splat_f32s(self.range.1));
             value = simd.min_f32s(simd.max_f32s(value, low), high);

@@ -163,7 +163,11 @@ impl<S: Simd> Tile<'_, S> {
         for (i, row) in rows.iter_mut().enumerate() {
             *row = &self.rows[i * depth..][..depth];
         }
-        let mut sums = [[simd.splat_f32s(0.0); WIDE]; ROWS];
+        let mut bias = [simd.splat_f32s(0.0); WIDE];
+        for (half, bias) in bias.iter_mut().enumerate() {
+            *bias = self.epilogue.bias(simd, self.column + half * S::F32_LANES);
+        }
+        let mut sums = [bias; ROWS];
         for (k, weights) in steps.iter().enumerate() {
             for (sum, row) in sums.iter_mut().zip(&rows) {
                 let x = simd.splat_f32s(row[k]);
