@@ -2,9 +2,9 @@
 //!
 //! `sculptd` turns hand movements into clay, in real time. Adaptors read HID pen tablets, serial
 //! pens, webcams and a Leap-style hand-tracking feed. Their samples pass through one bounded
-//! lock-free channel into a sculpt loop, which runs at a fixed rate on the CPU. Booleans, thickness and
-//! distance run on background threads against immutable snapshots. A wgpu viewer with egui panels
-//! draws the snapshots.
+//! lock-free channel into a sculpt loop, which runs at a fixed rate on the CPU. Booleans, thickness
+//! and distance run on background threads against immutable snapshots. A wgpu viewer with egui
+//! panels draws the snapshots.
 //!
 //! Read first: this page, then `sculptd_engine::command` (the possible requests),
 //! `sculptd_engine::world` (the effect of one step), `sculptd_daemon::live` (the loop around it).

@@ -8,10 +8,11 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
+use super::camera_errors::failed;
 use super::{Fail, Outcome, answer};
 use sculptd_camera::camera_thread::{CameraChoice, CameraStatus};
 use sculptd_camera::models::{self, MODEL_FILES, ModelsError, PACKAGE};
-use sculptd_daemon::camera_hands::{self, CameraStartError};
+use sculptd_daemon::camera_hands;
 use sculptd_daemon::config::DevicesConfig;
 use sculptd_devices::{Clock, queue};
 
@@ -60,20 +61,6 @@ pub fn run(command: &CameraCommand, json: bool) -> Outcome {
     }
 }
 
-/// Turns the error of a camera or its models into one with the right exit code.
-pub(super) fn failed(e: &CameraStartError) -> Fail {
-    use sculptd_camera::source::CameraError;
-    match e {
-        CameraStartError::Camera(CameraError::Denied(_)) => Fail::Permission(e.to_string()),
-        CameraStartError::Camera(
-            CameraError::Absent(_) | CameraError::Busy(_) | CameraError::Format { .. },
-        )
-        | CameraStartError::Models(ModelsError::Missing { .. })
-        | CameraStartError::Thread(_) => Fail::Device(e.to_string()),
-        _ => Fail::Input(e.to_string()),
-    }
-}
-
 #[derive(Debug, Serialize)]
 struct SetupAnswer {
     folder: String,
@@ -92,7 +79,7 @@ fn setup(args: &SetupArgs, json: bool) -> Outcome {
     match &args.package {
         Some(package) => models::install(package, &folder).map_err(failed)?,
         None => {
-            let place = std::env::temp_dir().join(format!("sculptd-setup-{}", std::process::id()));
+            let place = std::env::temp_dir().join(format!("sculptd_setup_{}", std::process::id()));
             let downloaded = download(&place);
             let installed =
                 downloaded.and_then(|package| models::install(&package, &folder).map_err(failed));
@@ -137,8 +124,8 @@ fn download(place: &Path) -> Result<PathBuf, Fail> {
         }
     }
     Err(Fail::Check(format!(
-        "the hand models could not be downloaded ({}). Install Python and pip, or download {PACKAGE} \
-         elsewhere and type: sculptd camera setup --package FILE.whl",
+        "the hand models could not be downloaded ({}). Install Python and pip, or download \
+         {PACKAGE} elsewhere and type: sculptd camera setup --package FILE.whl",
         tried.join("; ")
     )))
 }

@@ -57,7 +57,7 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     }
     if args.camera {
         let models = camera_hands::load_models().map_err(CameraStartError::from);
-        models.map_err(|e| super::camera::failed(&e))?;
+        models.map_err(|e| super::camera_errors::failed(&e))?;
     }
     let config = Config::default();
     let begun = run::begin(args.mesh.as_slice(), args.session.as_deref(), &config)?;
@@ -93,7 +93,7 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     let (mut feeds, adaptors) = if args.camera {
         let settings = config.devices.camera_settings;
         let feed = CameraFeed::open(&CameraChoice::Drawn, settings, factory.sender());
-        let feed: Box<dyn Feed> = Box::new(feed.map_err(|e| super::camera::failed(&e))?);
+        let feed: Box<dyn Feed> = Box::new(feed.map_err(|e| super::camera_errors::failed(&e))?);
         (vec![feed], None)
     } else {
         let demo = demo_devices::simulated_feeds(&clock, &factory);

@@ -13,6 +13,7 @@ use sculptd_mesh_commands::{
 pub mod bench;
 pub mod brush;
 mod camera;
+mod camera_errors;
 mod check_presets;
 pub mod config;
 #[cfg(unix)]

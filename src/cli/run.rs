@@ -128,10 +128,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         let choice = CameraChoice::of_text(camera);
         // What cannot work is said before anything is opened. A camera that is unplugged may come.
         let models = camera_hands::load_models().map_err(CameraStartError::from);
-        models.map_err(|e| super::camera::failed(&e))?;
+        models.map_err(|e| super::camera_errors::failed(&e))?;
         if choice.is_recorded() {
             let opened = choice.open(&Clock::manual()).map_err(CameraStartError::from);
-            opened.map_err(|e| super::camera::failed(&e))?;
+            opened.map_err(|e| super::camera_errors::failed(&e))?;
         }
     }
     if let Some(path) = &args.export {
@@ -473,7 +473,7 @@ fn run_stepped(
     if let Some(choice) = recorded {
         let settings = config.devices.camera_settings;
         let feed = CameraFeed::open(choice, settings, factory.sender());
-        feeds.push(Box::new(feed.map_err(|e| super::camera::failed(&e))?));
+        feeds.push(Box::new(feed.map_err(|e| super::camera_errors::failed(&e))?));
     }
     let clock = Clock::manual();
     let mut world = begun.world;

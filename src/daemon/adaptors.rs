@@ -15,7 +15,6 @@ use sculptd_devices::{Clock, DeviceId, leap, serial};
 /// 400, the pen of the control socket's strokes 401.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
-pub const CAMERA_ID: DeviceId = DeviceId(210);
 /// Ids of tablets and serial pens, which a desktop may move its pointer by.
 pub const TABLET_IDS: std::ops::Range<u16> = 0..TRACKER_ID.0;
 pub const RECORDING_IDS: u16 = 300;

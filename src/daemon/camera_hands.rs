@@ -9,13 +9,14 @@ use sculptd_camera::hand_tracks::HandTracks;
 use sculptd_camera::models::{self, ModelsError};
 use sculptd_camera::picture::Picture;
 use sculptd_camera::source::{CameraError, PictureSource};
-use sculptd_devices::Clock;
 use sculptd_devices::queue::Sender;
+use sculptd_devices::{Clock, DeviceId};
 
-use crate::adaptors::CAMERA_ID;
 use crate::config::DevicesConfig;
 use crate::simulated_loop::Feed;
 
+/// Id of the camera that watches hands, beside those of the other adaptors.
+pub const CAMERA_ID: DeviceId = DeviceId(210);
 /// The environment variable that names another folder of models.
 pub const MODELS_VARIABLE: &str = "SCULPTD_CAMERA_MODELS";
 

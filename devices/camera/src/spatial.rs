@@ -39,8 +39,8 @@ const APART: f32 = 0.2;
 const BENT: f32 = 0.25;
 
 impl Calibration {
-    /// Returns the calibration under which the measured distances are the true ones; each pair is
-    /// `(true, measured)`, measured under `self`. One pair gives the scale, two give the offset too.
+    /// Returns the calibration under which the measured distances are the true ones. Each pair is
+    /// `(true, measured)`, measured under `self`. One pair gives the scale, two the offset too.
     pub fn corrected(&self, pairs: &[(f32, f32)]) -> Option<Calibration> {
         let own = |d: f32| d - self.offset_mm;
         let ratios: Vec<f32> = pairs.iter().map(|(d, m)| d / own(*m)).collect();

@@ -28,7 +28,7 @@ pub fn ui(ui: &mut egui::Ui, preview: &Arc<CameraPreview>) {
         Some((_, texture)) => texture,
         None => {
             let image = egui::ColorImage::from_rgb([picture.width, picture.height], &picture.rgb);
-            let texture = ui.ctx().load_texture("camera", image, egui::TextureOptions::LINEAR);
+            let texture = ui.ctx().load_texture(String::new(), image, egui::TextureOptions::LINEAR);
             ui.data_mut(|d| d.insert_temp(key, (address, texture.clone())));
             texture
         }

@@ -98,22 +98,21 @@ fn fuse(graph: &Graph, lanes: usize) -> Result<Vec<Fused>, ModelError> {
         let free = matches!(&node.operator, Operator::Convolution { range, .. }
             | Operator::Depthwise { range, .. } if *range == OutputRange::ALL);
         if free {
-            if let Some((at, GraphNode { operator: Operator::Sum { range }, inputs, output: sum })) =
-                next(output)
-                && *range == OutputRange::ALL
-                && let [a, b] = inputs.as_slice()
+            if let Some((at, after)) = next(output)
+                && after.operator == (Operator::Sum { range: OutputRange::ALL })
+                && let [a, b] = after.inputs.as_slice()
                 && a != b
                 && !taken[at]
             {
                 residual = Some(if *a == output { *b } else { *a });
-                (last, output, taken[at]) = (at, *sum, true);
+                (last, output, taken[at]) = (at, after.output, true);
             }
-            if let Some((at, GraphNode { operator: Operator::Prelu { slopes: s }, output: o, .. })) =
-                next(output)
+            if let Some((at, after)) = next(output)
+                && let Operator::Prelu { slopes: own } = &after.operator
                 && !taken[at]
             {
-                slopes = Some(s);
-                (last, output, taken[at]) = (at, *o, true);
+                slopes = Some(own);
+                (last, output, taken[at]) = (at, after.output, true);
             }
         }
         let kernel = kernel(graph, node, slopes, lanes)?;

@@ -50,7 +50,10 @@ pub enum CameraError {
         why: String,
     },
     /// The file is of another kind.
-    #[error("{}: {why}. Expected a folder of PNG or JPEG pictures, Motion JPEG, or Y4M", path.display())]
+    #[error(
+        "{}: {why}. Expected a folder of PNG or JPEG pictures, Motion JPEG, or Y4M",
+        path.display()
+    )]
     Unknown {
         /// The file.
         path: PathBuf,

@@ -74,9 +74,7 @@ fn a_resting_hand_is_steady() {
             .sum::<f32>()
             / 21.0;
         let (mean, noise) = spread(&depths);
-        println!(
-            "size {size} skin {skin} lamp {lamp}: jitter {jitter:.2} mm, depth {mean:.1} ± {noise:.2} mm"
-        );
+        println!("{size} {skin} {lamp}: jitter {jitter:.2}, depth {mean:.1} ± {noise:.2} mm");
         worst = (worst.0.max(jitter), worst.1.max(noise));
     }
     assert!(worst.0 <= 0.5, "joint jitter {} mm", worst.0);
