@@ -117,12 +117,12 @@ impl PlacedHand {
 
 /// Across the line of sight, tips that are nearer than the first are one behind the other or touch;
 /// beyond the second nothing is assumed. mm.
-const TIPS_MM: (f32, f32) = (30.0, 60.0);
+const TIPS_MM: (f32, f32) = (34.0, 62.0);
 /// Share of the difference in depth that tips near each other keep: the model's depth of a closed
 /// pinch is wrong by 20 to 40 mm, always the same way.
 const TIPS_DEPTH: f32 = 0.3;
 /// Landmarks are at the middle of a fingertip: tips that touch are this much nearer, mm.
-const TIPS_FLESH_MM: f32 = 9.0;
+const TIPS_FLESH_MM: f32 = 11.0;
 
 impl PlacedHand {
     /// The same hand with the tips of thumb and index finger at nearly one depth, and nearer by the
