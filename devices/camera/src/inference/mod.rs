@@ -3,7 +3,7 @@
 //! `.tflite` files are loaded as they are: no conversion, no Python at run time. The kernels are
 //! written here because neither measured engine reached the goal of 15 ms a picture on one core
 //! (November 2026, AVX-512 machine, landmark lite and full): `rten` 0.27 took 20 and 32 ms,
-//! `tract` 0.23 took 31 and 31 ms; these take about 3 and 7 ms.
+//! `tract` 0.23 took 31 and 31 ms; these take 4.9 and 8.3 ms.
 //!
 //! * `tflite` reads the operators, `plan` fuses them and assigns memory, `network` runs them.
 //! * Convolutions are matrix products over packed weights (Goto and van de Geijn, TOMS 2008);
