@@ -1,10 +1,10 @@
 //! # sculptd: the map
 //!
 //! `sculptd` turns hand movements into clay, in real time. Adaptors read HID pen tablets, serial
-//! pens and a Leap-style hand-tracking feed. Their samples pass through one bounded lock-free
-//! channel into a sculpt loop, which runs at a fixed rate on the CPU. Booleans, thickness and
-//! distance run on background threads against immutable snapshots. A wgpu viewer with egui panels
-//! draws the snapshots.
+//! pens, webcams and a Leap-style hand-tracking feed. Their samples pass through one bounded
+//! lock-free channel into a sculpt loop, which runs at a fixed rate on the CPU. Booleans, thickness
+//! and distance run on background threads against immutable snapshots. A wgpu viewer with egui
+//! panels draws the snapshots.
 //!
 //! Read first: this page, then `sculptd_engine::command` (the possible requests),
 //! `sculptd_engine::world` (the effect of one step), `sculptd_daemon::live` (the loop around it).
@@ -73,6 +73,8 @@
 //!   thickness, distance, jobs that can be cancelled.
 //! * `sculptd-devices` (`devices`) depends on none: everything between a wire and a `Sample`;
 //!   tablets as data.
+//! * `sculptd-camera` (`devices/camera`) depends on devices: pictures of a webcam to hand samples,
+//!   with an inference engine for the hand models.
 //! * `sculptd-clay` (`src/clay`) depends on geometry: pages, dabs, brushes, dynamic topology,
 //!   multiresolution, undo, snapshots, local Booleans.
 //! * `sculptd-engine` (`src/engine`) depends on devices, geometry, clay: commands, payloads, the
@@ -114,6 +116,10 @@
 //!   need. Waits for: the tick thread.
 //! * one a tablet, one a serial port, one a tracker, made by `devices::device_thread`, for the
 //!   adaptors: reads, parses, sends samples. Waits for: its device.
+//! * `sculptd-camera`, made by `camera::camera_thread`, for the adaptors: looks at pictures, sends
+//!   hands. Waits for: its camera's reader.
+//! * `sculptd-camera-reader`, made by `camera::camera_thread`: reads and decodes pictures. Waits
+//!   for: the camera. Nobody waits for it: a camera that has stopped sending may block it.
 //! * `sculptd-join`, made by `daemon::boolean_jobs`: Booleans of the clay with the held
 //!   object, sent back as commands. Waits for: a choice in the hand menu.
 //! * `sculptd-follow`, made by `daemon::live_booleans`: recomputes live Boolean results when their

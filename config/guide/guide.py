@@ -35,7 +35,7 @@ CHAPTERS = [
         ("What it is", "index.md"),
         ("Install", "install.md"),
         ("First strokes with a tablet", "first-tablet.md"),
-        ("First strokes with bare hands", "first-hands.md"),
+        ("First strokes with your hands", "first-hands.md"),
         ("An installation in five minutes", "first-installation.md"),
     ]),
     ("Use", [

@@ -10,7 +10,7 @@ use crossbeam_channel as cc;
 
 /// The handle: dropping it asks the thread to stop and waits until it has stopped.
 #[derive(Debug)]
-pub(crate) struct DeviceThread {
+pub struct DeviceThread {
     flag: Arc<AtomicBool>,
     hold: Option<cc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -18,13 +18,16 @@ pub(crate) struct DeviceThread {
 
 /// Tells the thread whether it is to stop.
 #[derive(Debug, Clone)]
-pub(crate) struct StopToken {
+pub struct StopToken {
     flag: Arc<AtomicBool>,
     released: cc::Receiver<()>,
 }
 
 /// Starts a named thread.
-pub(crate) fn spawn(
+///
+/// # Errors
+/// Returns the system's error if no thread can be started.
+pub fn spawn(
     name: &str,
     body: impl FnOnce(StopToken) + Send + 'static,
 ) -> io::Result<DeviceThread> {
@@ -42,17 +45,19 @@ pub(crate) fn pair() -> (cc::Sender<()>, StopToken) {
 }
 
 impl StopToken {
-    pub(crate) fn stopped(&self) -> bool {
+    /// Returns true if the thread is to stop.
+    pub fn stopped(&self) -> bool {
         self.flag.load(Relaxed)
     }
 
     /// Waits; true if the thread is to stop, and then at once.
-    pub(crate) fn wait(&self, time: Duration) -> bool {
+    pub fn wait(&self, time: Duration) -> bool {
         matches!(self.released.recv_timeout(time), Err(cc::RecvTimeoutError::Disconnected))
             || self.stopped()
     }
 
-    pub(crate) fn flag(&self) -> Arc<AtomicBool> {
+    /// Returns the flag, for those who look at it themselves.
+    pub fn flag(&self) -> Arc<AtomicBool> {
         self.flag.clone()
     }
 }

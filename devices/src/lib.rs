@@ -69,7 +69,7 @@ pub mod calibration;
 pub mod catalogue;
 pub mod clock;
 pub mod descriptor;
-mod device_thread;
+pub mod device_thread;
 pub mod filter;
 #[doc(hidden)]
 pub mod fuzzing;

@@ -9,11 +9,13 @@ use super::ending::{close_journal, export};
 use super::live;
 use super::run::{self, seconds};
 use super::{Fail, Outcome};
+use sculptd_camera::camera_thread::CameraChoice;
 use sculptd_daemon::Summary;
+use sculptd_daemon::camera_hands::{self, CameraFeed, CameraStartError};
 use sculptd_daemon::config::Config;
 use sculptd_daemon::demo_devices;
 use sculptd_daemon::live_run::LiveOptions;
-use sculptd_daemon::simulated_loop::{Pace, SimulatedLoop, SimulatedOptions, summary};
+use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup::Begun;
 use sculptd_daemon::tick::Journal;
 use sculptd_devices::catalogue::Catalogue;
@@ -37,6 +39,10 @@ pub struct DemoArgs {
     /// Record everything into this new session file.
     #[arg(long, value_name = "FILE")]
     pub session: Option<PathBuf>,
+    /// Drawn hands before a simulated camera sculpt, instead of the simulated tablet and tracker.
+    /// Needs the hand models: `sculptd camera setup`.
+    #[arg(long)]
+    pub camera: bool,
     /// Speed of the headless demo; the hash is the same.
     #[arg(long, value_enum, default_value_t)]
     pub pace: Pace,
@@ -49,6 +55,10 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
             format!("{}: expected the name of a new session: the demo begins anew", path.display());
         return Err(Fail::Usage(text));
     }
+    if args.camera {
+        let models = camera_hands::load_models().map_err(CameraStartError::from);
+        models.map_err(|e| super::camera_errors::failed(&e))?;
+    }
     let config = Config::default();
     let begun = run::begin(args.mesh.as_slice(), args.session.as_deref(), &config)?;
     if !display::wanted(args.headless) {
@@ -57,7 +67,8 @@ pub fn run(args: &DemoArgs, json: bool) -> Outcome {
     let options = LiveOptions {
         presets: crate::presets().clone(),
         brushes: None,
-        demo_devices: true,
+        demo_devices: !args.camera,
+        drawn_hands: args.camera,
         devices: true,
         limit_s: args.limit_s,
         ..Default::default()
@@ -79,8 +90,16 @@ fn headless(args: &DemoArgs, config: &Config, begun: Begun, json: bool) -> Outco
     let (mut writer, thread) = begun.journal.unzip();
     let clock = Clock::manual();
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
-    let (mut feeds, adaptors) =
-        demo_devices::simulated_feeds(&clock, &factory).map_err(|e| Fail::Check(e.to_string()))?;
+    let (mut feeds, adaptors) = if args.camera {
+        let settings = config.devices.camera_settings;
+        let feed = CameraFeed::open(&CameraChoice::Drawn, settings, factory.sender());
+        let feed: Box<dyn Feed> = Box::new(feed.map_err(|e| super::camera_errors::failed(&e))?);
+        (vec![feed], None)
+    } else {
+        let demo = demo_devices::simulated_feeds(&clock, &factory);
+        let (feeds, adaptors) = demo.map_err(|e| Fail::Check(e.to_string()))?;
+        (feeds, Some(adaptors))
+    };
     let rate_hz = config.r#loop.rate_hz;
     let options = SimulatedOptions {
         rate_hz,

@@ -66,7 +66,7 @@ pub fn window(
     shown: &Shown,
     rate_hz: u32,
 ) -> Result<impl FnOnce() -> Result<(), String> + use<>, String> {
-    let adaptors = run.adaptors.clone();
+    let (adaptors, cameras) = (run.adaptors.clone(), run.adaptors.clone());
     let (reports, answers) = crossbeam_channel::bounded(ANSWERS);
     let events = EventClock::new(run.clock.clone());
     let wiring = sculptd_window::viewer::Wiring {
@@ -83,6 +83,7 @@ pub fn window(
         events,
         stop: run.stop.clone(),
         devices: Box::new(move || adaptors.describe()),
+        camera: Box::new(move || cameras.camera()?.preview()),
         session: shown.session.as_ref().map(|p| p.display().to_string()),
         history: run.history.clone().map(|h| (h, rate_hz)),
         recent: shown.recent.clone(),

@@ -12,6 +12,8 @@ use sculptd_mesh_commands::{
 
 pub mod bench;
 pub mod brush;
+mod camera;
+mod camera_errors;
 mod check_presets;
 pub mod config;
 #[cfg(unix)]
@@ -94,6 +96,11 @@ pub enum Command {
     Devices {
         #[command(subcommand)]
         command: devices::DevicesCommand,
+    },
+    /// Bare hands by webcam: install the hand models, test the camera.
+    Camera {
+        #[command(subcommand)]
+        command: camera::CameraCommand,
     },
     /// A picture of a mesh, without a window.
     #[cfg(feature = "viewer")]
@@ -207,6 +214,7 @@ pub fn run() -> u8 {
         Some(Command::Convert(args)) => convert::run(&args, cli.json),
         Some(Command::Subdivide(args)) => subdivide::run(&args, cli.json),
         Some(Command::Decimate(args)) => decimate::run(&args, cli.json),
+        Some(Command::Camera { command }) => camera::run(&command, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Distance(args)) => distance::run(&args, cli.json),
         Some(Command::Project(args)) => project::run(&args, cli.json),

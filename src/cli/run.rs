@@ -11,9 +11,11 @@ use super::library;
 use super::live;
 use super::{Fail, Outcome, answer};
 use crate::settings::LANGUAGES;
+use sculptd_camera::camera_thread::CameraChoice;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::Summary;
 use sculptd_daemon::brush_folder::{self, BrushFolder};
+use sculptd_daemon::camera_hands::{self, CameraFeed, CameraStartError};
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
 use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::{LiveOptions, LiveRun};
@@ -66,6 +68,10 @@ pub struct RunArgs {
     /// May be repeated.
     #[arg(long, value_name = "RECORDING")]
     pub play_device: Vec<PathBuf>,
+    /// Sculpt with bare hands before this camera: its number, a device node, or a recorded file (a
+    /// folder of PNG or JPEG pictures, Motion JPEG, Y4M).
+    #[arg(long, value_name = "INDEX|FILE", num_args = 0..=1, default_missing_value = "0")]
+    pub camera: Option<String>,
     /// Part of the tablet that a played recording maps to the view: the part that it uses, or the
     /// whole area.
     #[arg(long, value_enum, default_value_t)]
@@ -120,6 +126,17 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     if let Some(kind) = args.brush.filter(|k| *k != config.brush.kind) {
         config.brush = config.presets.switched(&config.brush, kind);
     }
+    if let Some(camera) = &args.camera {
+        config.devices.camera.clone_from(camera);
+        let choice = CameraChoice::of_text(camera);
+        // What cannot work is said before anything is opened. A camera that is unplugged may come.
+        let models = camera_hands::load_models().map_err(CameraStartError::from);
+        models.map_err(|e| super::camera_errors::failed(&e))?;
+        if choice.is_recorded() {
+            let opened = choice.open(&Clock::manual()).map_err(CameraStartError::from);
+            opened.map_err(|e| super::camera_errors::failed(&e))?;
+        }
+    }
     if let Some(path) = &args.export {
         sculptd_geometry::io::writable_format(path).map_err(|e| Fail::Usage(e.to_string()))?;
     }
@@ -140,7 +157,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let (is_shared, looks_on) = (args.shared.is_on(), args.shared.looks_on());
     #[cfg(not(feature = "network"))]
     let (is_shared, looks_on) = (false, false);
-    let on_the_wall_clock = window || args.play_device.is_empty() || args.kiosk || is_shared;
+    let recorded = args.camera.as_deref().map(CameraChoice::of_text);
+    let recorded = recorded.filter(CameraChoice::is_recorded);
+    let is_played = !args.play_device.is_empty() || recorded.is_some();
+    let on_the_wall_clock = window || !is_played || args.kiosk || is_shared;
     #[cfg(unix)]
     if args.metrics.is_some() && !on_the_wall_clock {
         let text = "--metrics needs a run on the wall's clock, and a recording that is played \
@@ -174,10 +194,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
     // In a window a session is always on.
-    let own =
-        (window && args.session.is_none() && kiosk.is_none() && players.is_empty() && !looks_on)
-            .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
-            .flatten();
+    let own = (window && args.session.is_none() && kiosk.is_none() && !is_played && !looks_on)
+        .then(|| library::begin(args.mesh.first().map(PathBuf::as_path)))
+        .flatten();
     let session = args.session.as_ref().or(own.as_ref());
     let fresh = !session.is_some_and(|s| s.exists());
     // A large mesh is loaded after the window opens, with visible progress.
@@ -223,6 +242,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             visits: (args.kiosk && session.is_none() && !is_shared).then(library::visits).flatten(),
             kiosk,
             demo_devices: false,
+            drawn_hands: false,
             devices: true,
             players,
             limit_s: args.limit_s,
@@ -282,7 +302,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         return live::run(options, &shown, &config, begun, catalogue, begun_run, then);
     }
     eprintln!("sculptd: recordings run on a simulated clock: no control socket, no devices");
-    let summary = run_stepped(args, &config, begun, players)?;
+    let summary = run_stepped(args, &config, begun, players, recorded.as_ref())?;
     report(&summary, args.stats.as_deref(), json)
 }
 
@@ -319,7 +339,8 @@ fn is_large(mesh: &Path) -> bool {
 /// Returns true if a daemon that has lost its window already shows the requested sculpture.
 #[cfg(unix)]
 fn follows_lost_window(args: &RunArgs) -> bool {
-    let plain = args.mesh.is_empty() && args.play_device.is_empty() && !args.kiosk;
+    let plain =
+        args.mesh.is_empty() && args.play_device.is_empty() && args.camera.is_none() && !args.kiosk;
     let whole = |p: &Path| p.canonicalize().ok();
     let same =
         |session: PathBuf| args.session.as_deref().is_none_or(|s| whole(s) == whole(&session));
@@ -343,6 +364,9 @@ fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
     ];
     for (name, path) in paths {
         all.extend(path.iter().flat_map(|p| [name.into(), p.into()]));
+    }
+    if let Some(camera) = &args.camera {
+        all.push(format!("--camera={camera}").into());
     }
     if let Some(seconds) = args.limit_s {
         all.extend(["--for".into(), seconds.to_string().into()]);
@@ -454,12 +478,18 @@ fn run_stepped(
     config: &Config,
     begun: Begun,
     players: Vec<(Player, Option<Area>)>,
+    recorded: Option<&CameraChoice>,
 ) -> Result<Summary, Fail> {
     let (factory, mut receiver) = queue::channel(config.channel.capacity);
     let mut feeds: Vec<Box<dyn Feed>> = players
         .into_iter()
         .map(|(p, area)| Box::new(RecordingFeed::new(p, factory.sender(), area)) as Box<dyn Feed>)
         .collect();
+    if let Some(choice) = recorded {
+        let settings = config.devices.camera_settings;
+        let feed = CameraFeed::open(choice, settings, factory.sender());
+        feeds.push(Box::new(feed.map_err(|e| super::camera_errors::failed(&e))?));
+    }
     let clock = Clock::manual();
     let mut world = begun.world;
     let (mut writer, thread) = begun.journal.unzip();

@@ -1,6 +1,8 @@
 //! Starts the devices named in the configuration: one thread per device, each with its sender.
 
+use crate::camera_hands;
 use crate::config::DevicesConfig;
+use sculptd_camera::camera_thread::CameraHandle;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::hid;
 use sculptd_devices::hid::{HidConfig, HidHandle};
@@ -9,10 +11,10 @@ use sculptd_devices::tablet::TabletError;
 use sculptd_devices::{Clock, DeviceId, leap, serial};
 
 /// Ids by kind, so that a device keeps its id while others come and go: HID tablets from 0, serial
-/// ports from 100, the tracker 200, the demo's devices from 201, attract films from 230, the
-/// window's own pointer 246, the pen of the control socket's strokes 247, browsers that serve as a
-/// tablet from 248. All are below 256: the upper byte of an id is the number of the person whose
-/// device it is. Played recordings take the ids of tablets.
+/// ports from 100, the tracker 200, the demo's devices from 201, the camera 210, attract films from
+/// 230, the window's own pointer 246, the pen of the control socket's strokes 247, browsers that
+/// serve as a tablet from 248. All are below 256: the upper byte of an id is the number of the
+/// person whose device it is. Played recordings take the ids of tablets.
 pub const SERIAL_IDS: u16 = 100;
 pub const TRACKER_ID: DeviceId = DeviceId(200);
 /// Ids of tablets and serial pens, which a desktop may move its pointer by.
@@ -29,6 +31,7 @@ pub struct Adaptors {
     hid: Option<HidHandle>,
     serial: Vec<(String, serial::SerialHandle)>,
     leap: Option<leap::LeapHandle>,
+    camera: Option<CameraHandle>,
     failed: Vec<DeviceStanding>,
 }
 
@@ -38,6 +41,7 @@ pub enum StandingKind {
     Tablet,
     SerialPen,
     Tracker,
+    Camera,
 }
 
 /// State of one device.
@@ -107,6 +111,12 @@ pub fn start(
             }
         }
     }
+    if !config.camera.is_empty() {
+        match camera_hands::start(config, clock, factory.sender()) {
+            Ok(handle) => all.camera = Some(handle),
+            Err(e) => all.failed.push(failed(StandingKind::Camera, format!("camera: {e}"))),
+        }
+    }
     all
 }
 
@@ -119,6 +129,11 @@ impl Adaptors {
     /// The model of a tablet; `None` where it is not known, or not without waiting.
     pub fn model_of(&self, device: DeviceId) -> Option<String> {
         self.hid.as_ref()?.model_of(device)
+    }
+
+    /// The camera that watches hands, if there is one.
+    pub fn camera(&self) -> Option<&CameraHandle> {
+        self.camera.as_ref()
     }
 
     /// One line a device: what it is, how it stands, what is wrong.
@@ -157,6 +172,16 @@ impl Adaptors {
                 s.last_error.unwrap_or_else(|| "looking for it".into())
             };
             put(StandingKind::Tracker, s.connected, format!("hand tracking: {state}"));
+        }
+        if let Some(handle) = &self.camera {
+            let s = handle.status();
+            let state = match (s.connected, &s.last_error) {
+                (true, _) => format!("{:.0} pictures a second. {}", s.rate, s.advice()),
+                (false, Some(why)) => why.clone(),
+                (false, None) if s.ended => "the recording has ended".into(),
+                (false, None) => "looking for it".into(),
+            };
+            put(StandingKind::Camera, s.connected, format!("camera: {state}"));
         }
         all
     }

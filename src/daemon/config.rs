@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::toml_text::to_toml;
+use sculptd_camera::hand_camera::HandCameraSettings;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_devices::calibration::Calibrations;
 use sculptd_devices::pad_actions::ActionTable;
@@ -122,6 +123,9 @@ pub struct DevicesConfig {
     pub hid: bool,
     pub serial: Vec<PathBuf>,
     pub leap: String,
+    /// The camera that watches hands: empty for none, a number, a device node, or a file.
+    pub camera: String,
+    pub camera_settings: HandCameraSettings,
     pub tablets: Vec<PathBuf>,
     pub models: BTreeMap<String, String>,
     pub ignore: Vec<String>,
@@ -136,6 +140,8 @@ impl Default for DevicesConfig {
             hid: true,
             serial: vec![],
             leap: String::new(),
+            camera: String::new(),
+            camera_settings: HandCameraSettings::default(),
             tablets: vec![],
             models: BTreeMap::new(),
             ignore: vec![],
@@ -315,6 +321,10 @@ impl Config {
         within("camera.aspect", self.camera.aspect, 0.1, 10.0)?;
         within("camera.yaw_degrees", self.camera.yaw_degrees, -360.0, 360.0)?;
         within("camera.pitch_degrees", self.camera.pitch_degrees, -89.0, 89.0)?;
+        let camera = &self.devices.camera_settings;
+        within("devices.camera_settings.fov_degrees", camera.fov_degrees, 20.0, 150.0)?;
+        within("devices.camera_settings.hand_scale", camera.hand_scale, 0.4, 2.0)?;
+        within("devices.camera_settings.depth_offset_mm", camera.depth_offset_mm, -300.0, 300.0)?;
         for (name, calibration) in &self.devices.calibration {
             calibration.check().map_err(|e| format!("devices.calibration.\"{name}\".{e}"))?;
         }

@@ -3,6 +3,7 @@
 //! Every check reports the subject, the finding and, if something is wrong, the exact repair. A
 //! check makes no lasting change.
 
+mod camera;
 #[cfg(target_os = "linux")]
 mod kernel_drivers;
 #[cfg(target_os = "linux")]
@@ -95,6 +96,7 @@ pub fn all(config: &Config, places: &Places) -> Vec<Check> {
     }
     checks.extend(config.devices.serial.iter().map(|p| serial(p)));
     checks.push(tracker(&config.devices.leap));
+    checks.push(camera::check(&config.devices));
     #[cfg(unix)]
     checks.push(socket(&places.socket));
     checks.push(folder(&places.state));

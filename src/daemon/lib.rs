@@ -10,6 +10,7 @@ pub mod adaptors;
 pub mod boolean_jobs;
 pub mod brush_folder;
 mod brush_pictures;
+pub mod camera_hands;
 pub mod carry_over;
 pub mod command_queue;
 pub mod config;

@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use crate::adaptors::{self, Adaptors};
 use crate::brush_folder::BrushFolder;
+use crate::camera_hands::{self, CameraStartError};
 use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::settings::LanguageTexts;
@@ -31,6 +32,7 @@ use crate::tablet_models::ModelTables;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
 use crate::window_link::{WindowLink, WindowStanding};
+use sculptd_camera::camera_thread::{CameraChoice, CameraHandle};
 use sculptd_clay::brush::{BrushSettings, Presets};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{self, SenderFactory};
@@ -54,6 +56,8 @@ pub struct LiveOptions {
     pub visits: Option<PathBuf>,
     /// True if simulated devices perform the demo.
     pub demo_devices: bool,
+    /// True if drawn hands perform the camera's demo.
+    pub drawn_hands: bool,
     /// True to listen to real devices.
     pub devices: bool,
     /// Recordings that are played at their own speed, and the part of the tablet that each uses.
@@ -91,6 +95,8 @@ pub enum LiveRunError {
     Control(#[from] crate::control::server::ServeError),
     #[error(transparent)]
     DemoDevices(#[from] DemoError),
+    #[error(transparent)]
+    Camera(#[from] CameraStartError),
     #[error("{0}")]
     Kiosk(String),
 }
@@ -119,6 +125,8 @@ pub struct LiveRun {
     /// Notices about how the run began, one sentence each.
     pub notices: Vec<String>,
     demo: Option<Playing>,
+    /// The camera of the demo's drawn hands.
+    drawn: Option<CameraHandle>,
     writing: Option<WriterThread>,
     /// The keeper of an installation, which puts the last visitor's work away at the end.
     keeper: Option<JoinHandle<()>>,
@@ -193,6 +201,11 @@ impl LiveRun {
             }
             _ => (begun, None),
         };
+        let drawn = options.drawn_hands.then(|| {
+            let settings = config.devices.camera_settings;
+            camera_hands::start_choice(CameraChoice::Drawn, settings, &clock, factory.sender())
+        });
+        let drawn = drawn.transpose()?;
         let (writer, writing) = begun.journal.unzip();
         let (mut health, mut history) = (None, None);
         if let Some(thread) = &writing {
@@ -297,6 +310,7 @@ impl LiveRun {
             window,
             notices,
             demo,
+            drawn,
             writing,
             keeper,
             recording,
@@ -347,7 +361,7 @@ impl LiveRun {
     /// # Errors
     /// Returns an error if the tick thread panicked.
     pub fn finish(self) -> Result<FinishedRun, LiveError> {
-        drop((self.demo, self.adaptors));
+        drop((self.demo, self.drawn, self.adaptors));
         if let Some(keeper) = self.keeper {
             self.stop.store(true, Relaxed);
             let _ = keeper.join();

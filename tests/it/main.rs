@@ -5,6 +5,7 @@ mod allocations;
 mod bad_input;
 mod boolean;
 mod brushes;
+mod camera;
 mod check;
 mod clay;
 #[cfg(unix)]

@@ -19,8 +19,10 @@ fn the_map_names_every_crate() {
     let listed: BTreeSet<String> = CRATES
         .iter()
         .filter(|(name, _)| *name != "sculptd")
-        .map(|(_, dir)| dir.trim_end_matches("devices/src").to_string())
-        .map(|dir| if dir.is_empty() { "devices".into() } else { dir })
+        .map(|(_, dir)| match dir.strip_suffix("/src") {
+            Some(devices) if devices.starts_with("devices") => devices.to_string(),
+            _ => (*dir).to_string(),
+        })
         .collect();
     let libraries: BTreeSet<String> =
         members.iter().filter(|m| !m.starts_with("src/bindings")).cloned().collect();
@@ -33,7 +35,7 @@ fn the_map_names_every_crate() {
 #[test]
 fn the_map_names_every_thread() {
     let mut made = BTreeSet::new();
-    for dir in ["src", "devices/src"] {
+    for dir in ["src", "devices/src", "devices/camera/src"] {
         for (_, text) in sources(dir) {
             let code = text.find("#[cfg(test)]\nmod ").map_or(text.as_str(), |at| &text[..at]);
             for piece in code.split("\"sculptd-").skip(1) {

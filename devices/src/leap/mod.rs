@@ -22,6 +22,3 @@ pub use client::{LeapConfig, LeapHandle, LeapStatus, start};
 pub use clock_map::ClockMap;
 pub use file::FrameFile;
 pub use frame::{Frame, FrameError, Message, parse_frame, parse_message};
-
-#[cfg(test)]
-mod bridge_tests;

@@ -217,7 +217,7 @@ fn device_line(device: &DeviceStanding) -> DeviceLine {
     let kind = match device.kind {
         StandingKind::Tablet => DeviceKind::Tablet,
         StandingKind::SerialPen => DeviceKind::SerialPen,
-        StandingKind::Tracker => DeviceKind::Tracker,
+        StandingKind::Tracker | StandingKind::Camera => DeviceKind::Tracker,
     };
     let text = shortened(&device.text, MAX_LINE).to_owned();
     DeviceLine { kind, text, connected: device.connected }

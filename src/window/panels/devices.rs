@@ -1,7 +1,7 @@
 //! The connected devices and their current input.
 
 use super::state::{UiRequest, UiState, View};
-use super::{tablet_keys, theme};
+use super::{camera_preview, tablet_keys, theme};
 use crate::language::tr;
 use sculptd_daemon::adaptors::POINTER_ID;
 use sculptd_engine::hand::Pose;
@@ -15,6 +15,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     }
     for line in view.devices {
         ui.label(line);
+    }
+    if let Some(preview) = view.camera_preview {
+        camera_preview::ui(ui, preview);
     }
     ui.add_space(8.0);
     ui.strong(tr!("devices-in-range"));

@@ -9,6 +9,7 @@ pub mod analysis;
 pub mod brush;
 mod brush_palette;
 mod brush_size;
+mod camera_preview;
 pub mod chooser;
 mod colours;
 pub mod cube;

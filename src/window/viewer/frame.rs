@@ -127,6 +127,7 @@ impl WindowState {
             camera: self.camera,
             views: &self.views,
             devices: &self.devices,
+            camera_preview: self.camera_preview.as_ref(),
             tablet: wiring
                 .kiosk
                 .is_none()

@@ -1,12 +1,15 @@
 //! Polling of the window between frames, at a separate pace: the published state, background tasks,
 //! the session's history, the devices. A frame follows only after a change.
 
+use std::sync::Arc;
+
 use super::state::WindowState;
 use super::tasks::TaskReport;
 use super::wiring::Wiring;
 use crate::language::tr;
 use crate::look::Map;
 use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
+use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::HeldObject;
 
@@ -16,9 +19,8 @@ const SECOND_US: u64 = 1_000_000;
 /// Returns true if two states look the same: everything that the window shows of them, except the
 /// figures of the Loop page.
 fn looks_the_same(a: &Published, b: &Published) -> bool {
-    let held = |t: &Option<HeldObject>| {
-        t.as_ref().map(|t| (std::sync::Arc::as_ptr(&t.plain) as usize, t.place))
-    };
+    let held =
+        |t: &Option<HeldObject>| t.as_ref().map(|t| (Arc::as_ptr(&t.plain) as usize, t.place));
     a.mesh.revision() == b.mesh.revision()
         && a.camera == b.camera
         && a.brush == b.brush
@@ -74,6 +76,7 @@ impl WindowState {
                 changed = true;
             }
         }
+        changed |= self.follow_hand_camera(wiring);
         match &wiring.kiosk {
             Some(screen) => {
                 let view = screen.desk.view.lock().ok().and_then(|v| *v);
@@ -85,6 +88,16 @@ impl WindowState {
         if changed {
             self.pacing.want();
         }
+    }
+
+    /// Takes the camera's newest picture while the page that shows it is open.
+    fn follow_hand_camera(&mut self, wiring: &Wiring) -> bool {
+        let open = self.ui_state.tab == Tab::Devices && !self.ui_state.hidden;
+        let newest = open.then(|| (wiring.camera)()).flatten();
+        let address = |p: &Option<Arc<CameraPreview>>| p.as_ref().map(Arc::as_ptr);
+        let changed = address(&newest) != address(&self.camera_preview);
+        self.camera_preview = newest;
+        changed
     }
 
     /// Says whose step is in the way of an undo that was refused since the last look.

@@ -32,6 +32,7 @@ use crate::language::{set_current, tr};
 use crate::look::{MATERIALS, Material};
 use crate::panels::hand_menu::MenuBall;
 use crate::panels::state::{FrameFigures, KeyMap, UiState, Views};
+use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::View as KioskView;
@@ -93,6 +94,8 @@ pub(super) struct WindowState {
     /// The revision and limit that a thickness map was last asked for.
     pub(super) asked_map: Option<(ClayState, f32, ObjectTransform)>,
     pub(super) devices: Vec<String>,
+    /// What the camera that watches hands saw last, while its page is open.
+    pub(super) camera_preview: Option<Arc<CameraPreview>>,
     /// The lists of own brushes and pictures as they were shown, by their addresses.
     pub(super) shown_brushes: [usize; 2],
     /// Time of the last list of devices.
@@ -269,6 +272,7 @@ impl WindowState {
             values: None,
             asked_map: None,
             devices: Vec::new(),
+            camera_preview: None,
             shown_brushes: [0; 2],
             listed_us: 0,
             uploaded: 0,

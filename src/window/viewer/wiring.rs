@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use crate::language::Translations;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
+use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::{CommandAnswer, CommandSender};
@@ -44,6 +45,8 @@ pub struct Wiring {
     pub stop: Arc<AtomicBool>,
     /// One line a device; asked for once a second.
     pub devices: Box<dyn Fn() -> Vec<String>>,
+    /// The newest picture of the camera that watches hands; asked for while its page is open.
+    pub camera: Box<dyn Fn() -> Option<Arc<CameraPreview>>>,
     pub session: Option<String>,
     /// The session's history, and the ticks a second that its versions are counted in.
     pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,

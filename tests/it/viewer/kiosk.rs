@@ -38,6 +38,7 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             camera: s.published.camera,
             views: &s.views,
             devices: &s.devices,
+            camera_preview: None,
             tablet: None,
             session: None,
             recent: &[],

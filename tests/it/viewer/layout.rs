@@ -275,6 +275,7 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 camera: s.published.camera,
                 views: &s.views,
                 devices: &[],
+                camera_preview: None,
                 tablet: None,
                 session: None,
                 recent: &[],

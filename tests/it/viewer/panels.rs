@@ -66,6 +66,7 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         camera: s.published.camera,
         views: &s.views,
         devices: &s.devices,
+        camera_preview: None,
         tablet: s.tablet.clone(),
         session: None,
         recent: &[],

@@ -1,12 +1,14 @@
 //! What the panels see: plain data, gathered once a frame.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::action::Action;
 use super::key_map::KeyMap;
 use super::tablet_keys::TabletKeys;
 use super::views::Views;
 use crate::language::{Translations, tr};
+use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentLatency;
 use sculptd_engine::camera::Camera;
@@ -27,6 +29,8 @@ pub struct View<'a> {
     pub views: &'a Views,
     /// One line a device, as the adaptors describe themselves.
     pub devices: &'a [String],
+    /// What the camera that watches hands saw last.
+    pub camera_preview: Option<&'a Arc<CameraPreview>>,
     /// The controls of tablets; `None` in an installation.
     pub tablet: Option<TabletKeys>,
     /// The session's file and whether it is well.
