@@ -78,7 +78,7 @@ impl BrowserPen {
         }
         // The newest was on its way for the shortest time.
         if let Some(newest) = records.iter().filter_map(|r| page_time(time_of(r))).max() {
-            self.clock.hear(newest, read_us);
+            self.clock.learn(newest, read_us);
         }
         Ok(records.iter().map(|r| self.sample(r, aspect, read_us)).collect())
     }
@@ -99,7 +99,7 @@ impl BrowserPen {
     /// Returns the time of an event of the page on the clock of the samples.
     pub fn time(&mut self, page_us: f64, read_us: u64) -> u64 {
         if let Some(page_us) = page_time(page_us) {
-            self.clock.hear(page_us, read_us);
+            self.clock.learn(page_us, read_us);
         }
         self.clock.map(page_time(page_us), read_us)
     }
@@ -162,7 +162,7 @@ struct PageClock {
 }
 
 impl PageClock {
-    fn hear(&mut self, page_us: u64, read_us: u64) {
+    fn learn(&mut self, page_us: u64, read_us: u64) {
         let page = page_us as i64;
         let apart = read_us as i64 - page;
         let offset = match self.seen {
