@@ -79,9 +79,9 @@ try {
   // A revoked link disconnects its guest.
   const key = guests.links.find((l) => l.role === "viewer").key;
   assert.equal(daemon.ctl("guests.revoke", { key }).guests, 1);
-  await until("the viewer is told", () => watching.run("document.body.classList.contains('ended')"));
+  await until("the viewer is told", () => watching.run("document.body?.classList.contains('ended')"));
   const again = await chromium.open(viewer);
-  await until("its link is refused", () => again.run("document.body.classList.contains('ended')"));
+  await until("its link is refused", () => again.run("document.body?.classList.contains('ended')"));
   keep("revoked.png", await again.picture());
 
   await daemon.stop();
