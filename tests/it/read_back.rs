@@ -68,6 +68,8 @@ fn params(method: &str, r: &mut Random, host: &Host, dir: &Path) -> Value {
     let node = || call(host, "history", Value::Null).map(|h| h["places"].clone());
     let turn = [0.0, 0.0, 0.0, 1.0];
     match method {
+        "guests.invite" => json!({ "role": "viewer" }),
+        "guests.revoke" => json!({ "key": 1 }),
         "brush" => {
             json!({ "radius": 0.05 + 0.3 * r.part(), "kind": r.of(&["draw", "clay", "smooth"]) })
         }

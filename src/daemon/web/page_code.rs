@@ -230,7 +230,7 @@ mod tests {
     fn pages_have_a_common_vertex_at_one_place() {
         let mut clay = Clay::build(&shapes::icosphere(1.0, 64), &Job::default()).expect("clay");
         let snapshot = clay.snapshot();
-        let mut places = std::collections::HashMap::new();
+        let mut places = std::collections::BTreeMap::new();
         for page in snapshot.pages() {
             let mut bytes = Vec::new();
             whole(page, NAMES, &mut bytes);
