@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::shared::{JoinRole, data_folder};
 use super::{Fail, Outcome, answer};
-use sculptd_daemon::kiosk::share::Code;
+use sculptd_daemon::qr_code::Code;
 use sculptd_geometry::picture::Picture;
 use sculptd_network::join_link::{JoinLink, is_endpoint, sculpture_name};
 use sculptd_network::keyring::{Invitation, Keyring, fresh};
