@@ -79,7 +79,7 @@ pub enum Command {
     /// The main job with no hardware: simulated devices, through the real parsers, sculpt a form.
     Demo(demo::DemoArgs),
     /// Sculpt: the daemon, with a window where there is a display.
-    Run(run::RunArgs),
+    Run(Box<run::RunArgs>),
     /// Run a session's input once more and print the clay's hash.
     Replay(replay::ReplayArgs),
     /// The facts of mesh files: counts, topology, size, whether they cross themselves.
