@@ -68,11 +68,16 @@ fn told(socket: &mut Socket, is: &str) -> Option<Value> {
 }
 
 fn join(link: &str) -> Socket {
+    join_with(link, &Value::Null).0
+}
+
+/// Joins with the ticket of a connection that was cut, or with `null`. Returns the welcome too.
+fn join_with(link: &str, ticket: &Value) -> (Socket, Value) {
     let mut socket = dial(link, None).expect("a connection");
-    let hello = json!({ "key": key(link), "name": "Ada" }).to_string();
+    let hello = json!({ "key": key(link), "name": "Ada", "ticket": ticket }).to_string();
     socket.send(Message::text(hello)).expect("sent");
-    told(&mut socket, "welcome").expect("welcome");
-    socket
+    let welcome = told(&mut socket, "welcome").expect("welcome");
+    (socket, welcome)
 }
 
 /// One record of a pen in the middle of the view.
@@ -147,6 +152,28 @@ fn a_guest_sculpts_in_an_own_view_and_a_viewer_does_not() {
     let sculpted = hash(&served.daemon);
     served.daemon.ctl("undo", None);
     assert_eq!(hash(&served.daemon), sculpted);
+}
+
+#[test]
+fn a_guest_who_comes_back_has_the_own_brush() {
+    let served = served();
+    let link = &served.links[0];
+    let (mut guest, welcome) = join_with(link, &Value::Null);
+    let clay = json!({ "do": "brush", "at": 0, "kind": "clay", "strength": 0.9 }).to_string();
+    guest.send(Message::text(clay)).expect("sent");
+    assert!(told(&mut guest, "brush").is_some());
+    drop(guest);
+    until("the guest is gone", || {
+        let list = served.daemon.ctl("guests.list", None).expect("an answer");
+        list["guests"] == json!([])
+    });
+    let (mut guest, back) = join_with(link, &welcome["ticket"]);
+    assert_eq!((&back["resumed"], &back["person"]), (&json!(true), &welcome["person"]));
+    let radius = json!({ "do": "brush", "at": 0, "radius": 0.2 }).to_string();
+    guest.send(Message::text(radius)).expect("sent");
+    let brush = told(&mut guest, "brush").expect("a brush")["brush"].clone();
+    assert_eq!(brush["kind"], json!("clay"));
+    assert!(brush["strength"].as_f64().is_some_and(|s| (s - 0.9).abs() < 1e-6), "{brush}");
 }
 
 #[test]

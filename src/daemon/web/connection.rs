@@ -163,6 +163,9 @@ impl<'a> ConnectedPage<'a> {
         let is_resumed = resumed.is_some();
         let mut delivery = resumed.unwrap_or_default();
         delivery.resume(received);
+        // A guest who comes back has the own view and brush, as the world has them.
+        let settings = delivery.settings.take();
+        let (camera, brush) = settings.unwrap_or((shown.camera, shown.brush));
         let pen = guest.pen.map(|device| {
             let mut sender = state.factory.sender();
             sender.stop_when(state.stop.clone());
@@ -176,8 +179,8 @@ impl<'a> ConnectedPage<'a> {
             delivery,
             resumed: is_resumed,
             pen,
-            camera: shown.camera,
-            brush: shown.brush,
+            camera,
+            brush,
             asked: VecDeque::new(),
             told: LastTold::default(),
             last_batch: 0,
@@ -506,6 +509,7 @@ impl<'a> ConnectedPage<'a> {
             sender.flush();
         }
         let comes_back = self.state.keys.is_valid(self.guest.key, now) && !RESUMES.is_zero();
+        self.delivery.settings = Some((self.camera, self.brush));
         let delivery = comes_back.then(|| std::mem::take(&mut self.delivery));
         self.state.guests.leave(self.connection, delivery, now);
     }

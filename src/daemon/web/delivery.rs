@@ -9,6 +9,7 @@ use glam::{Mat4, Vec3};
 use super::page_code::{self, Names, SentPage};
 use crate::Published;
 use sculptd_clay::Snapshot;
+use sculptd_clay::brush::BrushSettings;
 use sculptd_clay::page::Page;
 use sculptd_engine::camera::Camera;
 use sculptd_engine::scene::ObjectId;
@@ -26,6 +27,8 @@ pub struct Delivery {
     last_message: u32,
     /// Bytes of pages that were sent.
     pub sent_bytes: u64,
+    /// View and brush of a guest who was cut off.
+    pub settings: Option<(Camera, BrushSettings)>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -284,7 +287,6 @@ impl ObjectPages {
 mod tests {
     use super::*;
     use crate::published::PublishedFigures;
-    use sculptd_clay::brush::BrushSettings;
     use sculptd_clay::{Clay, Workers};
     use sculptd_engine::world::{World, WorldOptions};
     use sculptd_geometry::job::Job;
