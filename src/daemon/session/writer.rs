@@ -16,6 +16,7 @@ use rusqlite::Connection;
 
 use super::GROUP_MS;
 use super::acknowledgement::{Acknowledgement, AcknowledgementPage, ENDED};
+use super::connection::commit_without_waiting;
 use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
 use super::health::Health;
@@ -220,9 +221,9 @@ fn start_thread(
     let syncer =
         Syncer::start(session_path.clone(), health.written.clone(), taken_over, page, first)
             .map_err(io)?;
-    // From here on the syncer does it, and no commit waits for a disk.
+    // From here on the syncer does it.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
-    db.pragma_update(None, "synchronous", "off").map_err(store)?;
+    commit_without_waiting(&db).map_err(store)?;
     // Two threads: the first only copies, and never waits for a disk.
     let (onward, groups) = cc::unbounded();
     std::thread::Builder::new()

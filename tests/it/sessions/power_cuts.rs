@@ -17,6 +17,8 @@ impl Disk {
 }
 
 pub(super) const SECTOR: usize = 512;
+/// Length of a write-ahead log's header.
+const LOG_HEADER: usize = 32;
 
 /// Pages of the database that differ; two are the acknowledgement's.
 fn changed(a: &[u8], b: &[u8]) -> usize {
@@ -31,20 +33,40 @@ fn acknowledged_at(db: &[u8]) -> Vec<std::ops::Range<usize>> {
     marks.map(|(at, _)| at..at + MAGIC.len() + 2 * SLOT).collect()
 }
 
+/// Returns the database with all of its log.
+fn taken_over(disk: &Disk, folder: &Path) -> Vec<u8> {
+    let path = folder.join("whole.sculpt");
+    put(&path, &disk.db);
+    put(&wal(&path), &disk.wal);
+    let db = rusqlite::Connection::open(&path).expect("opens");
+    let all = "PRAGMA wal_checkpoint(TRUNCATE)";
+    db.query_row(all, [], |_| Ok(())).expect("taken over");
+    drop(db);
+    std::fs::read(&path).expect("read")
+}
+
 /// Returns a possible content of the disk after a power cut between the states `a` (completely
 /// synced) and `b` (its last writes not).
-fn cut(a: &Disk, b: &Disk, rng: &mut Rng) -> Disk {
-    let restarted = a.wal.len() < 32 || b.wal.len() < a.wal.len() || a.wal[..32] != b.wal[..32];
+fn cut(a: &Disk, b: &Disk, folder: &Path, rng: &mut Rng) -> Disk {
+    let restarted = a.wal.len() < LOG_HEADER
+        || b.wal.len() < a.wal.len()
+        || a.wal[..LOG_HEADER] != b.wal[..LOG_HEADER];
     // A log is begun again only after the database holds all of it: then the database is `b`'s.
     let mut out = if restarted { b.clone() } else { Disk { db: a.db.clone(), wal: b.wal.clone() } };
+    // Unless its database holds more than the log of `a`: what a database took over was synced.
+    if restarted && a.wal.len() >= LOG_HEADER && changed(&taken_over(a, folder), &b.db) > 2 {
+        return out;
+    }
     // The acknowledgement of `b` is written after `b` is synced, so it is never there.
     for at in acknowledged_at(&out.db) {
         out.db[at.clone()].copy_from_slice(&a.db[at]);
     }
     let old = a.wal.clone();
-    // Bytes before this one were written and synced long ago; no write touches them again.
-    let keep =
+    // Bytes before this one were written and synced long ago; no write touches them again. The
+    // header of a log that is begun again is synced before anything follows it.
+    let same =
         old.iter().zip(&out.wal).position(|(x, y)| x != y).unwrap_or(old.len().min(out.wal.len()));
+    let keep = if restarted { same.max(LOG_HEADER.min(out.wal.len())) } else { same };
     let differs: Vec<usize> = (0..out.wal.len())
         .step_by(SECTOR)
         .filter(|&s| {
@@ -96,14 +118,25 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
     // Memory is gone with the power.
     session::catalog::logs_of(&script.path).iter().for_each(session::shared_memory_log::remove);
     script.group(5);
+    let database = rusqlite::Connection::open(&script.path).expect("opens");
     let (mut lost, mut checkpoints) = (0, 0);
     for n in 0..cuts {
+        let ticks = 1 + rng.below(90);
+        // As the syncer does after a while: the next group then begins the log again.
+        let mut perhaps_take_over = |one_in| {
+            if rng.below(one_in) == 0 {
+                let passive = "PRAGMA wal_checkpoint(PASSIVE)";
+                database.query_row(passive, [], |_| Ok(())).expect("taken over");
+            }
+        };
+        perhaps_take_over(3);
         let (synced, a) = (script.written(), Disk::of(&script.path));
-        script.group(1 + rng.below(90));
+        script.group(ticks);
+        perhaps_take_over(5);
         let (newest, b) = (script.written(), Disk::of(&script.path));
         let checkpoint = changed(&a.db, &b.db) > 2;
         checkpoints += u64::from(checkpoint);
-        let at = cut(&a, &b, &mut rng);
+        let at = cut(&a, &b, dir.path(), &mut rng);
         let path = dir.path().join("after.sculpt");
         put(&path, &at.db);
         put(&wal(&path), &at.wal);
@@ -129,6 +162,7 @@ fn power_cuts(seed: u64, cuts: u64) -> (u64, u64) {
         assert_eq!(thread.finish(), None);
         lost += u64::from(last < newest);
     }
+    drop(database);
     script.end();
     (lost, checkpoints)
 }

@@ -167,7 +167,7 @@ impl Store {
         let db = Connection::open(path)?;
         db.busy_timeout(std::time::Duration::from_secs(2))?;
         db.pragma_update(None, "wal_autocheckpoint", 0)?;
-        db.pragma_update(None, "synchronous", "off")?;
+        connection::commit_without_waiting(&db)?;
         db.execute_batch(TABLES)?;
         Ok(Store { db, layout: "layout" })
     }
