@@ -490,6 +490,24 @@ impl World {
     /// Advances the stroke of every pen in turn, then the hands, until `budget` vertices were
     /// visited. Returns what is left of it.
     fn advance_strokes(&mut self, budget: u64) -> u64 {
+        let (mut left, mut from) = (budget, 0);
+        while let Some(pen) = self.advance_pens(from, &mut left) {
+            self.close_between_strokes(pen);
+            from = pen;
+        }
+        self.author(None);
+        while left > 0 {
+            let Some(act) = self.hands.next_act() else { return left };
+            left = self.by_hand(&act, left);
+        }
+        self.report.paused |= self.hands.has_waiting();
+        left
+    }
+
+    /// Advances the strokes of the pens in turn, beginning with this one. Stops at a pen whose
+    /// stroke has ended and whose next one waits, and returns its index: a slow line delivers
+    /// several strokes at once, and each is a step.
+    fn advance_pens(&mut self, from: usize, left: &mut u64) -> Option<usize> {
         let shared = self.has_people();
         let object = self.scene.active_mut();
         let transform = object.settings.transform;
@@ -504,10 +522,11 @@ impl World {
             stroke: Stroke::default(),
             brush: self.brush,
             report: &mut self.report,
-            left: budget,
+            left: *left,
             topology: &mut self.topology,
         };
-        for seat in &mut self.pens {
+        let mut between = None;
+        for (index, seat) in self.pens.iter_mut().enumerate().skip(from) {
             if seat.track.begins() {
                 self.strokes = self.strokes.wrapping_add(1);
                 seat.stroke.begin(self.strokes);
@@ -530,12 +549,12 @@ impl World {
                     break;
                 }
                 if walked.ended && seat.track.begins() {
-                    self.strokes = self.strokes.wrapping_add(1);
-                    clay.stroke.begin(self.strokes);
+                    between = Some(index);
+                    break;
                 }
                 clay.brush = *seat.track.brush(now);
             }
-            let goes_on = goes_on_by_time(&clay.brush);
+            let goes_on = between.is_none() && goes_on_by_time(&clay.brush);
             let every = clay.brush.path.every_ticks as u32;
             if goes_on && seat.track.is_open() {
                 clay.report.resting = true;
@@ -544,15 +563,12 @@ impl World {
                 }
             }
             seat.stroke = clay.stroke;
+            if between.is_some() {
+                break;
+            }
         }
-        let mut left = clay.left;
-        self.author(None);
-        while left > 0 {
-            let Some(act) = self.hands.next_act() else { return left };
-            left = self.by_hand(&act, left);
-        }
-        self.report.paused |= self.hands.has_waiting();
-        left
+        *left = clay.left;
+        between
     }
 }
 

@@ -1,7 +1,7 @@
 //! Undo and redo in a world of several people: which strokes they end, and what they report.
 
 use super::people::UndoRefusal;
-use super::{HistoryEvent, World};
+use super::{HistoryEvent, PenSlot, World};
 use crate::scene::OwnStep;
 
 impl World {
@@ -61,6 +61,31 @@ impl World {
             && alone
             && timeline.end_steps_of(|p| !goes_on(p), scene, options.undo_bytes, garbage)
         {
+            self.note(HistoryEvent::Step);
+        }
+    }
+
+    /// A stroke of this pen has ended and the next waits: what the pen's person has done is a step,
+    /// unless others of the person go on, or cannot be told apart from it.
+    pub(super) fn close_between_strokes(&mut self, pen: usize) {
+        let hands = self.hands.is_touching() || self.in_hand.is_held();
+        if hands || self.surface.is_under_way() || self.layers.is_edit() {
+            return;
+        }
+        self.author(None);
+        if !self.pens.iter().any(|s| s.track.is_open()) {
+            self.topology.finish(&mut self.scene.active_mut().clay, &self.workers);
+            self.close();
+            return;
+        }
+        let person = self.people.of_device(self.pens[pen].device);
+        let own = |s: &PenSlot| self.people.of_device(s.device) == person;
+        if self.people.is_nobody() || self.pens.iter().any(|s| s.track.is_open() && own(s)) {
+            return;
+        }
+        let alone = self.surface_alone() && self.scene.active().clay.is_in_step();
+        let World { timeline, scene, garbage, options, .. } = self;
+        if alone && timeline.end_steps_of(|p| p == person, scene, options.undo_bytes, garbage) {
             self.note(HistoryEvent::Step);
         }
     }

@@ -9,7 +9,7 @@ use crate::camera::Camera;
 use crate::command::Command;
 use crate::hand::HandSettings;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Method};
-use sculptd_clay::{Clay, Workers};
+use sculptd_clay::{Clay, LayerEdit, Workers};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::recording::Player;
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
@@ -206,5 +206,41 @@ fn no_tap_of_a_real_pen_is_lost() {
                 assert!(mark.dabs >= 1 && mark.moved > 0.25 * firm, "{what}");
             }
         }
+    }
+}
+
+/// A line that hung delivers strokes all at once: each is a step of its own, whatever the budget.
+#[test]
+fn strokes_that_come_in_one_tick_are_steps_of_their_own() {
+    let brush = BrushSettings { radius: 0.05, ..BrushSettings::new(BrushKind::Draw) };
+    for (layers, budget) in [(false, 1 << 20), (false, 1), (true, 1 << 20)] {
+        let mut world = world(brush);
+        world.options.dab_budget = budget;
+        if layers {
+            super::layer_tests::edit(&mut world, LayerEdit::Add("one".into())).expect("a layer");
+        }
+        let start = world.hash();
+        let strokes = [0.3, 0.5, 0.7].map(|x| tap(Vec2::new(x, 0.5), 0.03, 6));
+        let all: Vec<Sample> = (0..)
+            .zip(strokes.iter().flatten())
+            .map(|(i, pen)| Sample {
+                device: DeviceId(1),
+                t_us: 20_000 + i * 100,
+                device_t_us: None,
+                body: Body::Pen(*pen),
+            })
+            .collect();
+        world.step(3, &all, &[]);
+        for tick in 4..400 {
+            world.step(tick, &[], &[]);
+        }
+        let mut hashes = vec![world.hash()];
+        for tick in 400..403 {
+            world.step(tick, &[], &[Command::Undo]);
+            hashes.push(world.hash());
+        }
+        assert_eq!(hashes[3], start, "{layers} {budget}");
+        let different = |i: usize| hashes[..i].iter().all(|h| *h != hashes[i]);
+        assert!((1..4).all(different), "{layers} {budget}: {hashes:?}");
     }
 }
