@@ -174,12 +174,6 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         return Err(Fail::Usage(text.into()));
     }
     #[cfg(unix)]
-    if args.web.web.is_some() && (is_shared || !on_the_wall_clock) {
-        let text = "--web cannot be used with a sculpture shared over the network, nor with \
-                    recordings that are played headless: leave out --web, or the others";
-        return Err(Fail::Usage(text.into()));
-    }
-    #[cfg(unix)]
     let telemetry = args.telemetry.as_deref().map(super::telemetry::options).transpose()?;
     let mut catalogue = Catalogue::builtin().map_err(|e| Fail::Config(e.to_string()))?;
     for dir in &config.devices.tablets {
@@ -190,6 +184,15 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let kiosk = kiosk(args)?;
     #[cfg(feature = "network")]
     let (kiosk, fleet) = kiosk(args)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
+    #[cfg(unix)]
+    let web = args.web.options(kiosk.as_ref()).map_err(Fail::Config)?;
+    #[cfg(unix)]
+    if web.is_some() && (is_shared || !on_the_wall_clock) {
+        let text = "a page for browsers cannot be had with a sculpture shared over the network, \
+                    nor with recordings that are played headless: leave out --web (or web in the \
+                    installation's settings), or the others";
+        return Err(Fail::Usage(text.into()));
+    }
     if let Some(kiosk) = &kiosk {
         config.undo.bytes = config.undo.bytes.min(kiosk.undo_bytes);
     }
@@ -253,7 +256,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             #[cfg(unix)]
             telemetry,
             #[cfg(unix)]
-            web: args.web.options(args.kiosk),
+            web,
             window: WindowLink::new(session.map(PathBuf::as_path)),
             shared,
         };

@@ -2,6 +2,7 @@
 
 use std::net::SocketAddr;
 
+use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::web::{PageFile, WebOptions};
 
 /// Port that is served if none is named.
@@ -45,10 +46,16 @@ pub struct WebArgs {
 }
 
 impl WebArgs {
-    /// Returns the options of the page, if it is wanted. `kiosk`: of an installation.
-    pub fn options(&self, kiosk: bool) -> Option<WebOptions> {
-        let at = self.web?;
-        let name = self.web_name.clone();
-        Some(WebOptions { at, name, files: FILES, lasts: None, own_views: !kiosk })
+    /// Returns the options of the page, if it is wanted: by these arguments, or by the settings of
+    /// an installation.
+    pub fn options(&self, kiosk: Option<&KioskConfig>) -> Result<Option<WebOptions>, String> {
+        let settings = kiosk.map_or(Ok(None), KioskConfig::web_address)?;
+        let Some(at) = self.web.or(settings) else { return Ok(None) };
+        let name = match (self.web, kiosk) {
+            (None, Some(kiosk)) => kiosk.web_name.clone(),
+            _ => self.web_name.clone(),
+        };
+        let own_views = kiosk.is_none();
+        Ok(Some(WebOptions { at, name, files: FILES, lasts: None, own_views }))
     }
 }

@@ -20,6 +20,8 @@ use crate::kiosk::unrecorded::WithoutFilms;
 use crate::kiosk::{KioskConfig, keeper, recovery};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
+#[cfg(unix)]
+use crate::qr_code::{Code, Invitation};
 use crate::session::Health;
 use crate::session::history::Handle;
 use crate::session::writer::WriterThread;
@@ -31,6 +33,8 @@ use crate::tablet_controls::TabletControls;
 use crate::tablet_models::ModelTables;
 use crate::tick::Journal;
 use crate::tick_statistics::Summary;
+#[cfg(unix)]
+use crate::web::WebRole;
 use crate::window_link::{WindowLink, WindowStanding};
 use sculptd_camera::camera_thread::{CameraChoice, CameraHandle};
 use sculptd_clay::brush::{BrushSettings, Presets};
@@ -254,7 +258,8 @@ impl LiveRun {
             })?;
         }
         // Before anybody is answered: a touch that comes later is seen.
-        let (kiosk, keeper) = match options.kiosk.take().zip(first) {
+        #[cfg_attr(not(unix), allow(unused_mut))]
+        let (mut kiosk, keeper) = match options.kiosk.take().zip(first) {
             Some((kiosk, first)) => {
                 screen((kiosk, options.languages), first, &live, &factory, &clock, &stop)?
             }
@@ -279,7 +284,12 @@ impl LiveRun {
             };
             if let Some(wanted) = options.web.take() {
                 let (page, links) = serve_page(&wanted, &live, &factory, &clock, &options, &stop)?;
-                notices.extend(links);
+                for (role, url) in links {
+                    notices.push(format!("{}: {url}", purpose(role)));
+                    if let (Some(screen), WebRole::Viewer) = (&mut kiosk, role) {
+                        screen.watch = Code::of(&url).map(|code| Invitation { url, code });
+                    }
+                }
                 web = Some(page);
             }
             let host = crate::control::Host { web: web.clone(), ..host };
@@ -447,7 +457,17 @@ impl Served {
     }
 }
 
-/// Starts to serve the page on which others join. Returns it, and a sentence for each first link.
+/// What a link is for.
+#[cfg(unix)]
+fn purpose(role: WebRole) -> &'static str {
+    match role {
+        WebRole::Sculptor => "to sculpt together",
+        WebRole::Viewer => "to watch",
+        WebRole::Device => "to use a tablet or a telephone as your pen",
+    }
+}
+
+/// Starts to serve the page on which others join. Returns it, and its first links.
 #[cfg(unix)]
 fn serve_page(
     web: &crate::web::WebOptions,
@@ -456,8 +476,8 @@ fn serve_page(
     clock: &Clock,
     options: &LiveOptions,
     stop: &Arc<AtomicBool>,
-) -> Result<(Arc<crate::web::Web>, Vec<String>), LiveRunError> {
-    use crate::web::{Web, WebRole, WebState};
+) -> Result<(Arc<crate::web::Web>, Vec<(WebRole, String)>), LiveRunError> {
+    use crate::web::{Web, WebState};
     let state = WebState {
         published: live.published.clone(),
         commands: live.commands.clone(),
@@ -467,19 +487,17 @@ fn serve_page(
         stop: stop.clone(),
         keys: Default::default(),
         own_views: web.own_views,
+        downloads: Default::default(),
         guests: crate::web::GuestList::shown_by(live.guests.clone()),
     };
     let failed = |source| LiveRunError::Service { what: format!("page on {}", web.at), source };
     let page = Web::start(web, state).map_err(failed)?;
-    let roles = [
-        (WebRole::Sculptor, "to sculpt together"),
-        (WebRole::Viewer, "to watch"),
-        (WebRole::Device, "to use a tablet or a telephone as your pen"),
-    ];
     let mut links = Vec::new();
-    for (role, purpose) in roles.into_iter().filter(|r| web.own_views || r.0 != WebRole::Sculptor) {
-        let key = page.state.keys.issue(role, web.lasts, clock.now_us()).map_err(failed)?;
-        links.push(format!("{purpose}: {}", page.link(&key)));
+    for role in [WebRole::Sculptor, WebRole::Viewer, WebRole::Device] {
+        if web.own_views || role != WebRole::Sculptor {
+            let key = page.state.keys.issue(role, web.lasts, clock.now_us()).map_err(failed)?;
+            links.push((role, page.link(&key)));
+        }
     }
     Ok((Arc::new(page), links))
 }
@@ -500,7 +518,7 @@ fn screen(
     let settings = (kiosk, &words[0]);
     let keeper = keeper::start(settings, first, published, commands, factory, clock, stop)
         .map_err(LiveRunError::Kiosk)?;
-    let screen = keeper::Screen { desk: keeper.desk, words, staff, show };
+    let screen = keeper::Screen { desk: keeper.desk, words, staff, show, watch: None };
     Ok((Some(screen), Some(keeper.thread)))
 }
 

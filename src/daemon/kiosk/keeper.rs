@@ -20,6 +20,7 @@ use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, ScreenSettings,
 use crate::Published;
 use crate::adaptors::ATTRACT_IDS;
 use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::qr_code::Invitation;
 use sculptd_clay::Clay;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::catalogue::Catalogue;
@@ -91,6 +92,8 @@ pub struct Screen {
     pub staff: bool,
     /// Display settings of the screen.
     pub show: ScreenSettings,
+    /// The page on which visitors watch.
+    pub watch: Option<Invitation>,
 }
 
 /// A running keeper; it ends once `stop` is set.

@@ -24,6 +24,10 @@ pub struct KioskConfig {
     pub share: String,
     pub share_name: String,
     pub share_minutes: f64,
+    /// Address of the page on which visitors watch; empty: there is none.
+    pub web: String,
+    /// Address or name by which visitors' telephones reach the page.
+    pub web_name: String,
     pub audit: PathBuf,
     /// What becomes of a visit that a kill or a power cut interrupted.
     pub interrupted: Interrupted,
@@ -112,6 +116,8 @@ impl Default for KioskConfig {
             share: String::new(),
             share_name: String::new(),
             share_minutes: 30.0,
+            web: String::new(),
+            web_name: String::new(),
             audit: PathBuf::new(),
             interrupted: Interrupted::default(),
             attract: vec![],
@@ -163,6 +169,8 @@ impl KioskConfig {
                 self.share_minutes
             ));
         }
+        #[cfg(unix)]
+        self.web_address()?;
         if self.gallery.as_os_str().is_empty() && self.interrupted == Interrupted::Gallery {
             return Err("interrupted = \"gallery\" needs a gallery".into());
         }
@@ -192,6 +200,16 @@ impl KioskConfig {
             return Err("staff_pin: expected four digits or more, in quotes, or nothing".into());
         }
         Ok(())
+    }
+
+    /// Returns the address of the page on which visitors watch; `None`: there is none.
+    ///
+    /// # Errors
+    /// Returns an error if it is no address.
+    #[cfg(unix)]
+    pub fn web_address(&self) -> Result<Option<std::net::SocketAddr>, String> {
+        let wanted = (!self.web.is_empty()).then(|| crate::metrics::address(&self.web));
+        wanted.transpose().map_err(|e| format!("web: {e}"))
     }
 
     /// Returns the brush that every visitor starts with; `None`: that of the configuration.
@@ -262,6 +280,9 @@ pub struct Language {
     pub finish: String,
     pub kept: String,
     pub fetch: String,
+    /// What the code of the page does; empty: the text of `fetch`.
+    #[serde(default)]
+    pub watch: String,
     pub too_large: String,
     pub draw: String,
     pub carve: String,
@@ -280,7 +301,8 @@ impl Language {
     pub fn all(&self) -> String {
         let Language { name, welcome, countdown, go_on, finish, kept, fetch, .. } = self;
         let Language { too_large, draw, carve, smooth, undo, staff, turn, .. } = self;
-        let said = [name, welcome, countdown, go_on, finish, kept, fetch, too_large, turn];
+        let said =
+            [name, welcome, countdown, go_on, finish, kept, fetch, &self.watch, too_large, turn];
         let pressed = [draw, carve, smooth, undo, staff, &self.wrong_pin, &self.locked];
         said.into_iter().chain(pressed).map(String::as_str).collect()
     }

@@ -12,6 +12,7 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::Cl
 use tungstenite::{Message, WebSocket};
 
 use super::delivery::{self, Delivery, ShownObject};
+use super::downloads::WorkFormat;
 use super::guests::{Guest, JoinedGuest, PagePlace};
 use super::keys::WebRole;
 use super::messages::{
@@ -79,7 +80,7 @@ pub fn run(stream: TcpStream, read: Vec<u8>, state: &Arc<WebState>, _place: Page
     let now = state.clock.now_us();
     let Some(key) = state.keys.find(&hello.key, now) else {
         tracing::warn!("web: {peer} was refused: its link is not valid");
-        let why = "This link is not valid, or has expired. GuestRequest for a new one.".into();
+        let why = "This link is not valid, or has expired. Ask for a new one.".into();
         return refuse(&mut socket, why);
     };
     let joined = state.guests.join(&key, hello.ticket.as_deref(), &hello.name, now);
@@ -147,6 +148,8 @@ struct ConnectedPage<'a> {
     camera: Camera,
     brush: BrushSettings,
     asked: VecDeque<AwaitedAnswer>,
+    /// Path of the file that is being written.
+    file: Option<cc::Receiver<Result<String, String>>>,
     told: LastTold,
     last_batch: u32,
     heard_us: u64,
@@ -182,6 +185,7 @@ impl<'a> ConnectedPage<'a> {
             camera,
             brush,
             asked: VecDeque::new(),
+            file: None,
             told: LastTold::default(),
             last_batch: 0,
             heard_us: now,
@@ -222,9 +226,9 @@ impl<'a> ConnectedPage<'a> {
 
     fn welcome(&mut self) -> Result<(), String> {
         let shown = self.state.published.load_full();
-        if self.guest.person != 0 && !self.resumed {
-            self.send_command(Command::Camera(self.camera), None, None);
-            self.send_command(Command::Brush(self.brush), None, None);
+        if self.guest.person != 0 {
+            self.send_command(Command::Camera(self.camera), None, None)?;
+            self.send_command(Command::Brush(self.brush), None, None)?;
         }
         let welcome = Tell::Welcome {
             role: self.guest.role.name(),
@@ -248,13 +252,14 @@ impl<'a> ConnectedPage<'a> {
             return Some("the daemon ends".into());
         }
         if !self.state.keys.is_valid(self.guest.key, now) {
-            let why = "This link is no longer valid. GuestRequest for a new one.".to_owned();
+            let why = "This link is no longer valid. Ask for a new one.".to_owned();
             refuse(&mut self.socket, why);
             return Some("its key is no longer valid".into());
         }
         if !self.state.guests.is_current(self.connection) {
             return Some("the page has connected again".into());
         }
+        self.state.downloads.expire(now);
         let silent = now.saturating_sub(self.heard_us) > SILENT.as_micros() as u64;
         silent.then(|| "nothing was heard of it".into())
     }
@@ -341,6 +346,9 @@ impl<'a> ConnectedPage<'a> {
             self.state.guests.rename(self.connection, name);
             return Ok(());
         }
+        if let GuestRequest::File { format } = ask {
+            return self.write_file(format);
+        }
         if self.guest.role != WebRole::Sculptor {
             return match ask {
                 // The pages in front of a viewer's camera come first.
@@ -357,11 +365,11 @@ impl<'a> ConnectedPage<'a> {
                     return self.note("a view with numbers that are not finite");
                 }
                 self.camera = *camera;
-                self.send_command(Command::Camera(*camera), Some((*at, now)), None);
+                self.send_command(Command::Camera(*camera), Some((*at, now)), None)?;
             }
             GuestRequest::Brush { at, .. } => {
                 self.brush = changed_brush(&self.brush, &ask, &self.state.presets);
-                self.send_command(Command::Brush(self.brush), Some((*at, now)), None);
+                self.send_command(Command::Brush(self.brush), Some((*at, now)), None)?;
                 let brush = BrushShown::from(&self.brush);
                 return tell(&mut self.socket, &Tell::Brush { brush });
             }
@@ -369,10 +377,29 @@ impl<'a> ConnectedPage<'a> {
                 let redo = matches!(ask, GuestRequest::Redo { .. });
                 let (send, answer) = cc::bounded(1);
                 let command = if redo { Command::Redo } else { Command::Undo };
-                self.send_command(command, Some((*at, now)), Some(send));
+                self.send_command(command, Some((*at, now)), Some(send))?;
                 self.asked.push_back(AwaitedAnswer { answer, redo });
             }
-            GuestRequest::Name { .. } => {}
+            GuestRequest::Name { .. } | GuestRequest::File { .. } => {}
+        }
+        Ok(())
+    }
+
+    /// Writes the work as a file, on a thread of its own: a large one takes seconds.
+    fn write_file(&mut self, format: WorkFormat) -> Result<(), String> {
+        if self.file.is_some() {
+            return self.note("The file is being written.");
+        }
+        let (done, file) = cc::bounded(1);
+        let state = self.state.clone();
+        let write = move || {
+            let shown = state.published.load_full();
+            let _ = done.send(state.downloads.write(&shown, format, state.clock.now_us()));
+        };
+        let thread = std::thread::Builder::new().name("sculptd-take-home".into()).spawn(write);
+        match thread {
+            Ok(_) => self.file = Some(file),
+            Err(e) => return self.note(&format!("No file can be written: {e}.")),
         }
         Ok(())
     }
@@ -384,7 +411,7 @@ impl<'a> ConnectedPage<'a> {
         command: Command,
         at: Option<(f64, u64)>,
         answer: Option<cc::Sender<CommandAnswer>>,
-    ) {
+    ) -> Result<(), String> {
         let t_us = match (&mut self.pen, at) {
             (Some((pen, _)), Some((page_us, read_us))) => Some(pen.time(page_us, read_us)),
             _ => None,
@@ -392,10 +419,10 @@ impl<'a> ConnectedPage<'a> {
         let of = OfPerson { person: self.guest.person, command };
         let command = Command::OfPerson(Box::new(of));
         let queued = QueuedCommand { answer, t_us, ..QueuedCommand::from(command) };
-        // The loop takes 64 commands a tick: it has room again before long.
-        if self.state.commands.send_timeout(queued, Duration::from_secs(2)).is_err() {
-            tracing::warn!("web: a command of '{}' was lost: the loop is busy", self.guest.name);
-        }
+        // The loop takes 64 commands a tick: it has room again before long. Where it has not, the
+        // page connects again, and its view and brush are set anew.
+        let sent = self.state.commands.send_timeout(queued, Duration::from_secs(2));
+        sent.map_err(|_| "the loop is busy, a command was not taken".into())
     }
 
     fn note(&mut self, text: &str) -> Result<(), String> {
@@ -436,6 +463,14 @@ impl<'a> ConnectedPage<'a> {
 
     fn tell_answers(&mut self) -> Result<bool, String> {
         let mut told = false;
+        if let Some(Ok(written)) = self.file.as_ref().map(cc::Receiver::try_recv) {
+            self.file = None;
+            told = true;
+            match written {
+                Ok(path) => tell(&mut self.socket, &Tell::File { path })?,
+                Err(why) => self.note(&format!("There is no file: {why}."))?,
+            }
+        }
         while let Some(first) = self.asked.front() {
             let answer = match first.answer.try_recv() {
                 Ok(answer) => Some(answer.result),

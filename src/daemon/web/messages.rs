@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::delivery::ShownObject;
+use super::downloads::WorkFormat;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_engine::camera::Camera;
 
@@ -49,6 +50,8 @@ pub enum GuestRequest {
     },
     /// The guest wants to be called so.
     Name { name: String },
+    /// The guest wants the work as a file.
+    File { format: WorkFormat },
     /// Undoes the guest's last step.
     Undo { at: f64 },
     /// Redoes the guest's step that was undone last.
@@ -136,6 +139,8 @@ pub enum Tell {
     Taken { batch: u32 },
     /// The page shows the newest state of the clay.
     Complete { bytes: u64 },
+    /// The file that the guest asked for can be fetched at this path for ten minutes.
+    File { path: String },
     /// Something for the guest to read.
     Note { text: String },
 }

@@ -13,7 +13,8 @@
 //!   only what it has not received.
 //!
 //! Read first: [`keys`] (who may join), [`connection`] (one page), [`delivery`] (what it is sent
-//! next), [`page_code`] (as which bytes).
+//! next), [`page_code`] (as which bytes), [`downloads`]
+//! (the work as a file).
 
 use std::net::{IpAddr, SocketAddr};
 use std::sync::atomic::AtomicBool;
@@ -34,12 +35,14 @@ use sculptd_devices::queue::SenderFactory;
 
 pub mod connection;
 pub mod delivery;
+pub mod downloads;
 pub mod guests;
 pub mod keys;
 pub mod messages;
 pub mod page_code;
 mod rate;
 
+pub use downloads::Downloads;
 pub use guests::{Guest, GuestList};
 pub use keys::{KeyRing, WebKey, WebRole};
 
@@ -94,6 +97,7 @@ pub struct WebState {
     /// See [`WebOptions::own_views`].
     pub own_views: bool,
     pub guests: GuestList,
+    pub downloads: Downloads,
 }
 
 /// The page, being served; closed when dropped.
@@ -173,6 +177,9 @@ fn answer(
         };
         let upgrade = Upgrade::accept(request, Box::new(follow)).ok_or(NO_SOCKET)?;
         return Ok(Answer::switched(upgrade));
+    }
+    if path.starts_with(downloads::PLACE) {
+        return state.downloads.answer(path, state.clock.now_us());
     }
     let path = if path == "/" { "/index.html" } else { path };
     let file = files.iter().find(|f| f.path == path).ok_or(NOTHING)?;

@@ -84,6 +84,14 @@ export function project(m: Mat4, p: Vec3): [number, number] | null {
   return w > 0 ? [(row(0) / w + 1) / 2, (1 - row(1) / w) / 2] : null;
 }
 
+/** Points of a circle in the world, by cosine and sine. */
+export function circle(middle: Vec3, normal: Vec3, radius: number): (cos: number, sin: number) => Vec3 {
+  const aside: Vec3 = Math.abs(normal[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0];
+  const u = unit(cross(aside, normal));
+  const v = cross(normal, u);
+  return (cos, sin) => add(add(middle, u, cos * radius), v, sin * radius);
+}
+
 /** Turns by a drag over shares of the view's height. */
 export function turned(c: Camera, dx: number, dy: number): Camera {
   const pitch = Math.min(MAX_PITCH, Math.max(-MAX_PITCH, c.pitch + dy * Math.PI));

@@ -1,6 +1,8 @@
 // The clay on the graphics card: a vertex array for each page, drawn where it may be seen.
 
 import { type Mat4, backward, viewProjection } from "./camera";
+import { type Hit, Picker, aimed } from "./pick";
+import { link } from "./program";
 import type { Camera, PageMessage, ShownObject } from "./protocol";
 import { rowBytes } from "./protocol";
 
@@ -66,6 +68,7 @@ export class ClayPicture {
   private readonly at: Record<string, WebGLUniformLocation | null> = {};
   private readonly objects = new Map<number, ClayObject>();
   private fence: WebGLSync | null = null;
+  private picker: Picker | null = null;
   /** Half the diagonal of everything, world units. */
   radius = 1;
 
@@ -190,49 +193,37 @@ export class ClayPicture {
     gl.uniform3fv(this.at.clay ?? null, clay);
     // White, and no mask, where a page has no colours.
     gl.vertexAttrib4f(2, 1, 1, 1, 0);
-    for (const object of this.objects.values()) {
-      gl.uniformMatrix4fv(this.at.model ?? null, false, object.matrix);
-      const clip = times(view, object.matrix);
-      for (const page of object.pages.values()) {
-        if (page.count === 0 || isOutside(clip, page.box)) continue;
-        gl.uniform3fv(this.at.low ?? null, page.box.subarray(0, 3));
-        gl.uniform1f(this.at.step_ ?? null, page.box[6] ?? 0);
-        gl.bindVertexArray(page.array);
-        gl.drawElements(gl.TRIANGLES, page.count, gl.UNSIGNED_SHORT, 0);
-      }
-    }
-    gl.bindVertexArray(null);
+    this.drawPages(view, this.at);
     if (this.fence) gl.deleteSync(this.fence);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     return view;
   }
 
-  /** Whether clay was drawn at this pixel. Call it right after `draw`. */
-  isClayAt(x: number, y: number): boolean {
-    const gl = this.gl;
-    const pixel = new Uint8Array(4);
-    gl.readPixels(x, gl.drawingBufferHeight - 1 - y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    return (pixel[3] ?? 0) > 127;
+  /** The clay in front at this place of the view, 0 to 1 from the top left. */
+  pick(camera: Camera, x: number, y: number): Hit | null {
+    const view = viewProjection(camera, this.radius);
+    const { drawingBufferWidth: width, drawingBufferHeight: height } = this.gl;
+    const pixel = aimed(view, 2 * x - 1, 1 - 2 * y, width, height);
+    this.picker ??= new Picker(this.gl);
+    return this.picker.pick(pixel, (at) => this.drawPages(pixel, at));
   }
-}
 
-function link(gl: WebGL2RenderingContext, vertex: string, fragment: string): WebGLProgram {
-  const program = gl.createProgram();
-  for (const [kind, text] of [
-    [gl.VERTEX_SHADER, vertex],
-    [gl.FRAGMENT_SHADER, fragment],
-  ] as const) {
-    const shader = gl.createShader(kind);
-    if (!shader) throw new Error("The graphics card was lost.");
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
+  /** Draws every page that this view may show, by the program in use. */
+  private drawPages(view: Mat4, at: Record<string, WebGLUniformLocation | null>): void {
+    const gl = this.gl;
+    for (const object of this.objects.values()) {
+      gl.uniformMatrix4fv(at.model ?? null, false, object.matrix);
+      const clip = times(view, object.matrix);
+      for (const page of object.pages.values()) {
+        if (page.count === 0 || isOutside(clip, page.box)) continue;
+        gl.uniform3fv(at.low ?? null, page.box.subarray(0, 3));
+        gl.uniform1f(at.step_ ?? null, page.box[6] ?? 0);
+        gl.bindVertexArray(page.array);
+        gl.drawElements(gl.TRIANGLES, page.count, gl.UNSIGNED_SHORT, 0);
+      }
+    }
+    gl.bindVertexArray(null);
   }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
-    throw new Error(`The picture cannot be drawn: ${gl.getProgramInfoLog(program) ?? ""}`);
-  }
-  return program;
 }
 
 /** From world directions to those of the view. */

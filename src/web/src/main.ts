@@ -1,6 +1,6 @@
 // The page: joins the daemon that gave it out, shows its clay and lets a pen sculpt it.
 
-import { eye, project, slid, turned, viewHeight, zoomed } from "./camera";
+import { circle, eye, project, slid, turned, viewHeight, viewProjection, zoomed } from "./camera";
 import { ClayPicture } from "./clay";
 import { Connection, pageTime } from "./connection";
 import { Hand } from "./hand";
@@ -9,7 +9,7 @@ import type { Brush, Camera, OthersPen, Person, Role, ShownObject, Tell, Vec3 } 
 import { say, setLanguage } from "./text";
 
 const canvas = document.getElementById("clay") as HTMLCanvasElement;
-const ring = document.getElementById("ring") as HTMLDivElement;
+const ring = document.querySelector("#ring polygon") as SVGPolygonElement;
 const penLayer = document.getElementById("pens") as HTMLDivElement;
 
 /** Camera of the clay's own material, linear enough for the eye. */
@@ -27,6 +27,9 @@ let objects: ShownObject[] = [];
 let dirty = true;
 let cameraAsked = false;
 let isConnected = false;
+/** Where a pen or a mouse is over the canvas, in its pixels. */
+let pointer: [number, number] | null = null;
+let isRingOld = false;
 
 setLanguage();
 document.title = "sculptd";
@@ -38,6 +41,7 @@ function start(): void {
     undo: () => undo(),
     redo: () => redo(),
     home: () => home && look(fitted(home)),
+    takeHome: (format) => connection?.ask({ do: "file", format }),
     name: (name) => {
       localStorage.setItem("name", name);
       connection?.ask({ do: "name", name });
@@ -120,6 +124,9 @@ function start(): void {
         brush = message.brush;
         panel.showBrush(brush);
         break;
+      case "file":
+        fetchFile(message.path);
+        break;
       case "note":
         panel.tell(message.text);
         break;
@@ -163,10 +170,8 @@ function start(): void {
     },
     extent: () => extent,
     isClayAt: (x, y) => {
-      if (role === "device") return true;
-      draw();
-      const scale = canvas.width / canvas.clientWidth;
-      return picture.isClayAt(Math.round(x * scale), Math.round(y * scale));
+      if (role === "device" || !camera) return role === "device";
+      return picture.pick(camera, x / canvas.clientWidth, y / canvas.clientHeight) !== null;
     },
     pen: (bytes) => {
       // A stroke through a view that the daemon does not know yet would go elsewhere.
@@ -176,7 +181,11 @@ function start(): void {
     canSculpt: () => role !== "viewer" && isConnected,
     fingerSculpts: () => role === "device" || panel.fingerSculpts,
     penSeen: () => panel.penSeen(),
-    pointerAt: (event) => showRing(event),
+    pointerAt: (event) => {
+      const box = canvas.getBoundingClientRect();
+      pointer = event && [event.clientX - box.left, event.clientY - box.top];
+      isRingOld = true;
+    },
     undo,
     redo,
   });
@@ -211,15 +220,6 @@ function start(): void {
     }
   });
 
-  function showRing(event: PointerEvent | null): void {
-    ring.hidden = !event || !camera || !brush || role !== "sculptor";
-    if (!event || !camera || !brush) return;
-    const pixels = (brush.radius * extent * 2 * canvas.clientHeight) / viewHeight(camera);
-    ring.style.width = ring.style.height = `${pixels}px`;
-    ring.style.left = `${event.clientX - pixels / 2}px`;
-    ring.style.top = `${event.clientY - pixels / 2}px`;
-  }
-
   function draw(): void {
     if (!camera) return;
     const view = picture.draw(camera, CLAY);
@@ -235,6 +235,14 @@ function start(): void {
       return [dot];
     });
     penLayer.replaceChildren(...dots);
+    drawRing(camera);
+  }
+
+  function drawRing(camera: Camera): void {
+    isRingOld = false;
+    const isShown = role === "sculptor" && isConnected;
+    const points = isShown && pointer && brush && ringPoints(picture, camera, pointer, brush);
+    ring.setAttribute("points", points || "");
   }
 
   function frame(): void {
@@ -242,6 +250,8 @@ function start(): void {
     if (dirty && !document.hidden && picture.isDrawn) {
       dirty = false;
       draw();
+    } else if (isRingOld && camera && picture.isDrawn) {
+      drawRing(camera);
     }
     connection.acknowledge();
     requestAnimationFrame(frame);
@@ -269,6 +279,34 @@ function start(): void {
   Object.assign(window, {
     sculptd: { figures: () => picture.figures, roundTrip: () => connection.roundTrip, camera: () => camera, connection },
   });
+}
+
+/** Lets the browser keep a file as it keeps others. */
+function fetchFile(path: string): void {
+  const link = document.createElement("a");
+  link.href = path;
+  link.download = path.slice(path.lastIndexOf("/") + 1);
+  link.click();
+}
+
+/** The brush's ring: on the clay under the pointer, or upright beside it. */
+function ringPoints(
+  picture: ClayPicture,
+  camera: Camera,
+  [x, y]: [number, number],
+  brush: Brush,
+): string {
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const hit = picture.pick(camera, x / width, y / height);
+  const view = viewProjection(camera, picture.radius);
+  const around = hit && circle(hit.place, hit.normal, brush.radius * extent);
+  const flat = (brush.radius * extent * height) / viewHeight(camera);
+  const points = Array.from({ length: 48 }, (_, n) => {
+    const [cos, sin] = [Math.cos((n * Math.PI) / 24), Math.sin((n * Math.PI) / 24)];
+    const at = around && project(view, around(cos, sin));
+    return at ? [at[0] * width, at[1] * height] : [x + flat * cos, y + flat * sin];
+  });
+  return points.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" ");
 }
 
 function aspect(): number {

@@ -1,6 +1,6 @@
 // The controls around the clay: brush, undo, who is here, what goes on.
 
-import type { Brush, Person, Role, Vec3 } from "./protocol";
+import type { Brush, Person, Role, Vec3, WorkFormat } from "./protocol";
 import { say, type Word } from "./text";
 
 function the<T extends HTMLElement>(id: string): T {
@@ -14,6 +14,7 @@ export interface PanelEvents {
   undo(): void;
   redo(): void;
   home(): void;
+  takeHome(format: WorkFormat): void;
   name(name: string): void;
 }
 
@@ -32,6 +33,7 @@ export class Panel {
   private readonly mirror = the<HTMLButtonElement>("mirror");
   private readonly finger = the<HTMLButtonElement>("finger");
   private readonly follow = the<HTMLButtonElement>("follow");
+  private readonly take = the<HTMLDetailsElement>("take");
   readonly name = the<HTMLInputElement>("name");
   private readonly note = the<HTMLParagraphElement>("note");
   private noteTimer = 0;
@@ -45,6 +47,7 @@ export class Panel {
     };
     const words: Word[] = [
       "kind", "radius", "strength", "colour", "negative", "mirror", "finger", "undo", "redo", "home", "follow",
+      "takeHome", "glb", "stl",
     ];
     for (const word of words) label(word, word);
     the("tools").setAttribute("aria-label", say("tools"));
@@ -75,6 +78,12 @@ export class Panel {
     the("undo").onclick = events.undo;
     the("redo").onclick = events.redo;
     the("home").onclick = events.home;
+    for (const format of ["glb", "stl"] as const) {
+      the(format).onclick = () => {
+        this.take.open = false;
+        events.takeHome(format);
+      };
+    }
   }
 
   get fingerSculpts(): boolean {
@@ -98,7 +107,7 @@ export class Panel {
 
   show(role: Role, brushes: string[]): void {
     the("tools").hidden = role !== "sculptor";
-    this.follow.hidden = the("home").hidden = role === "device";
+    this.follow.hidden = the("home").hidden = this.take.hidden = role === "device";
     if (this.kind.options.length === 0) {
       for (const name of brushes) {
         const text = name.replaceAll("_", " ");

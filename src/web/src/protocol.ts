@@ -73,9 +73,13 @@ export type Tell =
   | { is: "brush"; brush: Brush }
   | { is: "taken"; batch: number }
   | { is: "complete"; bytes: number }
+  | { is: "file"; path: string }
   | { is: "note"; text: string };
 
+export type WorkFormat = "glb" | "stl";
+
 export type Ask =
+  | { do: "file"; format: WorkFormat }
   | { do: "camera"; camera: Camera; at: number }
   | ({ do: "brush"; at: number } & Partial<Brush>)
   | { do: "name"; name: string }

@@ -72,9 +72,10 @@ export class Chromium {
     const at = await until("Chromium listens", () => log.match(/ws:\S+/)?.[0]);
     chromium.socket = new WebSocket(at, { perMessageDeflate: false });
     await new Promise((done, fail) => chromium.socket.once("open", done).once("error", fail));
-    [chromium.next, chromium.waiting] = [0, new Map()];
+    [chromium.next, chromium.waiting, chromium.events] = [0, new Map(), new Map()];
     chromium.socket.on("message", (text) => {
       const message = JSON.parse(text);
+      if (message.method) return chromium.events.get(message.method)?.(message.params, message.sessionId);
       const waiting = chromium.waiting.get(message.id);
       chromium.waiting.delete(message.id);
       if (message.error) waiting?.fail(new Error(message.error.message));
@@ -143,6 +144,25 @@ export class Page {
       ...points.slice(1).map((p) => this.pen("mouseMoved", p.x, p.y, p.force, p.tilt)),
       this.pen("mouseReleased", last.x, last.y, 0),
     ]);
+  }
+
+  /** The records of the pen that the page sends from now on: `{ down, pressure, tilt }`. */
+  async penRecords() {
+    const all = [];
+    this.browser.events.set("Network.webSocketFrameSent", ({ response }, session) => {
+      if (session !== this.session || response.opcode !== 2) return;
+      const bytes = Buffer.from(response.payloadData, "base64");
+      if (bytes[0] !== 1) return;
+      for (let at = 5; at + 20 <= bytes.length; at += 20) {
+        all.push({
+          down: (bytes[at + 18] & 2) !== 0,
+          pressure: bytes.readUInt16LE(at + 12) / 65535,
+          tilt: [bytes.readInt8(at + 14), bytes.readInt8(at + 15)],
+        });
+      }
+    });
+    await this.send("Network.enable");
+    return all;
   }
 
   async picture() {

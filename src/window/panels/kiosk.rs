@@ -11,6 +11,7 @@ use crate::language::ENGLISH;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::keeper::Screen;
 use sculptd_daemon::kiosk::{Language, Stage, View as KioskView};
+use sculptd_daemon::qr_code::Invitation;
 use sculptd_engine::command::Command;
 
 /// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about
@@ -70,6 +71,9 @@ pub fn ui(
             #[cfg(unix)]
             if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
                 kept(&ctx, whole, words, &link);
+            }
+            if let Some(page) = &screen.watch {
+                watch(&ctx, whole, words, page);
             }
         }
         Stage::Working => tools(&ctx, free, view, words, screen, out, &mut scan),
@@ -188,6 +192,18 @@ fn kept(
             ui.add_space(10.0);
             ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
             ui.label(RichText::new(&link.url).size(13.0).monospace());
+        });
+    });
+}
+
+/// The page on which others watch, and take the work home.
+fn watch(ctx: &egui::Context, free: egui::Rect, words: &Language, page: &Invitation) {
+    let text = if words.watch.is_empty() { &words.fetch } else { &words.watch };
+    place(ctx, "watch", free, Align2::LEFT_CENTER, |ui| {
+        ui.vertical_centered(|ui| {
+            ui.add(egui::Label::new(RichText::new(text).size(20.0)).extend());
+            ui.add_space(10.0);
+            qr_code::ui(ui, &page.code, 240.0);
         });
     });
 }

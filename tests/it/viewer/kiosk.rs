@@ -19,7 +19,13 @@ fn screen() -> Screen {
     let words = KioskConfig::default()
         .every_language(sculptd::settings::LANGUAGES)
         .expect("the built-in languages");
-    Screen { desk: Arc::new(KioskDesk::default()), words, staff: true, show: Default::default() }
+    Screen {
+        desk: Arc::new(KioskDesk::default()),
+        words,
+        staff: true,
+        show: Default::default(),
+        watch: None,
+    }
 }
 
 fn at(screen: &Screen, stage: Stage, visits: u64) {
