@@ -111,25 +111,42 @@ impl NoiseSource {
 
 /// Draws hands, given in the tracker's axes, as the camera sees them.
 pub fn draw(scene: &DrawnScene, hands: &[DrawnHand]) -> Picture {
+    draw_exposed(scene, &[hands])
+}
+
+/// Draws hands that move while the shutter is open: each entry holds them at one moment of the
+/// exposure.
+pub fn draw_exposed<H: AsRef<[DrawnHand]>>(scene: &DrawnScene, moments: &[H]) -> Picture {
     let (width, height) = scene.size;
     let mut noise = NoiseSource(scene.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let mut colours = background(scene, &mut noise);
-    let mut nearest = vec![f32::MAX; width * height];
+    let empty = background(scene, &mut noise);
+    let mut colours = vec![Vec3::ZERO; if moments.len() > 1 { empty.len() } else { 0 }];
+    let mut last = empty.clone();
+    for moment in moments {
+        last.clone_from(&empty);
+        draw_hands(scene, moment.as_ref(), &mut last);
+        let share = 1.0 / moments.len() as f32;
+        colours.iter_mut().zip(&last).for_each(|(sum, c)| *sum += *c * share);
+    }
+    let rgb = if colours.is_empty() { &last } else { &colours }
+        .iter()
+        .flat_map(|c| c.to_array())
+        .map(|v| (v + scene.noise * noise.normal()).round().clamp(0.0, 255.0) as u8)
+        .collect();
+    Picture { width, height, rgb }
+}
+
+fn draw_hands(scene: &DrawnScene, hands: &[DrawnHand], colours: &mut [Vec3]) {
+    let mut nearest = vec![f32::MAX; colours.len()];
     for hand in hands {
         let points = hand.joints.map(|p| scene.lens.to_camera(p));
         let arm = points[0] + (points[0] - points[9]).normalize_or(Vec3::Y) * 160.0;
         let mut parts = Vec::with_capacity(32);
         capsules(&points, arm, hand.scale, &mut parts);
         for part in &parts {
-            draw_capsule(scene, part, &mut colours, &mut nearest);
+            draw_capsule(scene, part, colours, &mut nearest);
         }
     }
-    let rgb = colours
-        .iter()
-        .flat_map(|c| c.to_array())
-        .map(|v| (v + scene.noise * noise.normal()).round().clamp(0.0, 255.0) as u8)
-        .collect();
-    Picture { width, height, rgb }
 }
 
 fn background(scene: &DrawnScene, noise: &mut NoiseSource) -> Vec<Vec3> {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
-use sculptd_camera::drawn::{DrawnScene, draw};
+use sculptd_camera::drawn::{DrawnScene, draw, draw_exposed};
 use sculptd_camera::drawn_hand::DrawnHand;
 use sculptd_camera::hand_camera::{HandCamera, HandCameraSettings};
 use sculptd_camera::models;
@@ -60,6 +60,17 @@ impl Stage {
         seen
     }
 
+    /// The same with hands that move while the shutter is open, for half of the time between two
+    /// pictures. `at`: the hands at a share of that time.
+    pub fn see_moving(&mut self, at: impl Fn(f32) -> Vec<DrawnHand>) -> Hands {
+        self.scene.seed = self.scene.seed.wrapping_add(1);
+        self.t_us += FRAME_US;
+        let moments: Vec<_> = (0..5).map(|i| at(i as f32 / 4.0)).collect();
+        let sample = self.camera.look(draw_exposed(&self.scene, &moments), self.t_us);
+        let Body::Hands(seen) = sample.body else { panic!("{sample:?}") };
+        seen
+    }
+
     /// The same after the filter.
     pub fn see_steady(&mut self, hands: &[DrawnHand]) -> Hands {
         let mut seen = self.see(hands);
@@ -84,6 +95,17 @@ pub fn joints(hand: &Hand) -> Option<[Vec3; 21]> {
         }
     }
     Some(all)
+}
+
+/// Runs a part of a count on each processor; each part is given its number and its share.
+pub fn shared_out<T: Send>(count: usize, part: impl Fn(u64, usize) -> T + Sync) -> Vec<T> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
+    std::thread::scope(|scope| {
+        let part = &part;
+        let share = |i: usize| (count * (i + 1)) / threads - (count * i) / threads;
+        let run = (0..threads).map(|i| scope.spawn(move || part(i as u64, share(i))));
+        run.collect::<Vec<_>>().into_iter().map(|t| t.join().expect("no part failed")).collect()
+    })
 }
 
 /// Mean and standard deviation.
