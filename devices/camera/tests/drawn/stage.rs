@@ -65,7 +65,7 @@ impl Stage {
     pub fn see_moving(&mut self, at: impl Fn(f32) -> Vec<DrawnHand>) -> Hands {
         self.scene.seed = self.scene.seed.wrapping_add(1);
         self.t_us += FRAME_US;
-        let moments: Vec<_> = (0..5).map(|i| at(i as f32 / 4.0)).collect();
+        let moments: Vec<_> = [0.0, 0.5, 1.0].map(&at).into();
         let sample = self.camera.look(draw_exposed(&self.scene, &moments), self.t_us);
         let Body::Hands(seen) = sample.body else { panic!("{sample:?}") };
         seen
