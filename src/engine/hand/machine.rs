@@ -90,7 +90,10 @@ impl Track {
         // A gap restarts the hold, not the pose: the hand was bridged.
         self.place(hand);
         self.seen_us = t_us;
-        let seen = Features::of(hand).pose(self.pose, s);
+        // A pinch that has been seen once goes on by the wider threshold: a camera's fingertips
+        // tremble by more than the two thresholds differ.
+        let now = if self.candidate == Pose::Pinch { Pose::Pinch } else { self.pose };
+        let seen = Features::of(hand).pose(now, s);
         if seen != self.candidate {
             (self.candidate, self.candidate_us) = (seen, t_us);
         }
