@@ -34,6 +34,7 @@ export class Daemon {
     running.push(daemon.process);
     daemon.process.stderr.on("data", (d) => (daemon.log += d));
     daemon.links = await until("it prints its links", () => {
+      if (daemon.process.exitCode !== null) throw new Error(`the daemon ended: ${daemon.log}`);
       const found = [...daemon.log.matchAll(/(http:\S+#\w+)/g)].map((m) => m[1]);
       return found.length >= 3 ? found : null;
     });

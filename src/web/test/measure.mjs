@@ -69,16 +69,17 @@ function ball(path, vertices) {
   writeFileSync(path, Buffer.concat([Buffer.from(head), body]));
   return path;
 }
-const withBall = (vertices) => (home) => [ball(join(home, "ball.ply"), vertices)];
+const withBall = (vertices) => (home) => ["--mesh", ball(join(home, "ball.ply"), vertices)];
 
 async function pixel() {
-  const daemon = await Daemon.start(binary);
+  // Small, because a software renderer draws it.
+  const daemon = await Daemon.start(binary, withBall(10e3));
   const chromium = await Chromium.start(program);
-  const page = await chromium.open(daemon.links[0], { width: 640, height: 480 });
+  const page = await chromium.open(daemon.links[0], { width: 480, height: 480 });
   await page.complete();
   await page.run(WATCH);
   for (let n = 0; n < 200; n++) {
-    const [x, y] = [300 + (n % 10) * 4, 170 + (n % 7) * 5];
+    const [x, y] = [220 + (n % 10) * 4, 130 + (n % 7) * 5];
     await page.pen("mouseMoved", x, y, 0);
     await page.pen("mousePressed", x, y, 0.7);
     await page.pen("mouseMoved", x + 4, y + 2, 0.7);

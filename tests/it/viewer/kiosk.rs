@@ -180,8 +180,11 @@ fn staff_types_a_number_that_is_not_shown() {
 #[test]
 fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
     use sculptd_daemon::kiosk::share::Link;
-    use sculptd_daemon::qr_code::Code;
-    let screen = screen();
+    use sculptd_daemon::qr_code::{Code, Invitation};
+    let mut screen = screen();
+    let page = "http://192.168.100.200:8710/#0123456789abcdef0123456789abcdef".to_owned();
+    let code = Code::of(&page).expect("a code");
+    screen.watch = Some(Invitation { url: page, code });
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");
     *screen.desk.link.lock().expect("a ui_state") =
@@ -196,10 +199,16 @@ fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
             // Without a font for its letters, English stands in.
             let english = &screen.words[0];
             let drawn = h.query_by_label(&language.kept).map_or(english, |_| language);
-            for text in [&drawn.kept, &drawn.fetch, &url] {
+            let place = |text: &String| {
                 let rect = h.get_by_label(text).rect();
                 assert!(inside.contains_rect(rect), "{text} is cut: {rect:?}");
-            }
+                rect
+            };
+            let work = [&drawn.kept, &drawn.fetch, &url].map(place);
+            let watch = place(&drawn.watch);
+            let middle = [&drawn.welcome, &drawn.turn].map(place);
+            let apart = |r: &egui::Rect| !r.intersects(watch);
+            assert!(work.iter().chain(&middle).all(apart), "{}: {watch:?}", drawn.name);
         }
         // Gone with the next visitor's first touch, whatever the keeper still holds.
         at(&screen, Stage::Working, 0);
