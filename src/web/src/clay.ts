@@ -69,6 +69,9 @@ export class ClayPicture {
   private readonly objects = new Map<number, ClayObject>();
   private fence: WebGLSync | null = null;
   private picker: Picker | null = null;
+  /** When the last picture was begun, and when it was seen to be finished, ms. */
+  private begun = 0;
+  private drawn = 0;
   /** Half the diagonal of everything, world units. */
   radius = 1;
 
@@ -178,7 +181,16 @@ export class ClayPicture {
   get isDrawn(): boolean {
     if (!this.fence) return true;
     const status = this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) as number;
-    return status === this.gl.SIGNALED;
+    if (status !== this.gl.SIGNALED) return false;
+    this.gl.deleteSync(this.fence);
+    this.fence = null;
+    this.drawn = performance.now();
+    return true;
+  }
+
+  /** Whether the card may draw while clay arrives: it has to take that too. */
+  get isRested(): boolean {
+    return performance.now() - this.drawn > 3 * (this.drawn - this.begun);
   }
 
   draw(camera: Camera, clay: [number, number, number]): Mat4 {
@@ -195,6 +207,7 @@ export class ClayPicture {
     gl.vertexAttrib4f(2, 1, 1, 1, 0);
     this.drawPages(view, this.at);
     if (this.fence) gl.deleteSync(this.fence);
+    this.begun = this.drawn = performance.now();
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     return view;
   }

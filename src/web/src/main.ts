@@ -30,6 +30,9 @@ let isConnected = false;
 /** Where a pen or a mouse is over the canvas, in its pixels. */
 let pointer: [number, number] | null = null;
 let isRingOld = false;
+/** Triangles of all objects. */
+let total = 0;
+let isViewNew = true;
 
 setLanguage();
 document.title = "sculptd";
@@ -103,6 +106,7 @@ function start(): void {
         break;
       case "objects":
         objects = message.objects;
+        total = objects.reduce((sum, o) => sum + o.triangles, 0);
         picture.list(objects);
         picture.radius = reach(objects, extent);
         showState();
@@ -153,7 +157,7 @@ function start(): void {
   function look(next: Camera): void {
     if (role === "device") return;
     camera = next;
-    dirty = true;
+    dirty = isViewNew = true;
     cameraAsked = true;
   }
 
@@ -247,7 +251,9 @@ function start(): void {
 
   function frame(): void {
     if (cameraAsked) sendCamera();
-    if (dirty && !document.hidden && picture.isDrawn) {
+    const arrives = picture.figures.triangles < total && !isViewNew;
+    if (dirty && !document.hidden && picture.isDrawn && (!arrives || picture.isRested)) {
+      isViewNew = false;
       dirty = false;
       draw();
     } else if (isRingOld && camera && picture.isDrawn) {
