@@ -85,7 +85,7 @@ fn answers_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let settings = settings(process, DVec3::Z);
-            let request = CheckRequest { orient: true };
+            let request = CheckRequest { orient: true, ..Default::default() };
             let job = Job::default();
             let done = check_part("p", mesh, 1.0, &settings, request, &job, || 0.0);
             serde_json::to_string(&done.expect("not cancelled").answer).expect("JSON")
@@ -103,6 +103,6 @@ fn a_cancelled_job_gives_no_answer() {
     let job = Job::default();
     job.cancel();
     let settings = settings("fdm", DVec3::Z);
-    let request = CheckRequest { orient: true };
+    let request = CheckRequest { orient: true, ..Default::default() };
     assert!(check_part("p", &parts()[0], 1.0, &settings, request, &job, || 0.0).is_err());
 }

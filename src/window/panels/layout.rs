@@ -3,10 +3,11 @@
 use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, colours, cube, curve_stroke, devices, face_sets, files, fonts,
-    hand_menu, help, hints, history, keys, layers, legend, light, look, masks, measure, messages,
-    modal, outliner, people, preferences, pressure_curve, radial, region, remesh, retopology, rows,
-    scene, search, start, symmetry, tablet_keys, theme, timing, trim, views,
+    analysis, brush, check, check_values, chooser, colours, cube, curve_stroke, devices, face_sets,
+    files, fonts, hand_menu, help, hints, history, keys, layers, legend, light, look, masks,
+    measure, messages, modal, outliner, people, preferences, pressure_curve, radial, region,
+    remesh, retopology, rows, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    views,
 };
 
 /// Width of either panel, points.
@@ -67,6 +68,9 @@ pub fn all(
     curve_stroke::ui(&ctx, view, ui_state, worked_in, out);
     people::labels(&ctx, view, worked_in);
     hand_menu::ui(&ctx, view, worked_in);
+    if ui_state.tab == Tab::Check && !ui_state.hidden {
+        check_values::label(&ctx, view, &ui_state.check, worked_in);
+    }
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, view, ui_state, free);
@@ -141,6 +145,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
             trim::buttons(ui, ui_state);
         }
         Tab::Walls => analysis::ui(ui, view, ui_state, out),
+        Tab::Check => check::ui(ui, view, ui_state, out),
         Tab::Measure => measure::ui(ui, view, ui_state, out),
         Tab::Files => files::ui(ui, view, ui_state, out),
         Tab::Devices => devices::ui(ui, view, ui_state, out),

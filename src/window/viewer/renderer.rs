@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
-use super::frame_uniform::{Frame, in_view};
+use super::frame_uniform::{Frame, angle_numbers, in_view};
 use super::gpu::{DEPTH, Gpu};
 use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
@@ -328,10 +328,13 @@ impl Renderer {
         let cast = sun.map_or(0.0, |_| scene.look.cast());
         let [x, y, z] = main_light;
         let kind = match (scene.look.map, scene.values) {
-            (Map::None, _) | (_, None) if scene.look.map != Map::Mask => 0.0,
             (Map::Mask, _) => 1.0,
+            (Map::Overhang, _) => 3.0,
+            (Map::Draft, _) => 4.0,
+            (Map::None, _) | (_, None) => 0.0,
             _ => 2.0,
         };
+        let [angle_up, angle_ends] = angle_numbers(&scene.look);
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
         let ground = if scene.look.pale {
@@ -357,6 +360,8 @@ impl Renderer {
             backdrop: self.surroundings.backdrop(size, scene.beside.backdrop),
             main_light: [x, y, z, cast],
             shadow: sun.unwrap_or_default().to_cols_array_2d(),
+            angle_up,
+            angle_ends,
             led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
