@@ -130,7 +130,7 @@ const DISTANCE: [[u8; 3]; 5] =
 /// Stops of the scale of angles, sRGB, from far within the limit to it, and from it to far beyond:
 /// a step between the two shows where the limit runs.
 const WITHIN: [[u8; 3]; 2] = [[196, 206, 214], [238, 228, 170]];
-const BEYOND: [[u8; 3]; 2] = [[238, 128, 50], [120, 12, 24]];
+const BEYOND: [[u8; 3]; 2] = [[238, 128, 50], [166, 16, 30]];
 
 /// Stops of the mask's scale, sRGB: free is pale, held is deep blue.
 const MASK: [[u8; 3]; 2] = [[232, 226, 214], [28, 52, 110]];

@@ -37,6 +37,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let page = &mut ui_state.check;
     status(ui, view, page, out);
     findings(ui, view, page, out);
+    facts(ui, view, page);
 }
 
 /// Process, machine, material, objects and direction.
@@ -199,19 +200,6 @@ fn status(ui: &mut egui::Ui, view: &View<'_>, page: &CheckPage, out: &mut Vec<Ui
     {
         out.push(UiRequest::CheckAgain);
     }
-    let present = found.is_present(view.state);
-    if let [object] = &found.objects[..]
-        && present
-    {
-        let facts = check_values::facts(&object.answer);
-        egui::Grid::new("check").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-            for (name, value) in facts {
-                ui.colored_label(quiet, name);
-                ui.monospace(value);
-                ui.end_row();
-            }
-        });
-    }
 }
 
 /// The list; each row is a button that flies to its place, where it has one.
@@ -246,4 +234,18 @@ fn findings(ui: &mut egui::Ui, view: &View<'_>, page: &mut CheckPage, out: &mut 
         ui.colored_label(theme::quiet(ui), warning);
     }
     page.marked = marked;
+}
+
+/// Figures of the part, if they are of one object as it is now.
+fn facts(ui: &mut egui::Ui, view: &View<'_>, page: &CheckPage) {
+    let found = page.shown().filter(|f| f.is_present(view.state));
+    let Some([object]) = found.map(|f| &f.objects[..]) else { return };
+    ui.add_space(6.0);
+    egui::Grid::new("check").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
+        for (name, value) in check_values::facts(&object.answer) {
+            ui.colored_label(theme::quiet(ui), name);
+            ui.monospace(value);
+            ui.end_row();
+        }
+    });
 }

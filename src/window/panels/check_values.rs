@@ -1,7 +1,7 @@
 //! The words and numbers of findings, and the label of the marked one over the clay.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Align2, Color32, FontId, Rect, TextStyle, pos2, vec2};
+use egui::{Align2, Color32, FontId, Rect, TextStyle, vec2};
 
 use super::state::{CheckPage, View};
 use super::theme;
@@ -10,6 +10,9 @@ use sculptd_check::{CheckAnswer, Finding, FindingKind, Severity};
 
 /// Most digits after the point, where fewer would make a value look like its limit.
 const DIGITS: usize = 6;
+
+/// Size of the letters of an advice, as a share of the others.
+const ADVICE: f32 = 0.9;
 
 /// A number with at most two digits after the point, without zeros at its end.
 pub fn short(x: f64) -> String {
@@ -76,7 +79,8 @@ pub fn row(
     of: Option<&str>,
     (present, selected): (bool, bool),
 ) -> LayoutJob {
-    let (body, small) = (TextStyle::Body.resolve(ui.style()), TextStyle::Small.resolve(ui.style()));
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = FontId { size: body.size * ADVICE, ..body.clone() };
     let visuals = ui.visuals();
     let plain = visuals.text_color();
     let (head, rest) = match (present, finding.severity) {
@@ -143,14 +147,18 @@ pub fn label(ctx: &egui::Context, view: &View<'_>, page: &CheckPage, free: Rect)
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::unique("finding"));
     let painter = ctx.layer_painter(layer).with_clip_rect(free);
     let ink = Color32::from_rgb(250, 250, 250);
-    let text = painter.layout(text, FontId::proportional(13.0), ink, free.width() * 0.5);
+    let text = painter.layout(text, FontId::proportional(13.0), ink, free.width() * 0.7);
     // Beside the ring; at the other side where there is no room.
     let gap = vec2(free.height() * RING_SHARE * 1.5 + 4.0, 0.0);
     let right = at.x + gap.x + text.size().x + 8.0 < free.right();
     let align = if right { Align2::LEFT_CENTER } else { Align2::RIGHT_CENTER };
     let rect = align.anchor_size(if right { at + gap } else { at - gap }, text.size());
-    let top = rect.top().clamp(free.top() + 4.0, (free.bottom() - rect.height() - 4.0).max(0.0));
-    let rect = Rect::from_min_size(pos2(rect.left(), top), rect.size());
+    let room = free.shrink2(vec2(10.0, 8.0)).size() - rect.size();
+    if room.min_elem() < 0.0 {
+        return;
+    }
+    let corner = (rect.min - free.min - vec2(10.0, 8.0)).clamp(egui::Vec2::ZERO, room);
+    let rect = Rect::from_min_size(free.min + vec2(10.0, 8.0) + corner, rect.size());
     painter.rect_filled(rect.expand2(vec2(6.0, 3.0)), 5.0, Color32::from_rgb(150, 32, 10));
     painter.galley(rect.min, text, ink);
 }

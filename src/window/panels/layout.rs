@@ -119,9 +119,10 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     rows::flow(ui, |ui| {
         ui.spacing_mut().item_spacing = [4.0, 4.0].into();
+        ui.spacing_mut().button_padding.x = 4.0;
         for (tab, ..) in Tab::ALL {
             let button = egui::Button::selectable(ui_state.tab == tab, tab.title());
-            let button = ui.add(button.min_size([47.0, 22.0].into()));
+            let button = ui.add(button.min_size([38.0, 22.0].into()));
             if button.on_hover_text(tab.about()).clicked() {
                 ui_state.tab = tab;
             }

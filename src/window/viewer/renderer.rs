@@ -335,6 +335,8 @@ impl Renderer {
             _ => 2.0,
         };
         let [angle_up, angle_ends] = angle_numbers(&scene.look);
+        // A highlight would whiten the dark end of a scale of angles.
+        let [shine, rim] = if kind > 2.5 { [0.0; 2] } else { [m.shine, m.rim] };
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
         let ground = if scene.look.pale {
@@ -351,7 +353,7 @@ impl Renderer {
             back: scene.camera.backward().extend(0.0).to_array(),
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
             base: [base[0], base[1], base[2], f32::from(scene.look.flat)],
-            finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
+            finish: [shine, m.power, rim, scene.look.cavity.clamp(0.0, 2.0)],
             map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
             scale: scene.look.map.scale(),
             low: linear(ground[0]),
