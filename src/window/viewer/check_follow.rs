@@ -130,8 +130,8 @@ impl WindowState {
         }
     }
 
-    /// Gives the look the direction, limit and plate of the map of angles that is shown; `true` when
-    /// they changed.
+    /// Gives the look the direction, limit and plate of the map of angles that is shown; `true`
+    /// when they changed.
     pub(super) fn follow_angles(&mut self, state: &Published) -> bool {
         let (page, map) = (&self.ui_state.check, self.ui_state.look.map);
         let limit = page.angle_limit(map);

@@ -32,8 +32,8 @@ pub(super) struct Frame {
     pub(super) led: ProvisionalDabs,
 }
 
-/// Numbers of a map of angles: the direction, with the sine of the limit that decides; the height of
-/// the plate, and where the two halves of the scale end, radians.
+/// Numbers of a map of angles: the direction, with the sine of the limit that decides; the height
+/// of the plate, and where the two halves of the scale end, radians.
 pub(super) fn angle_numbers(look: &Look) -> [[f32; 4]; 2] {
     let angles = &look.angles;
     let [x, y, z] = angles.up;
