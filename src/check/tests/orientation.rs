@@ -6,7 +6,7 @@ use common::*;
 use glam::DVec3;
 use sculptd_check::orientation::{measured, orientations, turn_upright};
 use sculptd_check::part::PreparedPart;
-use sculptd_check::{CheckRequest, check_part};
+use sculptd_check::{CheckProgress, CheckRequest, check_count, check_part};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -105,4 +105,20 @@ fn a_cancelled_job_gives_no_answer() {
     let settings = settings("fdm", DVec3::Z);
     let request = CheckRequest { orient: true, ..Default::default() };
     assert!(check_part("p", &parts()[0], 1.0, &settings, request, &job, || 0.0).is_err());
+}
+
+#[test]
+fn every_check_is_counted_once() {
+    for process in ["fdm", "sla", "sls", "moulding"] {
+        let settings = settings(process, DVec3::Z);
+        for orient in [false, true] {
+            let all = check_count(&settings, orient);
+            let progress = CheckProgress::new(all);
+            let request = CheckRequest { orient, progress: Some(&progress) };
+            let job = Job::default();
+            let done = check_part("p", &parts()[0], 1.0, &settings, request, &job, || 0.0);
+            assert_eq!(done.expect("not cancelled").answer.checks.len(), all, "{process}");
+            assert_eq!(progress.count(), (all, all), "{process}");
+        }
+    }
 }

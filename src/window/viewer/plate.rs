@@ -49,3 +49,41 @@ impl PlateHeight {
         (lo <= hi).then_some(lo * scale + shift + slack)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3};
+    use sculptd_clay::brush::GaussianBrush;
+    use sculptd_clay::{Clay, Reach, Workers};
+    use sculptd_geometry::job::Job;
+    use sculptd_geometry::shapes;
+
+    #[test]
+    fn the_plate_follows_a_dab_and_stands_where_the_object_stands() {
+        let mut clay =
+            Clay::build(&shapes::sphere_of_about(20_000), &Job::default()).expect("a ball builds");
+        let turn = DQuat::from_rotation_x(0.9);
+        let transform = ObjectTransform { shift: DVec3::new(5.0, 40.0, -3.0), turn, scale: 4.0 };
+        let up = Vec3::new(0.6, 0.8, 0.0);
+        let mut kept = PlateHeight::default();
+        let mut height =
+            |clay: &mut Clay| kept.height(&clay.snapshot(), &transform, up, 0.2).expect("vertices");
+        let known = |clay: &mut Clay| {
+            let clay = clay.snapshot();
+            let all = clay.pages().flat_map(|p| (0..p.own()).map(|v| p.point(v)));
+            let least = all.map(|p| transform.point(p).dot(up)).fold(f32::INFINITY, f32::min);
+            least + 0.01
+        };
+        let before = height(&mut clay);
+        assert!((before - known(&mut clay)).abs() < 1e-4, "{before}");
+        // Raised where the ball meets the plate.
+        let below = transform.inverse().direction(-up);
+        let reach = Reach::Sphere { centre: below, radius: 0.3 };
+        let kernel = GaussianBrush::new(below, 0.3, below, 0.2);
+        clay.dab(&reach, &kernel, &Workers::new(1));
+        let after = height(&mut clay);
+        assert!(after < before - 0.3, "{before} {after}");
+        assert!((after - known(&mut clay)).abs() < 1e-4, "{after}");
+    }
+}
