@@ -240,10 +240,17 @@ fn findings(ui: &mut egui::Ui, view: &View<'_>, page: &mut CheckPage, out: &mut 
 fn facts(ui: &mut egui::Ui, view: &View<'_>, page: &CheckPage) {
     let found = page.shown().filter(|f| f.is_present(view.state));
     let Some([object]) = found.map(|f| &f.objects[..]) else { return };
+    let quiet = theme::quiet(ui);
     ui.add_space(6.0);
+    if let Some(size) = check_values::size(&object.answer) {
+        rows::flow(ui, |ui| {
+            ui.colored_label(quiet, tr!("check-size"));
+            ui.monospace(size);
+        });
+    }
     egui::Grid::new("check").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         for (name, value) in check_values::facts(&object.answer) {
-            ui.colored_label(theme::quiet(ui), name);
+            ui.colored_label(quiet, name);
             ui.monospace(value);
             ui.end_row();
         }

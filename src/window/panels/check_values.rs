@@ -3,6 +3,7 @@
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align2, Color32, FontId, Rect, TextStyle, vec2};
 
+use super::measure;
 use super::state::{CheckPage, View};
 use super::theme;
 use crate::language::tr;
@@ -105,17 +106,21 @@ pub fn row(
     job
 }
 
+/// Width, depth and height of a part as it stands.
+pub fn size(answer: &CheckAnswer) -> Option<String> {
+    let [x, y, z] = answer.facts.size?.map(short);
+    Some(format!("{x} x {y} x {z}"))
+}
+
 /// Figures of a part, each with its name.
 pub fn facts(answer: &CheckAnswer) -> Vec<(String, String)> {
     let f = &answer.facts;
-    let size = f.size.map(|[x, y, z]| {
-        let [x, y, z] = [x, y, z].map(|n| format!("{n:.1}"));
-        format!("{x} x {y} x {z}")
-    });
     [
-        (tr!("check-size"), size),
-        (tr!("check-weight"), f.weight.map(|g| tr!("check-grams", value = format!("{g:.2}")))),
-        (tr!("check-support"), f.support_volume.map(|v| tr!("volume-mm3", value = short(v)))),
+        (tr!("check-weight"), f.weight.map(|g| tr!("check-grams", value = measure::short(g)))),
+        (
+            tr!("check-support"),
+            f.support_volume.map(|v| tr!("volume-mm3", value = measure::short(v))),
+        ),
         (
             tr!("check-time"),
             f.build_time.map(|s| tr!("check-minutes", value = format!("{:.0}", s / 60.0))),

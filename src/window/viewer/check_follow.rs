@@ -89,7 +89,12 @@ impl WindowState {
     /// Stops the running check because a person asked for it.
     pub(super) fn cancel_check(&mut self) {
         self.workers.no_check();
-        self.ui_state.check.stop(CheckStop::Cancelled);
+        self.stop_check(CheckStop::Cancelled);
+    }
+
+    /// Notes why the check that was asked for has no result; it is not asked for again by itself.
+    fn stop_check(&mut self, why: CheckStop) {
+        self.ui_state.check.stop(why);
         if let Some(asked) = &mut self.asked_check {
             asked.search = false;
         }
@@ -118,7 +123,7 @@ impl WindowState {
                 }
                 page.take(found, f64::from(state.extent) * SAME_PLACE);
             }
-            Err(why) => page.stop(CheckStop::Failed(why)),
+            Err(why) => self.stop_check(CheckStop::Failed(why)),
         }
     }
 

@@ -108,6 +108,8 @@ pub(super) fn fill(s: &mut State) {
         if i % 2 == 0 { finding } else { finding.warning() }
     };
     object.answer.findings = FindingKind::ALL.into_iter().enumerate().map(of).collect();
+    object.answer.facts.size = Some([1_234.56; 3]);
+    object.answer.facts.cooling_time = Some(123.4);
     let first = &object.answer.findings[0];
     let place = DVec3::from(first.position.expect("a place"));
     let page = &mut s.ui_state.check;
