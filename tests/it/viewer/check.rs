@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DQuat, DVec3, Vec3};
 use sculptd_check::preset::CheckPreset;
 use sculptd_check::{CheckProgress, Finding, FindingKind, PresetLibrary, Severity};
-use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::brush::{BrushSettings, MaskAction};
 use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::Published;
 use sculptd_devices::Clock;
@@ -249,7 +249,12 @@ fn a_result_of_earlier_clay_says_so_and_does_not_pass() {
     let revision = h.state().published.mesh.revision();
     let line = format!("Measured on the clay as it is now (revision {revision}).");
     assert!(h.query_by_label(&line).is_some());
-    tell(&mut world, Command::Replace(NewClay::new(Arc::new(portal(20.0)), true)));
+    // An edit of the same clay; several ticks, where it takes portions.
+    tell(&mut world, Command::Mask(MaskAction::Fill));
+    for _ in 0..10 {
+        world.step(world.tick() + 1, &[], &[]);
+    }
+    assert!(world.snapshot().revision() > revision);
     h.state_mut().published = super::published(&mut world);
     h.run_steps(2);
     assert!(h.query_by_label_contains("Passed").is_none());
