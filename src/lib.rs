@@ -87,8 +87,8 @@
 //!   by several daemons, and a fleet of installations. Both protocols are state machines without
 //!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
 //!   set).
-//! * `sculptd-window` (`src/window`) depends on the daemon and all below it: panels (egui) and
-//!   viewer (wgpu), which read snapshots and send commands.
+//! * `sculptd-window` (`src/window`) depends on the daemon and all below it, and on check: panels
+//!   (egui) and viewer (wgpu), which read snapshots and send commands.
 //! * `sculptd-check` (`src/check`) depends on geometry: whether a part is ready to be printed or
 //!   moulded, as findings with place, value and limit, and in which direction to build it.
 //! * `sculptd-mesh-commands` (`src/mesh_commands`) depends on geometry, check, and on the clock of
@@ -192,7 +192,7 @@
 //!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
-//! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, made by
+//! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, `sculptd-check`, made by
 //!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the

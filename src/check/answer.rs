@@ -1,5 +1,7 @@
 //! The answer of a check.
 
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
 use serde::Serialize;
 
 use crate::finding::Finding;
@@ -96,10 +98,39 @@ pub struct CheckAnswer {
 }
 
 /// The work asked for besides the checks.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct CheckRequest {
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CheckRequest<'a> {
     /// Search for the best orientation.
     pub orient: bool,
+    /// Counts the checks that have ended, for whoever waits for the answer.
+    pub progress: Option<&'a CheckProgress>,
+}
+
+/// The number of checks that have ended, out of those that were asked for.
+///
+/// Each check reports its own progress to the job, so the job cannot tell how much of the whole is
+/// done.
+#[derive(Debug, Default)]
+pub struct CheckProgress {
+    ended: AtomicUsize,
+    all: usize,
+}
+
+impl CheckProgress {
+    /// Creates a count of 0 out of `all`.
+    pub fn new(all: usize) -> CheckProgress {
+        CheckProgress { ended: AtomicUsize::new(0), all }
+    }
+
+    /// Counts one more check.
+    pub(crate) fn add(&self) {
+        self.ended.fetch_add(1, Relaxed);
+    }
+
+    /// The number of checks that have ended, and the number asked for.
+    pub fn count(&self) -> (usize, usize) {
+        (self.ended.load(Relaxed).min(self.all), self.all)
+    }
 }
 
 /// The answer with the part that it is about, for pictures. The part is absent where the mesh is no

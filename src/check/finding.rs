@@ -58,6 +58,34 @@ pub enum FindingKind {
 }
 
 impl FindingKind {
+    /// Every kind, in order.
+    pub const ALL: [FindingKind; 24] = [
+        FindingKind::NotChecked,
+        FindingKind::Open,
+        FindingKind::Orientation,
+        FindingKind::SelfIntersection,
+        FindingKind::NestedShell,
+        FindingKind::Sliver,
+        FindingKind::ThinWall,
+        FindingKind::ThinPin,
+        FindingKind::Gap,
+        FindingKind::Hole,
+        FindingKind::ThickSection,
+        FindingKind::Sink,
+        FindingKind::Island,
+        FindingKind::Overhang,
+        FindingKind::Bridge,
+        FindingKind::TrappedVolume,
+        FindingKind::SuctionCup,
+        FindingKind::Draft,
+        FindingKind::Undercut,
+        FindingKind::ClampingForce,
+        FindingKind::ShotVolume,
+        FindingKind::Tipping,
+        FindingKind::Size,
+        FindingKind::Contact,
+    ];
+
     /// The name in JSON.
     pub fn name(self) -> &'static str {
         match self {

@@ -39,7 +39,7 @@ pub mod settings;
 pub mod soundness;
 pub mod walls;
 
-pub use answer::{CheckAnswer, CheckRequest, CheckedSolid, PartFacts, RanCheck};
+pub use answer::{CheckAnswer, CheckProgress, CheckRequest, CheckedSolid, PartFacts, RanCheck};
 pub use finding::{Finding, FindingKind, Severity};
-pub use run::check_part;
+pub use run::{check_count, check_part};
 pub use settings::{CheckSettings, PresetLibrary};

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::{Cancelled, Job};
 
-use crate::answer::{CheckAnswer, CheckRequest, CheckedSolid, PartFacts, RanCheck};
+use crate::answer::{CheckAnswer, CheckProgress, CheckRequest, CheckedSolid, PartFacts, RanCheck};
 use crate::checks::{AskedCheck, CheckView, Stopped, asked};
 use crate::estimates::{build_time, weight};
 use crate::finding::{Finding, Severity, arrange};
@@ -15,6 +15,11 @@ use crate::orientation::{OrientationSearch, orientations};
 use crate::part::{PreparedPart, Standing};
 use crate::settings::CheckSettings;
 use crate::soundness::soundness;
+
+/// Returns the number of checks that [`check_part`] runs on a solid, for [`CheckProgress`].
+pub fn check_count(settings: &CheckSettings, orient: bool) -> usize {
+    1 + asked(settings).len() + usize::from(orient)
+}
 
 /// Checks one part. `scale` is millimetres a unit of the file; `seconds` reads a clock that the
 /// caller started.
@@ -26,7 +31,7 @@ pub fn check_part(
     mesh: &PolyMesh,
     scale: f64,
     settings: &CheckSettings,
-    request: CheckRequest,
+    request: CheckRequest<'_>,
     job: &Job,
     seconds: impl Fn() -> f64 + Sync,
 ) -> Result<CheckedSolid, Cancelled> {
@@ -38,6 +43,8 @@ pub fn check_part(
         || finite.then(|| PreparedPart::new(mesh, scale, job)).transpose(),
     );
     let (sound, early) = (sound?, early?);
+    let ended = || request.progress.into_iter().for_each(CheckProgress::add);
+    ended();
     let mut findings = sound.findings;
     let mut warnings = sound.warnings;
     let mut checks = vec![RanCheck { name: "mesh", ran: true, seconds: seconds() - began }];
@@ -72,6 +79,7 @@ pub fn check_part(
             let one = |check: &AskedCheck| {
                 let from = seconds();
                 let done = (check.2)(&view);
+                ended();
                 (done, seconds() - from)
             };
             // Two at a time: the sweep has one thread only.
@@ -99,6 +107,7 @@ pub fn check_part(
             if request.orient {
                 let from = seconds();
                 search = orientations(&part, settings, job)?;
+                ended();
                 checks.push(RanCheck {
                     name: "orientation",
                     ran: search.is_some(),

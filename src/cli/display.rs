@@ -94,7 +94,7 @@ pub fn window(
         open_first: shown.open_first.clone(),
         fresh: shown.fresh,
         link: run.window.clone(),
-        thickness_presets: super::thickness_presets::all().map_err(|e| e.to_string())?,
+        check_presets: super::check_presets::all().map_err(|e| e.to_string())?,
         kiosk: run.kiosk.clone(),
         invitation: invitation(run),
     };

@@ -83,18 +83,83 @@ pub enum Map {
     Thickness,
     /// Distance to another form, in the mesh's unit: negative within it, positive outside.
     Distance,
+    /// Angle of faces that look down, from the vertical, as in the check.
+    Overhang,
+    /// Angle between faces and the direction in which a mould opens, as in the check.
+    Draft,
+}
+
+/// Draft of so many degrees above the limit, and more, has the last colour.
+const ENOUGH_DRAFT: f32 = 10.0;
+
+/// What a map of angles compares with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleMap {
+    /// The build direction, or the direction in which a mould opens; in the world, one long.
+    pub up: [f32; 3],
+    /// Degrees.
+    pub limit: f32,
+    /// Up to this height along `up` a face is on the plate, and needs no support.
+    pub plate: Option<f32>,
+}
+
+impl Default for AngleMap {
+    fn default() -> Self {
+        AngleMap { up: [0.0, 1.0, 0.0], limit: 45.0, plate: None }
+    }
+}
+
+impl AngleMap {
+    /// The angle at which the scale of a map ends, degrees.
+    pub fn end(&self, map: Map) -> f32 {
+        if map == Map::Draft { (self.limit + ENOUGH_DRAFT).min(90.0) } else { 90.0 }
+    }
+
+    /// The limit as the check compares with it, degrees: an angle that differs by less than a
+    /// normal's rounding is a tie, which passes.
+    pub fn slack_limit(&self, map: Map) -> f32 {
+        const SLACK: f32 = 0.01;
+        if map == Map::Draft { (self.limit - SLACK).max(0.0) } else { self.limit + SLACK }
+    }
 }
 
 /// Stops of the distance's scale, sRGB: blue within, pale where both are one, red outside.
 const DISTANCE: [[u8; 3]; 5] =
     [[24, 62, 150], [104, 160, 214], [238, 236, 228], [228, 138, 92], [158, 28, 32]];
 
+/// Stops of the scale of angles, sRGB, from far within the limit to it, and from it to far beyond:
+/// a step between the two shows where the limit runs.
+const WITHIN: [[u8; 3]; 2] = [[196, 206, 214], [238, 228, 170]];
+const BEYOND: [[u8; 3]; 2] = [[238, 128, 50], [166, 16, 30]];
+
 /// Stops of the mask's scale, sRGB: free is pale, held is deep blue.
 const MASK: [[u8; 3]; 2] = [[232, 226, 214], [28, 52, 110]];
 /// Entries of a scale on the card; between them colours are mixed.
 pub const SCALE: usize = 8;
 
+fn mixed(a: [u8; 3], b: [u8; 3], x: f32) -> [u8; 3] {
+    std::array::from_fn(|k| {
+        let (a, b) = (f32::from(a[k]), f32::from(b[k]));
+        (a + (b - a) * x).round() as u8
+    })
+}
+
 impl Map {
+    /// Returns true for a map of angles, whose scale has its limit in the middle.
+    pub fn is_of_angles(self) -> bool {
+        matches!(self, Map::Overhang | Map::Draft)
+    }
+
+    /// The colour of an angle: `x` from 0 to 1 below the limit, or above it.
+    fn angle_colour(self, x: f32, above: bool) -> [u8; 3] {
+        match (self, above) {
+            (Map::Draft, false) => mixed(BEYOND[1], BEYOND[0], x),
+            (Map::Draft, true) => mixed(WITHIN[1], WITHIN[0], x),
+            (_, false) => mixed(WITHIN[0], WITHIN[1], x),
+            (_, true) => mixed(BEYOND[0], BEYOND[1], x),
+        }
+    }
+
     /// The colour of a value between the scale's ends; sRGB.
     pub fn colour(self, value: f32, low: f32, high: f32) -> [u8; 3] {
         match self {
@@ -103,25 +168,28 @@ impl Map {
             }
             Map::Mask => {
                 let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
-                std::array::from_fn(|k| {
-                    let (a, b) = (f32::from(MASK[0][k]), f32::from(MASK[1][k]));
-                    (a + (b - a) * x).round() as u8
-                })
+                mixed(MASK[0], MASK[1], x)
             }
             Map::Distance => {
                 let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0);
                 let at = x * (DISTANCE.len() - 1) as f32;
                 let i = (at as usize).min(DISTANCE.len() - 2);
-                std::array::from_fn(|k| {
-                    let (a, b) = (f32::from(DISTANCE[i][k]), f32::from(DISTANCE[i + 1][k]));
-                    (a + (b - a) * (at - i as f32)).round() as u8
-                })
+                mixed(DISTANCE[i], DISTANCE[i + 1], at - i as f32)
+            }
+            Map::Overhang | Map::Draft => {
+                let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0) * 2.0;
+                self.angle_colour(if x < 1.0 { x } else { x - 1.0 }, x >= 1.0)
             }
         }
     }
 
-    /// The scale for the card, linear.
+    /// The scale for the card, linear. Of a map of angles the first half is below the limit.
     pub fn scale(self) -> [[f32; 4]; SCALE] {
+        if self.is_of_angles() {
+            const HALF: usize = SCALE / 2;
+            let x = |i: usize| (i % HALF) as f32 / (HALF - 1) as f32;
+            return std::array::from_fn(|i| linear(self.angle_colour(x(i), i >= HALF)));
+        }
         std::array::from_fn(|i| linear(self.colour(i as f32 / (SCALE - 1) as f32, 0.0, 1.0)))
     }
 
@@ -132,6 +200,8 @@ impl Map {
             Map::Mask => "map-mask",
             Map::Thickness => "map-thickness",
             Map::Distance => "map-distance",
+            Map::Overhang => "map-overhang",
+            Map::Draft => "map-draft",
         }
     }
 }
@@ -178,6 +248,9 @@ pub struct Look {
     /// The ends of the map's scale.
     #[serde(skip)]
     pub scale: (f32, f32),
+    /// What a map of angles compares with.
+    #[serde(skip)]
+    pub angles: AngleMap,
 }
 
 impl Default for Look {
@@ -198,6 +271,7 @@ impl Default for Look {
             pale: false,
             sets: true,
             scale: (0.0, 1.0),
+            angles: AngleMap::default(),
         }
     }
 }
@@ -249,10 +323,18 @@ mod tests {
 
     #[test]
     fn a_scale_runs_from_its_low_to_its_high_colour() {
-        for map in [Map::Mask, Map::Thickness, Map::Distance] {
+        for map in [Map::Mask, Map::Thickness, Map::Distance, Map::Overhang, Map::Draft] {
             assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
             assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
             assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);
+        }
+        for map in [Map::Overhang, Map::Draft] {
+            assert_ne!(
+                map.colour(0.49, 0.0, 1.0),
+                map.colour(0.5, 0.0, 1.0),
+                "a step at the limit"
+            );
+            assert_eq!(map.scale()[SCALE / 2], linear(map.colour(0.5, 0.0, 1.0)));
         }
         assert!((linear([188, 0, 255])[0] - 0.503).abs() < 2e-3);
     }

@@ -3,6 +3,8 @@
 
 mod beside;
 mod brush_panel;
+mod check;
+mod check_maps;
 mod four_views;
 mod kiosk;
 mod languages;

@@ -10,10 +10,19 @@ type Arguments = BTreeSet<String>;
 
 /// Prefixes of the message ids that the code builds from data (brushes, actions, stages, ...);
 /// tests/it/viewer/languages.rs checks that data.
-const OF_DATA: [&str; 5] = ["kind-", "number-", "action-", "process-", "stage-"];
+const OF_DATA: [&str; 8] = [
+    "kind-",
+    "number-",
+    "action-",
+    "process-",
+    "stage-",
+    "check-printer-",
+    "check-material-",
+    "finding-",
+];
 
 /// Texts that stay in the code, and why.
-const STAY: [(&str, &[&str]); 14] = [
+const STAY: [(&str, &[&str]); 16] = [
     // English names of what messages name too, by which Ctrl+K finds an action in any language:
     // tests/it/viewer/languages.rs holds them equal to the messages.
     ("panels/state/action.rs", &[]),
@@ -30,6 +39,9 @@ const STAY: [(&str, &[&str]); 14] = [
     ("panels/timing.rs", &["p50", "p99", "max", "ms"]),
     ("panels/files.rs", &["stl, obj, ply, off, glb, 3mf"]),
     ("panels/analysis.rs", &[" mm"]),
+    // Units as the checks state them, each with a message, and the name of a preset.
+    ("panels/check_values.rs", &["mm", "mm2", "mm3", "degrees", "edges", "pairs", "times", "kN"]),
+    ("panels/state/check.rs", &["fdm"]),
     ("panels/state/chooser.rs", &["stl", "obj", "ply", "glb", "gltf", "3mf", "sculpture.stl"]),
     ("panels/state/files.rs", &["sculpture.stl"]),
     ("panels/state/sizes.rs", &["outline.svg"]),

@@ -5,6 +5,7 @@
 #![cfg(unix)]
 #![allow(clippy::print_stdout)] // Figures and skips are told on standard output.
 
+mod check;
 mod courses;
 mod desktop;
 mod files;

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let process = library.process(process)?;
             let settings = CheckSettings::new(&library, process, None, None, DVec3::Z)?;
             let seconds = || clock.elapsed().as_secs_f64();
-            let request = CheckRequest { orient };
+            let request = CheckRequest { orient, ..Default::default() };
             let done = check_part("ball", &mesh, 1.0, &settings, request, &job, seconds)?;
             let a = done.answer;
             println!("{}: {:.3} s, {} findings", a.process, a.seconds, a.findings.len());

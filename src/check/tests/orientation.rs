@@ -6,7 +6,7 @@ use common::*;
 use glam::DVec3;
 use sculptd_check::orientation::{measured, orientations, turn_upright};
 use sculptd_check::part::PreparedPart;
-use sculptd_check::{CheckRequest, check_part};
+use sculptd_check::{CheckProgress, CheckRequest, check_count, check_part};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -85,7 +85,7 @@ fn answers_do_not_depend_on_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let settings = settings(process, DVec3::Z);
-            let request = CheckRequest { orient: true };
+            let request = CheckRequest { orient: true, ..Default::default() };
             let job = Job::default();
             let done = check_part("p", mesh, 1.0, &settings, request, &job, || 0.0);
             serde_json::to_string(&done.expect("not cancelled").answer).expect("JSON")
@@ -103,6 +103,22 @@ fn a_cancelled_job_gives_no_answer() {
     let job = Job::default();
     job.cancel();
     let settings = settings("fdm", DVec3::Z);
-    let request = CheckRequest { orient: true };
+    let request = CheckRequest { orient: true, ..Default::default() };
     assert!(check_part("p", &parts()[0], 1.0, &settings, request, &job, || 0.0).is_err());
+}
+
+#[test]
+fn every_check_is_counted_once() {
+    for process in ["fdm", "sla", "sls", "moulding"] {
+        let settings = settings(process, DVec3::Z);
+        for orient in [false, true] {
+            let all = check_count(&settings, orient);
+            let progress = CheckProgress::new(all);
+            let request = CheckRequest { orient, progress: Some(&progress) };
+            let job = Job::default();
+            let done = check_part("p", &parts()[0], 1.0, &settings, request, &job, || 0.0);
+            assert_eq!(done.expect("not cancelled").answer.checks.len(), all, "{process}");
+            assert_eq!(progress.count(), (all, all), "{process}");
+        }
+    }
 }

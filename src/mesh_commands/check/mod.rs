@@ -170,7 +170,7 @@ fn one(
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
     let name = path.display().to_string();
-    let request = CheckRequest { orient };
+    let request = CheckRequest { orient, ..Default::default() };
     let scale = how.unit.scale();
     let mut checked = check_part(&name, &loaded.mesh, scale, settings, request, &job, seconds)
         .map_err(interrupted)?;

@@ -70,6 +70,8 @@ pub fn act(
         Action::Grid => ui_state.look.grid = !ui_state.look.grid,
         Action::Thickness => toggle(&mut ui_state.look.map, Map::Thickness),
         Action::Distance => toggle(&mut ui_state.look.map, Map::Distance),
+        Action::Overhang => toggle(&mut ui_state.look.map, Map::Overhang),
+        Action::DraftAngle => toggle(&mut ui_state.look.map, Map::Draft),
         Action::TrimBox => ui_state.region.begin(RegionShape::Box, RegionPurpose::Trim),
         Action::TrimLine => ui_state.region.begin(RegionShape::Line, RegionPurpose::Trim),
         Action::RegionLasso => ui_state.region.begin_shape(RegionShape::Lasso),

@@ -3,10 +3,11 @@
 use super::act::act;
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
-    analysis, brush, chooser, colours, cube, curve_stroke, devices, face_sets, files, fonts,
-    hand_menu, help, hints, history, keys, layers, legend, light, look, masks, measure, messages,
-    modal, outliner, people, preferences, pressure_curve, radial, region, remesh, retopology, rows,
-    scene, search, start, symmetry, tablet_keys, theme, timing, trim, views,
+    analysis, brush, check, check_values, chooser, colours, cube, curve_stroke, devices, face_sets,
+    files, fonts, hand_menu, help, hints, history, keys, layers, legend, light, look, masks,
+    measure, messages, modal, outliner, people, preferences, pressure_curve, radial, region,
+    remesh, retopology, rows, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    views,
 };
 
 /// Width of either panel, points.
@@ -67,6 +68,9 @@ pub fn all(
     curve_stroke::ui(&ctx, view, ui_state, worked_in, out);
     people::labels(&ctx, view, worked_in);
     hand_menu::ui(&ctx, view, worked_in);
+    if ui_state.tab == Tab::Check && !ui_state.hidden {
+        check_values::label(&ctx, view, &ui_state.check, worked_in);
+    }
     cube::ui(&ctx, view, free, out);
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, view, ui_state, free);
@@ -115,9 +119,10 @@ fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     rows::flow(ui, |ui| {
         ui.spacing_mut().item_spacing = [4.0, 4.0].into();
+        ui.spacing_mut().button_padding.x = 4.0;
         for (tab, ..) in Tab::ALL {
             let button = egui::Button::selectable(ui_state.tab == tab, tab.title());
-            let button = ui.add(button.min_size([47.0, 22.0].into()));
+            let button = ui.add(button.min_size([38.0, 22.0].into()));
             if button.on_hover_text(tab.about()).clicked() {
                 ui_state.tab = tab;
             }
@@ -141,6 +146,7 @@ fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
             trim::buttons(ui, ui_state);
         }
         Tab::Walls => analysis::ui(ui, view, ui_state, out),
+        Tab::Check => check::ui(ui, view, ui_state, out),
         Tab::Measure => measure::ui(ui, view, ui_state, out),
         Tab::Files => files::ui(ui, view, ui_state, out),
         Tab::Devices => devices::ui(ui, view, ui_state, out),

@@ -2,10 +2,10 @@
 
 use egui::{Rect, pos2, vec2};
 
-use super::measure;
 use super::state::UiState;
+use super::{check_values, measure};
 use crate::language::tr;
-use crate::look::Map;
+use crate::look::{AngleMap, Map};
 
 pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
     let map = ui_state.look.map;
@@ -15,7 +15,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
     let known = match map {
         Map::Thickness => ui_state.walls.found.is_some(),
         Map::Distance => ui_state.sizes.distances.is_some(),
-        Map::None | Map::Mask => true,
+        Map::None | Map::Mask | Map::Overhang | Map::Draft => true,
     };
     let (low, high) = match map {
         Map::Mask => (0.0, 1.0),
@@ -50,6 +50,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
                     Map::Distance if i == 1 => tr!("length-mm", value = "0"),
                     Map::Distance => tr!("length-mm", value = format!("{value:+.3}")),
                     Map::Mask => format!("{value:.2}"),
+                    Map::Overhang | Map::Draft => angle_at(ui_state.look.angles, map, i),
                     _ => tr!("length-mm", value = format!("{value:.2}")),
                 };
                 let at = pos2(bar.right() + 6.0, bar.bottom() - x * bar.height());
@@ -57,4 +58,14 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
             }
         });
     });
+}
+
+/// The text of a map of angles at the low end, the limit and the high end of its scale.
+fn angle_at(angles: AngleMap, map: Map, place: i32) -> String {
+    let degrees = |x: f32| check_values::short(f64::from(x));
+    match place {
+        0 => tr!("angle-degrees", value = "0"),
+        1 => tr!("legend-limit", value = degrees(angles.limit)),
+        _ => tr!("angle-degrees", value = degrees(angles.end(map))),
+    }
 }

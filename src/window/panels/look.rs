@@ -28,6 +28,8 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
             (Map::Mask, view.tip(Action::Mask)),
             (Map::Thickness, view.tip(Action::Thickness)),
             (Map::Distance, view.tip(Action::Distance)),
+            (Map::Overhang, view.tip(Action::Overhang)),
+            (Map::Draft, view.tip(Action::DraftAngle)),
         ] {
             ui.selectable_value(&mut ui_state.look.map, map, tr!(map.title())).on_hover_text(tip);
         }

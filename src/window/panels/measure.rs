@@ -51,7 +51,7 @@ fn measures(ui: &mut egui::Ui, view: &View<'_>, sizes: &SizesPage) {
 }
 
 /// Six figures, as many before the point as there are.
-fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     let whole = x.abs().max(1.0).log10().floor() as usize;
     format!("{x:.*}", 5usize.saturating_sub(whole).min(4))
 }

@@ -10,6 +10,8 @@ pub mod brush;
 mod brush_palette;
 mod brush_size;
 mod camera_preview;
+pub mod check;
+pub mod check_values;
 pub mod chooser;
 mod colours;
 pub mod cube;

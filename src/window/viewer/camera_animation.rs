@@ -16,15 +16,15 @@ pub struct CameraAnimation {
 }
 
 impl CameraAnimation {
-    /// To look at `place` from outside the object, whose middle and bounding radius are given.
+    /// To look at `place` from a side of it, at an object of this bounding radius.
     pub fn to_place(
         from: Camera,
         place: Vec3,
-        middle: Vec3,
+        side: Vec3,
         extent: f32,
         now_us: u64,
     ) -> CameraAnimation {
-        let out = (place - middle).normalize_or(from.backward());
+        let out = side.normalize_or(from.backward());
         let tau = std::f32::consts::TAU;
         let yaw = if out.x.abs() + out.z.abs() > 1e-4 { out.x.atan2(out.z) } else { from.yaw };
         // The short way round.
@@ -68,7 +68,7 @@ mod tests {
     fn a_flight_ends_looking_at_the_place_from_outside() {
         let from = Camera { yaw: 6.0, ..Camera::default() };
         let place = Vec3::new(0.9, 0.1, 0.3);
-        let camera_animation = CameraAnimation::to_place(from, place, Vec3::ZERO, 1.0, 5);
+        let camera_animation = CameraAnimation::to_place(from, place, place, 1.0, 5);
         let (camera, arrived) = camera_animation.at(5 + TAKES_US);
         assert!(arrived && camera.is_sane());
         assert!((camera.target - place).length() < 1e-6);

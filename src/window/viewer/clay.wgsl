@@ -24,8 +24,8 @@ struct Frame {
     base: vec4<f32>,
     // Highlight's strength and exponent, light at the rim, strength of cavities.
     finish: vec4<f32>,
-    // A map's lowest value, one over its span, which (0 none, 1 mask, 2 values), and how much
-    // nearer lines are.
+    // A map's lowest value, one over its span, which (0 none, 1 mask, 2 values, 3 overhang,
+    // 4 draft), and how much nearer lines are.
     map: vec4<f32>,
     scale: array<vec4<f32>, 8>,
     // The ground's lower and upper colour.
@@ -41,6 +41,11 @@ struct Frame {
     main_light: vec4<f32>,
     // From a place to that light's own picture of depths.
     shadow: mat4x4<f32>,
+    // Of a map of angles. xyz: the build direction, or the one in which a mould opens; w: the sine
+    // of the limit, as the check compares with it.
+    angle_up: vec4<f32>,
+    // Up to this height a face is on the plate; the limit and the end of the scale, radians.
+    angle_ends: vec4<f32>,
     led: array<LedDab, 8>,
     // The falloff's values at even steps from the middle to the rim.
     profile: array<vec4<f32>, 3>,
@@ -171,6 +176,26 @@ fn scaled(value: f32) -> vec3<f32> {
     return mix(frame.scale[i].rgb, frame.scale[i + 1u].rgb, at - f32(i));
 }
 
+// The colour of a face by its angle. The scale has two halves, below the limit and above it, and a
+// step between them: a face is never between the two.
+fn by_angle(n: vec3<f32>, place: vec3<f32>) -> vec3<f32> {
+    let rise = dot(n, frame.angle_up.xyz);
+    let overhang = frame.map.z < 3.5;
+    if (overhang && dot(place, frame.angle_up.xyz) <= frame.angle_ends.x) {
+        return frame.scale[0].rgb;
+    }
+    let sine = clamp(select(abs(rise), -rise, overhang), -1.0, 1.0);
+    let angle = asin(sine);
+    let limit = frame.angle_ends.y;
+    let above = select(sine >= frame.angle_up.w, sine > frame.angle_up.w, overhang);
+    let below_share = angle / max(limit, 1e-6);
+    let above_share = (angle - limit) / max(frame.angle_ends.z - limit, 1e-6);
+    let at = clamp(select(below_share, above_share, above), 0.0, 1.0) * 3.0;
+    let step = min(u32(at), 2u);
+    let i = step + select(0u, 4u, above);
+    return mix(frame.scale[i].rgb, frame.scale[i + 1u].rgb, at - f32(step));
+}
+
 // Two soft lights, a rim and a sky, in the frame of the view; `reaches`: the share of the main light
 // that nothing stands in.
 fn lit(n: vec3<f32>, base: vec3<f32>, reaches: f32) -> vec3<f32> {
@@ -271,6 +296,14 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
         base = vec3<f32>(0.22, 0.24, 0.28);
         if (frame.map.z < 1.5) {
             base = scaled(in.masked);
+        } else if (frame.map.z > 2.5) {
+            // Of the triangle itself, as in the check: corners of few triangles have normals that
+            // no face has.
+            let sharp = dot(facet, facet) > 0.0;
+            let own = select(normalize(in.normal), normalize(facet), sharp);
+            if (front) {
+                base = by_angle(select(own, -own, dot(own, in.normal) < 0.0), in.place);
+            }
         } else if (in.known > 0.999) {
             base = scaled(in.value);
         }

@@ -4,8 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
 use super::provisional::ProvisionalDabs;
-use crate::look::SCALE;
+use crate::look::{Look, SCALE};
 use sculptd_clay::Page;
+use sculptd_engine::scene::ObjectTransform;
 
 /// One for the world, and one for each object in its own frame.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -26,7 +27,30 @@ pub(super) struct Frame {
     pub(super) backdrop: [f32; 4],
     pub(super) main_light: [f32; 4],
     pub(super) shadow: [[f32; 4]; 4],
+    pub(super) angle_up: [f32; 4],
+    pub(super) angle_ends: [f32; 4],
     pub(super) led: ProvisionalDabs,
+}
+
+/// Numbers of a map of angles: the direction, with the sine of the limit that decides; the height
+/// of the plate, and where the two halves of the scale end, radians.
+pub(super) fn angle_numbers(look: &Look) -> [[f32; 4]; 2] {
+    let angles = &look.angles;
+    let [x, y, z] = angles.up;
+    let decides = angles.slack_limit(look.map).to_radians().sin();
+    let plate = angles.plate.unwrap_or(f32::MIN);
+    let (limit, end) = (angles.limit.to_radians(), angles.end(look.map).to_radians());
+    [[x, y, z, decides], [plate, limit, end, 0.0]]
+}
+
+/// The same in the frame of an object.
+pub(super) fn own_angles([up, ends]: [[f32; 4]; 2], transform: &ObjectTransform) -> [[f32; 4]; 2] {
+    let direction = Vec3::new(up[0], up[1], up[2]);
+    let own = transform.inverse().direction(direction).extend(up[3]).to_array();
+    let shift = transform.shift.dot(direction.as_dvec3());
+    let plate = (f64::from(ends[0]) - shift) / transform.scale;
+    let plate = plate.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+    [own, [plate, ends[1], ends[2], ends[3]]]
 }
 
 /// Returns true if a page's box may be visible: not wholly beyond one plane of the view.

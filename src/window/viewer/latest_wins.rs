@@ -49,8 +49,8 @@ impl<W: Send + 'static> LatestWins<W> {
         LatestWins { slot, under_way: Arc::default(), cancels: false }
     }
 
-    /// Replaces whatever was requested before.
-    pub fn request(&mut self, request: W) {
+    /// Replaces whatever was requested before. Returns the job by which it is cancelled.
+    pub fn request(&mut self, request: W) -> Arc<Job> {
         if self.cancels {
             self.cancel();
             self.under_way = Arc::default();
@@ -58,6 +58,7 @@ impl<W: Send + 'static> LatestWins<W> {
             let _ = self.slot.1.try_recv();
         }
         let _ = self.slot.0.try_send((request, self.under_way.clone()));
+        self.under_way.clone()
     }
 
     /// Cancels the job under way and empties the slot.

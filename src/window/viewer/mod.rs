@@ -7,6 +7,8 @@
 mod app;
 mod brush_requests;
 mod camera_animation;
+mod check_follow;
+pub mod check_task;
 mod clay_frame;
 mod clay_picture;
 mod coarse_pages;
@@ -37,6 +39,7 @@ mod pacing;
 mod page_place;
 pub mod pages;
 pub mod picture;
+mod plate;
 mod pointer;
 mod poll;
 pub mod preferences_file;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Mat4, Vec3};
 
-use super::frame_uniform::{Frame, in_view};
+use super::frame_uniform::{Frame, in_view, own_angles};
 use super::pages::Pages;
 use super::provisional::ProvisionalDabs;
 use crate::viewer::gpu::Gpu;
@@ -89,6 +89,7 @@ impl Frame {
             |v: [f32; 4]| own.direction(Vec3::new(v[0], v[1], v[2])).extend(v[3]).to_array();
         let [x, y, z, radius] = self.brush;
         let place = own.point(Vec3::new(x, y, z));
+        let [angle_up, angle_ends] = own_angles([self.angle_up, self.angle_ends], transform);
         let shadow = Mat4::from_cols_array_2d(&self.shadow) * model(transform);
         Frame {
             view_projection: (*matrix * model(transform)).to_cols_array_2d(),
@@ -96,6 +97,8 @@ impl Frame {
             right: direction(self.right),
             up: direction(self.up),
             back: direction(self.back),
+            angle_up,
+            angle_ends,
             brush: place.extend(radius * own.scale as f32).to_array(),
             led: self.led.seen_from(transform),
             ..*self
@@ -192,7 +195,7 @@ impl ObjectBuffers {
         self.pages.retain(|id, _| others.iter().any(|o| o.id == *id));
         (self.uploaded, self.waiting) = (0, 0);
         // A map is of the active object, and so are the brush and what is led.
-        let kind = if frame.map[2] == 2.0 { 0.0 } else { frame.map[2] };
+        let kind = if frame.map[2] >= 2.0 { 0.0 } else { frame.map[2] };
         let [low, high, _, nearer] = frame.map;
         let map = [low, high, kind, nearer];
         let bare = Frame { brush: [0.0; 4], led: ProvisionalDabs::default(), map, ..*frame };

@@ -77,6 +77,7 @@ impl WindowState {
             }
         }
         self.objects_in_hand(&mut lines, state, &self.camera);
+        self.check_lines(&mut lines, &self.camera);
         OverClay { lines, brush, led: self.led(state, wiring) }
     }
 
@@ -85,6 +86,7 @@ impl WindowState {
         let mut lines = Vec::new();
         self.grid(&mut lines, state);
         self.objects_in_hand(&mut lines, state, camera);
+        self.check_lines(&mut lines, camera);
         OverClay { lines, ..OverClay::default() }
     }
 

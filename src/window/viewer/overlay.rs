@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
 use crate::look::linear;
+use crate::panels::check_values::RING_SHARE;
 use sculptd_clay::Ray;
 use sculptd_daemon::Published;
 use sculptd_daemon::people::colour_of;
@@ -16,6 +17,10 @@ const CARVING: [u8; 4] = [150, 190, 255, 255];
 const MIRRORED: [u8; 4] = [150, 205, 255, 190];
 const HELD: [u8; 4] = [255, 214, 140, 110];
 const BONE: [u8; 4] = [190, 225, 255, 200];
+/// Of a marked finding: the colours, and the opacity behind a surface.
+const MARK: [u8; 4] = [255, 190, 20, 255];
+const DARK: [u8; 4] = [4, 2, 2, 255];
+const MARK_THROUGH: f32 = 0.45;
 /// Corners of a ring: smooth to the eye at any size.
 const CORNERS: usize = 72;
 
@@ -154,6 +159,35 @@ pub fn grid(out: &mut Vec<LineEnd>, middle: Vec3, floor: f32, extent: f32, pale:
             let base = Vec3::new(centre.x, floor, centre.z);
             segment(out, base + from, base + to, colour);
         }
+    }
+}
+
+/// A ring around a place that a check has found, as large in every view, with four strokes that
+/// point at the place. Behind a surface it is faint.
+pub fn finding_mark(out: &mut Vec<LineEnd>, camera: &Camera, place: Vec3) {
+    let (right, up) = camera.axes();
+    let depth = (camera.eye() - place).dot(camera.backward());
+    let radius = camera.world_per_view(depth) * RING_SHARE;
+    let at = |angle: f32, far: f32| {
+        let (s, c) = angle.sin_cos();
+        place + (right * c + up * s) * far
+    };
+    let mut line = |a: Vec3, b: Vec3, colour: [u8; 4]| {
+        let end = |p| LineEnd { through: MARK_THROUGH, ..LineEnd::new(p, colour) };
+        out.extend([end(a), end(b)]);
+    };
+    let turn = std::f32::consts::TAU;
+    // Lines are a pixel wide. Several beside each other are seen, and a dark and a pale one on any
+    // clay.
+    for (share, colour) in [(0.92, DARK), (0.96, MARK), (1.0, MARK), (1.04, MARK), (1.08, DARK)] {
+        for i in 0..CORNERS {
+            let [a, b] = [i, i + 1].map(|i| at(i as f32 / CORNERS as f32 * turn, share * radius));
+            line(a, b, colour);
+        }
+    }
+    for quarter in 0..4 {
+        let angle = quarter as f32 * 0.25 * turn;
+        line(at(angle, radius * 0.25), at(angle, radius * 1.4), MARK);
     }
 }
 

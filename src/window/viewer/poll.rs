@@ -60,6 +60,8 @@ impl WindowState {
         changed |= self.follow_look();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
+        changed |= self.follow_check(&state, wiring);
+        changed |= self.follow_angles(&state);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
             let mut devices = (wiring.devices)();
             devices.extend(self.tablet_lines());
@@ -185,6 +187,7 @@ impl WindowState {
                     self.ui_state.sizes.distances = Some(about);
                     self.distances = Some(values);
                 }
+                TaskReport::Checked(report) => self.checked(*report, state),
                 TaskReport::Measured(found) => self.ui_state.sizes.found = Some(found),
                 TaskReport::NoDialog(purpose) => {
                     let folder = self.usual_folder();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
-use super::frame_uniform::{Frame, in_view};
+use super::frame_uniform::{Frame, angle_numbers, in_view};
 use super::gpu::{DEPTH, Gpu};
 use super::objects::{ObjectBuffers, OtherObject, Stance, model};
 use super::pages::{MapValues, Pages, VALUE_LAYOUT, VERTEX_LAYOUT};
@@ -328,10 +328,15 @@ impl Renderer {
         let cast = sun.map_or(0.0, |_| scene.look.cast());
         let [x, y, z] = main_light;
         let kind = match (scene.look.map, scene.values) {
-            (Map::None, _) | (_, None) if scene.look.map != Map::Mask => 0.0,
             (Map::Mask, _) => 1.0,
+            (Map::Overhang, _) => 3.0,
+            (Map::Draft, _) => 4.0,
+            (Map::None, _) | (_, None) => 0.0,
             _ => 2.0,
         };
+        let [angle_up, angle_ends] = angle_numbers(&scene.look);
+        // A highlight would whiten the dark end of a scale of angles.
+        let [shine, rim] = if kind > 2.5 { [0.0; 2] } else { [m.shine, m.rim] };
         let (low, high) = if kind == 1.0 { (0.0, 1.0) } else { scene.look.scale };
         // The ground: a quiet dusk, or paper.
         let ground = if scene.look.pale {
@@ -348,7 +353,7 @@ impl Renderer {
             back: scene.camera.backward().extend(0.0).to_array(),
             brush: scene.brush.map_or([0.0; 4], |(p, r)| p.extend(r).to_array()),
             base: [base[0], base[1], base[2], f32::from(scene.look.flat)],
-            finish: [m.shine, m.power, m.rim, scene.look.cavity.clamp(0.0, 2.0)],
+            finish: [shine, m.power, rim, scene.look.cavity.clamp(0.0, 2.0)],
             map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
             scale: scene.look.map.scale(),
             low: linear(ground[0]),
@@ -357,6 +362,8 @@ impl Renderer {
             backdrop: self.surroundings.backdrop(size, scene.beside.backdrop),
             main_light: [x, y, z, cast],
             shadow: sun.unwrap_or_default().to_cols_array_2d(),
+            angle_up,
+            angle_ends,
             led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));

@@ -33,15 +33,13 @@ impl WindowState {
             UiRequest::ShowView(kind) => self.show_view(kind, wiring),
             UiRequest::FlyTo(place) => {
                 self.turn_freely();
-                let now = wiring.clock.now_us();
-                self.camera_animation = Some(CameraAnimation::to_place(
-                    self.camera,
-                    place,
-                    state.middle,
-                    state.extent,
-                    now,
-                ));
+                let (now, side) = (wiring.clock.now_us(), self.open_side(state, place));
+                let from = self.camera;
+                let flight = CameraAnimation::to_place(from, place, side, state.extent, now);
+                self.camera_animation = Some(flight);
             }
+            UiRequest::CancelCheck => self.cancel_check(),
+            UiRequest::CheckAgain => self.check_again(),
             UiRequest::OpenMesh(path) => {
                 self.tasks.load(path, wiring);
             }

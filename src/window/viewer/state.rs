@@ -8,6 +8,7 @@ use winit::keyboard::ModifiersState;
 use winit::window::Window;
 
 use super::camera_animation::CameraAnimation;
+use super::check_task::CheckKey;
 use super::clay_picture::ClayPicture;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
@@ -17,6 +18,7 @@ use super::overlay;
 use super::overlay_mesh::Triangles;
 use super::pacing::{FrameSum, Pacing};
 use super::pages::MapValues;
+use super::plate::PlateHeight;
 use super::pointer::Pointer;
 use super::preferences_file::PreferencesFile;
 use super::preview::Preview;
@@ -31,7 +33,7 @@ use super::wiring::Wiring;
 use crate::language::{set_current, tr};
 use crate::look::{MATERIALS, Material};
 use crate::panels::hand_menu::MenuBall;
-use crate::panels::state::{FrameFigures, KeyMap, UiState, Views};
+use crate::panels::state::{FrameFigures, KeyMap, ObjectVersion, UiState, Views};
 use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
@@ -119,6 +121,11 @@ pub(super) struct WindowState {
     pub(super) before_of: Option<ObjectId>,
     pub(super) asked_distance: Option<(ClayState, ClayState, Option<Similarity>, ObjectTransform)>,
     pub(super) asked_sizes: Option<(ClayState, DVec3, ObjectTransform)>,
+    /// The check that was asked for last; the objects that one looks at, and since when they are
+    /// so.
+    pub(super) asked_check: Option<CheckKey>,
+    pub(super) check_rested: (Vec<ObjectVersion>, u64),
+    pub(super) plate: PlateHeight,
     /// The newest revision, and since when.
     pub(super) rested: (u64, u64),
     /// Time of loading a mesh that may not be published yet.
@@ -212,7 +219,8 @@ impl WindowState {
             ui_state.say(tr!("language-unreadable", path = path, error = error.as_str()), true);
         }
         ui_state.brush_panel.saves = wiring.brushes.is_some();
-        ui_state.walls.presets.clone_from(&wiring.thickness_presets);
+        ui_state.walls.presets.clone_from(&wiring.check_presets.walls);
+        ui_state.check.library.clone_from(&wiring.check_presets);
         let samples = gpu.samples(ui_state.prefs.smooth_edges);
         let renderer = Renderer::of_window(&gpu, clay_format, samples);
         let context = egui::Context::default();
@@ -287,6 +295,9 @@ impl WindowState {
             before_of: None,
             asked_distance: None,
             asked_sizes: None,
+            asked_check: None,
+            check_rested: Default::default(),
+            plate: PlateHeight::default(),
             rested: (0, 0),
             opened: None,
             distances: None,

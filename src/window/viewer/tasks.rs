@@ -11,6 +11,7 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use glam::Vec3;
 
+use super::check_task::CheckReport;
 use super::latest_wins::LatestWins;
 use super::look_files::LookFiles;
 use super::pages::MapValues;
@@ -72,6 +73,7 @@ pub enum TaskReport {
     Preview(Result<Option<Arc<Preview>>, String>),
     Distances(MapValues, DistanceSummary),
     Measured(Box<Measured>),
+    Checked(Box<CheckReport>),
     /// A dialog's answer.
     Chosen(FilePurpose, PathBuf),
     /// The desktop offers no dialog.

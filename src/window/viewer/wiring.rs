@@ -8,6 +8,7 @@ use crate::language::Translations;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 use sculptd_camera::camera_thread::CameraPreview;
+use sculptd_check::PresetLibrary;
 use sculptd_clay::brush::Presets;
 use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::{CommandAnswer, CommandSender};
@@ -17,7 +18,6 @@ use sculptd_daemon::tablet_controls::TabletControls;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
-use sculptd_geometry::thickness::preset::Preset;
 
 /// Everything that joins the window to the daemon.
 pub struct Wiring {
@@ -36,8 +36,8 @@ pub struct Wiring {
     pub presets: Presets,
     /// Folder of the person's brushes; `None`: nowhere.
     pub brushes: Option<PathBuf>,
-    /// Limits of wall thickness by process and material, for the panel of walls.
-    pub thickness_presets: Vec<Preset>,
+    /// Limits by process, machine and material, for the pages Walls and Check.
+    pub check_presets: PresetLibrary,
     pub clock: Clock,
     /// The same clock; while an event is handled, the time of the event.
     pub events: EventClock,

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use sculptd_check::FindingKind;
+use sculptd_check::preset::CheckPreset;
 use sculptd_clay::LayerEdit;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::present_latency::{ABOUT, STAGES};
@@ -75,6 +77,17 @@ fn of_data() -> Vec<(String, String)> {
         let preset: Preset = toml::from_str(&text).expect("a preset");
         put(format!("process-{}", preset.name), &preset.title);
     }
+    for preset in super::check::library().checks {
+        match preset {
+            // Those that have limits of walls are named by these.
+            CheckPreset::Process(p) if p.walls.is_none() => {
+                put(format!("process-{}", p.name), &p.title);
+            }
+            CheckPreset::Process(_) => {}
+            CheckPreset::Printer(p) => put(format!("check-printer-{}", p.name), &p.title),
+            CheckPreset::Material(m) => put(format!("check-material-{}", m.name), &m.title),
+        }
+    }
     all
 }
 
@@ -97,11 +110,20 @@ fn names_of_the_program_s_data_are_messages_with_the_same_english_text() {
             }
         }
     }
+    for kind in FindingKind::ALL {
+        let id = format!("finding-{}", kind.name());
+        let known = said(&id).is_some() && said(&format!("{id}.advice")).is_some();
+        // What was not checked says why.
+        if !known && kind != FindingKind::NotChecked {
+            wrong.push(id);
+        }
+    }
     wrong.extend(MATERIALS.iter().filter(|m| said(m.name).is_none()).map(|m| m.name.to_owned()));
     assert!(wrong.is_empty(), "{wrong:#?}");
     // And none of these messages is about something that is not there any more.
     let of_data: BTreeSet<String> = of_data().into_iter().map(|(id, _)| id).collect();
-    let prefixes = ["kind-", "number-", "stage-", "process-", "page-"];
+    let prefixes =
+        ["kind-", "number-", "stage-", "process-", "page-", "check-printer-", "check-material-"];
     let text = include_str!("../../../config/languages/en/window.ftl");
     let ids = text.lines().filter_map(|l| l.split_once(" = ")).map(|(id, _)| id);
     let of_prefix = ids.filter(|id| prefixes.iter().any(|p| id.starts_with(p)));

@@ -15,10 +15,11 @@ use sculptd_window::panels::{PANEL, Tab, View, all};
 use super::panels::{State, show, state};
 
 const SCREENS: [(f32, f32); 3] = [(1280.0, 720.0), (1920.0, 1080.0), (3840.0, 2160.0)];
-pub(super) const TABS: [Tab; 8] = [
+pub(super) const TABS: [Tab; 9] = [
     Tab::Look,
     Tab::Scene,
     Tab::Walls,
+    Tab::Check,
     Tab::Measure,
     Tab::Files,
     Tab::Devices,
@@ -170,6 +171,7 @@ pub(super) fn fill(s: &mut State, tab: Tab) {
             s.ui_state.sizes.distances =
                 Some(DistanceSummary { min: -123.25, max: 99.5, rms: 0.1, known: (50, 100) });
         }
+        Tab::Check => super::check::fill(s),
         Tab::Look => {
             s.published.hands = Some(Default::default());
             s.published.menu = Some((1, 0.4));

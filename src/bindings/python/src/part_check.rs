@@ -66,7 +66,15 @@ pub fn checked(
     let began = Instant::now();
     let seconds = || began.elapsed().as_secs_f64();
     watched(py, progress, |job| {
-        check_part("", &mesh.poly, scale, &settings, CheckRequest { orient }, job, seconds)
+        check_part(
+            "",
+            &mesh.poly,
+            scale,
+            &settings,
+            CheckRequest { orient, ..Default::default() },
+            job,
+            seconds,
+        )
     })?
     .map(|solid| solid.answer)
     .map_err(errors::cancelled)

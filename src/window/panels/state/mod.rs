@@ -4,6 +4,7 @@
 pub mod action;
 pub mod brush_panel;
 pub mod brush_preferences;
+pub mod check;
 pub mod chooser;
 pub mod face_sets;
 pub mod files;
@@ -36,6 +37,10 @@ pub mod views;
 pub use action::{Action, ActionEntry};
 pub use brush_panel::BrushPanel;
 pub use brush_preferences::BrushPreferences;
+pub use check::{
+    CheckChoice, CheckFound, CheckPage, CheckStop, CheckUnderWay, CheckedObject, FindingIndex,
+    MarkedFinding, ObjectVersion,
+};
 pub use chooser::{FileChooser, FilePurpose, FolderEntry, FolderListing, MESH_ENDINGS};
 pub use face_sets::FaceSetPanel;
 pub use files::{FilesPage, UNITS};

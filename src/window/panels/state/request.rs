@@ -32,6 +32,10 @@ pub enum UiRequest {
     ShowView(ViewKind),
     /// The camera comes to look at this place.
     FlyTo(Vec3),
+    /// The running check ends without a result.
+    CancelCheck,
+    /// The objects are checked, whatever was found before.
+    CheckAgain,
     OpenMesh(PathBuf),
     /// The file chooser shows this folder.
     ListFolder(PathBuf),

@@ -11,6 +11,7 @@ pub enum Tab {
     Look,
     Scene,
     Walls,
+    Check,
     Measure,
     Files,
     Devices,
@@ -20,10 +21,11 @@ pub enum Tab {
 
 impl Tab {
     /// Every page with its English name and what it is about.
-    pub const ALL: [(Tab, &str, &str); 8] = [
+    pub const ALL: [(Tab, &str, &str); 9] = [
         (Tab::Look, "Look", "How the clay is shown"),
         (Tab::Scene, "Scene", "A second object, Booleans, levels of detail, trimming"),
         (Tab::Walls, "Walls", "Wall thickness and thin spots"),
+        (Tab::Check, "Check", "Ready to print or to mould: findings, overhang and draft"),
         (Tab::Measure, "Size", "Measures, the shadow along a direction, distances to another form"),
         (Tab::Files, "Files", "Open, export, pictures"),
         (Tab::Devices, "Pens", "Devices and their live values"),
@@ -37,6 +39,7 @@ impl Tab {
             Tab::Look => "page-look",
             Tab::Scene => "page-scene",
             Tab::Walls => "page-walls",
+            Tab::Check => "page-check",
             Tab::Measure => "page-measure",
             Tab::Files => "page-files",
             Tab::Devices => "page-devices",

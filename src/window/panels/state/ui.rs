@@ -1,6 +1,7 @@
 //! What a person has set in the window. Nothing of it belongs to the world.
 
 use super::brush_panel::BrushPanel;
+use super::check::CheckPage;
 use super::chooser::FileChooser;
 use super::face_sets::FaceSetPanel;
 use super::files::FilesPage;
@@ -49,6 +50,7 @@ pub struct UiState {
     pub chooser: Option<FileChooser>,
     pub messages: Vec<Message>,
     pub walls: WallsPage,
+    pub check: CheckPage,
     pub devices: PenTrace,
     /// The offer of earlier sessions was answered.
     pub start_answered: bool,
