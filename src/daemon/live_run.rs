@@ -457,6 +457,10 @@ impl Served {
     }
 }
 
+/// A link of the page, and the role that it gives.
+#[cfg(unix)]
+type FirstLink = (WebRole, String);
+
 /// What a link is for.
 #[cfg(unix)]
 fn purpose(role: WebRole) -> &'static str {
@@ -476,7 +480,7 @@ fn serve_page(
     clock: &Clock,
     options: &LiveOptions,
     stop: &Arc<AtomicBool>,
-) -> Result<(Arc<crate::web::Web>, Vec<(WebRole, String)>), LiveRunError> {
+) -> Result<(Arc<crate::web::Web>, Vec<FirstLink>), LiveRunError> {
     use crate::web::{Web, WebState};
     let state = WebState {
         published: live.published.clone(),

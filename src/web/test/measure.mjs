@@ -97,7 +97,7 @@ async function pixel() {
 /** A line of so many bits a second toward the page. */
 async function slowLine(port, bits) {
   const server = createServer((near) => {
-    const far = connect({ port, host: "127.0.0.1" });
+    const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true });
     let free = 0;
     near.on("data", (d) => {
       const text = d.toString("latin1");
@@ -110,9 +110,9 @@ async function slowLine(port, bits) {
       far.pause();
       setTimeout(() => { near.write(d); far.resume(); }, Math.max(0, free - now - 5));
     });
+    far.on("end", () => setTimeout(() => near.end(), Math.max(0, free - performance.now()) + 50));
     for (const s of [near, far]) s.on("error", () => { near.destroy(); far.destroy(); });
     near.on("close", () => far.destroy());
-    far.on("close", () => near.end());
   });
   await new Promise((done) => server.listen(0, "127.0.0.1", done));
   return server;
