@@ -143,6 +143,7 @@
 //! * `sculptd-metrics`, `sculptd-share`, `sculptd-web`, made by `daemon::http`: serve metrics, a
 //!   visitor's sculpture for download, and the page by which guests join, each to many clients.
 //!   Wait for: their socket, time.
+//! * `sculptd-take-home`, made by `daemon::web`: writes the work as a file for a guest, once.
 //! * `sculptd-page`, made by `daemon::web`: reads what one guest's page sends, and sends it the
 //!   clay that it lacks. Waits for: that page, time.
 //! * `sculptd-telemetry`, made by `daemon::telemetry`: sends metrics and the log to a collector.

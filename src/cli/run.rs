@@ -188,9 +188,8 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let web = args.web.options(kiosk.as_ref()).map_err(Fail::Config)?;
     #[cfg(unix)]
     if web.is_some() && (is_shared || !on_the_wall_clock) {
-        let text = "a page for browsers cannot be had with a sculpture shared over the network, \
-                    nor with recordings that are played headless: leave out --web (or web in the \
-                    installation's settings), or the others";
+        let text = "--web (or web in kiosk.toml) cannot be used with a sculpture shared over the \
+                    network, nor with recordings that are played headless: leave out one of them";
         return Err(Fail::Usage(text.into()));
     }
     if let Some(kiosk) = &kiosk {

@@ -37,7 +37,7 @@ use self::people::People;
 pub use self::people::UndoRefusal;
 pub use self::saved::{BadState, HistoryEntry, HistoryEvent, Saved, SavedScene, SideData};
 pub use self::scene_steps::SceneResult;
-use self::stroke_context::{Stroke, StrokeContext};
+use self::stroke_context::{Stroke, StrokeContext, goes_on_by_time};
 use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
 use crate::command::{Carving, Command, NewClay};
@@ -570,15 +570,6 @@ impl World {
         *left = clay.left;
         between
     }
-}
-
-/// Returns true if the brush lays dabs while a pen rests.
-fn goes_on_by_time(brush: &BrushSettings) -> bool {
-    let path = &brush.path;
-    let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
-    brush.kind.grip() == Grip::Surface
-        && spaced
-        && (path.continuous || path.method == Method::Airbrush)
 }
 
 #[cfg(test)]

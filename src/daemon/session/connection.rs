@@ -77,7 +77,8 @@ pub fn in_use(path: &Path) -> bool {
 mod tests {
     use super::*;
 
-    /// 1 is "normal": SQLite syncs the header of a log that is begun again. With 0, "off", it does not.
+    /// 1 is "normal": SQLite syncs the header of a log that is begun again. With 0, "off", it does
+    /// not.
     #[test]
     fn a_log_that_is_begun_again_gets_its_header_to_the_disk_first() {
         let db = Connection::open_in_memory().expect("opens");

@@ -532,3 +532,12 @@ impl Surface for StrokeContext<'_> {
         if self.left == 0 { Flow::Pause } else { Flow::Go }
     }
 }
+
+/// Returns true if the brush lays dabs while a pen rests.
+pub(super) fn goes_on_by_time(brush: &BrushSettings) -> bool {
+    let path = &brush.path;
+    let spaced = matches!(path.method, Method::Space | Method::Airbrush | Method::Dots);
+    brush.kind.grip() == Grip::Surface
+        && spaced
+        && (path.continuous || path.method == Method::Airbrush)
+}

@@ -1,4 +1,5 @@
-//! Pinches and dropouts, through the hand tools' own poses. `SCULPTD_PINCHES` sets how many pinches.
+//! Pinches and dropouts, through the hand tools' own poses. `SCULPTD_PINCHES` sets how many
+//! pinches.
 
 use glam::{Quat, Vec3};
 use sculptd_camera::drawn_hand::DrawnHand;
