@@ -71,11 +71,17 @@ fn one_finger_sculpts_two_turn_the_view_and_three_take_back() {
     let camera = |s: &Stage| s.ask("camera", &serde_json::json!({}));
     let number = |camera: &Value, name: &str| camera[name].as_f64().expect("a number");
 
+    let mut marks = Vec::new();
     for n in 1..=3 {
+        let dabs = s.figure("dabs");
         let y = 280.0 + 40.0 * n as f64;
         go(&mut touch, &[[(560.0, y), (700.0, y)]]);
         s.until("the finger's stroke has come", |s| steps(s) == n);
+        marks.push(s.figure("dabs") - dabs);
     }
+    // A whole stroke each time, whatever the frames: no pointer of the system tears it into taps.
+    let (least, most) = (marks.iter().min(), marks.iter().max());
+    assert!(most.zip(least).is_some_and(|(most, least)| most - least <= 2), "{marks:?}");
     let before = camera(&s);
     // Apart, on the clay: nearer, and nothing is sculpted.
     let ways = &[[(600.0, 360.0), (520.0, 360.0)], [(680.0, 360.0), (760.0, 360.0)]];

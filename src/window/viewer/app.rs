@@ -160,7 +160,7 @@ fn pointer_event(open: &mut WindowState, event: &WindowEvent, wiring: &mut Wirin
             open.mods = m.state();
             open.lend_to_pens(wiring);
         }
-        WindowEvent::CursorMoved { position, .. } => {
+        WindowEvent::CursorMoved { position, .. } if !open.fingers.is_down() => {
             open.moved(Vec2::new(position.x as f32, position.y as f32), wiring);
         }
         WindowEvent::CursorLeft { .. } => open.left(wiring),

@@ -116,6 +116,12 @@ impl Fingers {
         self.state == State::Waiting
     }
 
+    /// Returns true while a finger is down. The system then moves its pointer along with the first
+    /// one: what that says of no finger would tear the finger's stroke, which is told later.
+    pub fn is_down(&self) -> bool {
+        !self.down.is_empty()
+    }
+
     /// Takes the actions since the last call.
     pub fn take_actions(&mut self) -> Vec<FingerAction> {
         std::mem::take(&mut self.actions)

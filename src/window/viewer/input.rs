@@ -274,7 +274,7 @@ impl WindowState {
                 (self.pointer.t_us, self.pointer.force) = (Some(c.t_us), c.force);
                 match action {
                     FingerAction::Press(_) => {
-                        self.pointer.at = c.at;
+                        (self.pointer.at, self.pointer.inside) = (c.at, true);
                         self.button(MouseButton::Left, true, wiring);
                     }
                     FingerAction::Drag(_) => self.moved(c.at, wiring),
