@@ -2,7 +2,7 @@
 //! that nobody can guess, and removed after a while.
 
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::{Mutex, TryLockError};
 use std::time::Duration;
 
 use hyper::StatusCode;
@@ -20,7 +20,7 @@ const LASTS: Duration = Duration::from_secs(600);
 /// Files at a time; the oldest goes first.
 const MOST: usize = 8;
 /// First part of the path of a file.
-pub const PLACE: &str = "/work/";
+pub const PLACE: &str = "/take-home/";
 
 /// A format that a guest may ask for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -67,23 +67,37 @@ impl Drop for WorkFile {
 
 /// The files that can be fetched now.
 #[derive(Debug, Default)]
-pub struct Downloads(Mutex<Vec<WorkFile>>);
+pub struct Downloads {
+    files: Mutex<Vec<WorkFile>>,
+    /// Held while a file is written: one at a time, however many guests ask.
+    writing: Mutex<()>,
+}
 
 impl Downloads {
     /// Writes the visible objects to a file, and returns its path in the address.
     ///
     /// # Errors
-    /// Returns the reason in words: nothing is visible, or the file cannot be written.
+    /// Returns the reason in words: nothing is visible, another file is being written, or this one
+    /// cannot be.
     pub fn write(
         &self,
         state: &Published,
         format: WorkFormat,
         now_us: u64,
     ) -> Result<String, String> {
+        let busy = "another guest's file is being written, ask again in a moment";
+        let _writing = match self.writing.try_lock() {
+            Ok(held) => held,
+            // It holds nothing that a panic could have left half done.
+            Err(TryLockError::Poisoned(held)) => held.into_inner(),
+            Err(TryLockError::WouldBlock) => return Err(busy.into()),
+        };
         let meshes = selected(&state.scene, &state.mesh, Selection::Visible);
         let meshes = meshes.map_err(|e| e.to_string())?;
-        let token = random_token().map_err(|e| e.to_string())?;
-        let folder = std::env::temp_dir().join(format!("sculptd-{token}"));
+        // The folder's name is seen by every user of this machine, so it is not the link's secret.
+        let random = || random_token().map_err(|e| e.to_string());
+        let (token, folder) = (random()?, format!("sculptd-{}", random()?));
+        let folder = std::env::temp_dir().join(folder);
         let mut only_ours = std::fs::DirBuilder::new();
         #[cfg(unix)]
         std::os::unix::fs::DirBuilderExt::mode(&mut only_ours, 0o700);
@@ -93,7 +107,7 @@ impl Downloads {
         // From here on it is removed, whatever happens.
         let file = WorkFile { path: path.clone(), format, folder, until_us };
         write_scene(&file.folder.join(format.file_name()), &meshes).map_err(|e| e.to_string())?;
-        let mut files = locked(&self.0);
+        let mut files = locked(&self.files);
         files.retain(|f| f.until_us > now_us);
         if files.len() >= MOST {
             files.remove(0);
@@ -104,7 +118,7 @@ impl Downloads {
 
     /// Removes the files whose time is over.
     pub fn expire(&self, now_us: u64) {
-        locked(&self.0).retain(|f| f.until_us > now_us);
+        locked(&self.files).retain(|f| f.until_us > now_us);
     }
 
     /// Answers a request for a file.
@@ -113,7 +127,7 @@ impl Downloads {
     /// Returns that there is nothing at this path, or no longer.
     pub fn answer(&self, path: &str, now_us: u64) -> Result<Answer, Refusal> {
         const GONE: Refusal = (StatusCode::NOT_FOUND, "there is nothing here, or no longer");
-        let files = locked(&self.0);
+        let files = locked(&self.files);
         let file = files.iter().find(|f| f.path == path && f.until_us > now_us).ok_or(GONE)?;
         let at = file.folder.join(file.format.file_name());
         Answer::file(file.format.media_type(), &at).map_err(|_| GONE)
@@ -132,7 +146,7 @@ mod tests {
     use sculptd_geometry::shapes;
 
     fn folders(files: &Downloads) -> Vec<PathBuf> {
-        locked(&files.0).iter().map(|f| f.folder.clone()).collect()
+        locked(&files.files).iter().map(|f| f.folder.clone()).collect()
     }
 
     #[test]
@@ -151,6 +165,10 @@ mod tests {
             .expect("read");
         assert_eq!(read.mesh.faces().count(), mesh.triangles.len());
         assert!(files.answer(&path, 6).is_ok());
+        assert!(!folder.to_string_lossy().contains(path.split('/').nth(2).expect("a secret")));
+        let busy = files.writing.lock().expect("free");
+        assert!(files.write(&state, WorkFormat::Stl, 6).is_err(), "one at a time");
+        drop(busy);
         assert!(files.answer(&path.replace("stl", "glb"), 6).is_err());
         assert!(files.answer(PLACE, 6).is_err());
         let end = 5 + LASTS.as_micros() as u64;

@@ -2,7 +2,7 @@
 
 import { type Mat4, backward, viewProjection } from "./camera";
 import { type Hit, Picker, aimed } from "./pick";
-import { link } from "./program";
+import { UNFOLDED, link } from "./program";
 import type { Camera, PageMessage, ShownObject } from "./protocol";
 import { rowBytes } from "./protocol";
 
@@ -16,10 +16,9 @@ uniform mat4 model, view;
 uniform mat3 turn;
 out vec3 normal;
 out vec4 colour;
+${UNFOLDED}
 void main() {
-  vec3 n = vec3(folded, 1.0 - abs(folded.x) - abs(folded.y));
-  float under = max(-n.z, 0.0);
-  n.xy += vec2(n.x >= 0.0 ? -under : under, n.y >= 0.0 ? -under : under);
+  vec3 n = unfolded(folded);
   normal = turn * mat3(model) * n;
   colour = paint;
   gl_Position = view * (model * vec4(low + place * step_, 1.0));

@@ -1,7 +1,7 @@
 // What lies under a pointer: the pages around one pixel, drawn as places and normals.
 
 import type { Mat4 } from "./camera";
-import { link } from "./program";
+import { UNFOLDED, link } from "./program";
 import type { Vec3 } from "./protocol";
 
 /** A place on the clay and the direction out of it, world coordinates. */
@@ -17,10 +17,9 @@ uniform vec3 low;
 uniform float step_;
 uniform mat4 model, view;
 out vec3 world, normal;
+${UNFOLDED}
 void main() {
-  vec3 n = vec3(folded, 1.0 - abs(folded.x) - abs(folded.y));
-  float under = max(-n.z, 0.0);
-  n.xy += vec2(n.x >= 0.0 ? -under : under, n.y >= 0.0 ? -under : under);
+  vec3 n = unfolded(folded);
   normal = mat3(model) * n;
   vec4 at = model * vec4(low + place * step_, 1.0);
   world = at.xyz;

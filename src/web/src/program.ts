@@ -1,4 +1,11 @@
-// A program of the graphics card.
+// A program of the graphics card, and what both of the page's have.
+
+/** A direction from the two numbers of a row (octahedral). */
+export const UNFOLDED = `vec3 unfolded(vec2 folded) {
+  vec3 n = vec3(folded, 1.0 - abs(folded.x) - abs(folded.y));
+  float under = max(-n.z, 0.0);
+  return n + vec3(n.x >= 0.0 ? -under : under, n.y >= 0.0 ? -under : under, 0.0);
+}`;
 
 export function link(gl: WebGL2RenderingContext, vertex: string, fragment: string): WebGLProgram {
   const program = gl.createProgram();
