@@ -1,5 +1,6 @@
-//! The contact sheet: the same stroke of each brush on the same form, as a picture.
-//! `SCULPTD_BLESS=1` redraws it: look at it before you keep it.
+//! The contact sheet: the same stroke of each brush on the same form, as a picture; and the same
+//! strokes from nearby, which the window shows on the brushes' buttons. `SCULPTD_BLESS=1` redraws
+//! both: look at them before you keep them.
 
 use std::path::PathBuf;
 
@@ -15,19 +16,57 @@ use super::super::clay::Dice;
 use super::{Studio, form};
 
 const COLUMNS: usize = 6;
-const CELL: usize = 160;
+
+/// A sheet of pictures, one a brush in the order of [`BrushKind::ALL`].
+struct Sheet {
+    path: &'static str,
+    /// Pixels of a picture.
+    cell: (usize, usize),
+    camera: Camera,
+    /// For buttons: a shorter stroke, and relief where the brush evens, so that a small picture
+    /// tells it from others.
+    small: bool,
+}
+
+const SHEETS: [Sheet; 2] = [
+    Sheet {
+        path: "tests/golden/sheet/brushes.png",
+        cell: (160, 160),
+        camera: Camera {
+            target: Vec3::ZERO,
+            towards_eye: Vec3::new(0.15, 0.25, 1.0),
+            up: Vec3::Y,
+            half_height: 1.15,
+        },
+        small: false,
+    },
+    // The clay fills each picture of the buttons.
+    Sheet {
+        path: "src/window/panels/brush_pictures.png",
+        cell: (132, 84),
+        camera: Camera {
+            target: Vec3::new(0.0, 0.06, 0.0),
+            towards_eye: Vec3::new(0.15, 0.25, 1.0),
+            up: Vec3::Y,
+            half_height: 0.5,
+        },
+        small: true,
+    },
+];
 
 /// The stroke: across the form from the left, down in the middle.
-fn stroke() -> Vec<(Vec2, f32)> {
+fn stroke(small: bool) -> Vec<(Vec2, f32)> {
+    let (wide, high) = if small { (0.14, 0.09) } else { (0.18, 0.12) };
     (0..=30)
         .map(|i| {
             let t = i as f32 / 30.0;
-            (Vec2::new(0.5 + 0.18 * (t - 0.5) * 2.0, 0.42 + 0.12 * (t * 5.0).sin()), 0.8)
+            (Vec2::new(0.5 + wide * (t - 0.5) * 2.0, 0.42 + high * (t * 5.0).sin()), 0.8)
         })
         .collect()
 }
 
-fn cell(kind: BrushKind) -> Picture {
+/// The form after the stroke, and a colour a vertex.
+fn sculpted(kind: BrushKind, small: bool) -> (TriMesh, Vec<[u8; 3]>) {
     let held = if kind.grip() == Grip::Surface { 0.14 } else { 0.25 };
     let mut brush = BrushSettings { radius: held, ..sculptd::presets().of(kind) };
     if kind == BrushKind::Texture {
@@ -48,8 +87,9 @@ fn cell(kind: BrushKind) -> Picture {
             | BrushKind::Plane
             | BrushKind::SurfaceSmooth
     );
+    let rough = small && (evens || matches!(kind, BrushKind::Sharpen | BrushKind::Trim));
     if evens {
-        (brush.radius, brush.strength) = (0.2, 1.0);
+        (brush.radius, brush.strength) = (if small { 0.16 } else { 0.2 }, 1.0);
     }
     let coarse = matches!(
         kind,
@@ -59,7 +99,19 @@ fn cell(kind: BrushKind) -> Picture {
             | BrushKind::Density
             | BrushKind::SurfaceSmooth
     );
-    let mut start = form(if coarse { 8_000 } else { 60_000 });
+    let sharpens = kind == BrushKind::Sharpen;
+    let fine = rough && (coarse || sharpens);
+    let mut start = form(match coarse {
+        true if fine => 16_000,
+        true => 8_000,
+        false => 60_000,
+    });
+    if rough {
+        let waves = if fine { 36.0 } else { 21.0 };
+        let bump = |p: Vec3| (p * waves).to_array().map(f32::sin).iter().product::<f32>();
+        let high = if sharpens { 0.008 } else { 0.03 };
+        start.positions.iter_mut().for_each(|p| *p *= 1.0 + high * bump(*p));
+    }
     if kind == BrushKind::Simplify {
         brush.topology.edge = 0.4;
     }
@@ -76,29 +128,29 @@ fn cell(kind: BrushKind) -> Picture {
             ..sculptd::presets().of(BrushKind::Mask)
         };
         studio.tell(Command::Brush(mask));
-        studio.stroke(&stroke());
+        studio.stroke(&stroke(small));
         studio.tell(Command::Brush(BrushSettings { radius: 0.3, strength: 1.0, ..brush }));
         for _ in 0..6 {
-            studio.stroke(&stroke()[15..]);
+            studio.stroke(&stroke(small)[15..]);
         }
     } else if kind == BrushKind::EraseLayer {
         // Half of a stroke on a layer is erased.
         let add = SceneCommand::Layers(LayerEdit::Add("layer".into()));
         studio.tell(Command::Scene(add));
         studio.tell(Command::Brush(sculptd::presets().of(BrushKind::Draw)));
-        studio.stroke(&stroke());
+        studio.stroke(&stroke(small));
         studio.tell(Command::Brush(BrushSettings { radius: 0.2, strength: 1.0, ..brush }));
         for _ in 0..2 {
-            studio.stroke(&stroke()[15..]);
+            studio.stroke(&stroke(small)[15..]);
         }
     } else if kind == BrushKind::DrawFaceSets {
         // Two sets, the second over the end of the first.
-        studio.stroke(&stroke());
+        studio.stroke(&stroke(small));
         studio.tell(Command::Brush(BrushSettings { radius: 0.25, ..brush }));
-        studio.stroke(&stroke()[22..]);
+        studio.stroke(&stroke(small)[22..]);
     } else if kind.grip() == Grip::Surface {
-        for _ in 0..if evens { 5 } else { 1 } {
-            studio.stroke(&stroke());
+        for _ in 0..if evens || small && sharpens { 5 } else { 1 } {
+            studio.stroke(&stroke(small));
         }
     } else {
         // Held: a short pull to the upper right.
@@ -131,13 +183,7 @@ fn cell(kind: BrushKind) -> Picture {
             }
         }
     }
-    let camera = Camera {
-        target: Vec3::ZERO,
-        towards_eye: Vec3::new(0.15, 0.25, 1.0),
-        up: Vec3::Y,
-        half_height: 1.15,
-    };
-    draw(&mesh, Some(&tints), &camera, CELL, CELL)
+    (mesh, tints)
 }
 
 /// Dark where triangles are small, light where they are large.
@@ -160,44 +206,48 @@ fn tint_by_size(mesh: &TriMesh, tints: &mut [[u8; 3]]) {
     }
 }
 
-fn sheet() -> Picture {
-    let rows = BrushKind::ALL.len().div_ceil(COLUMNS);
-    let (width, height) = (COLUMNS * CELL, rows * CELL);
-    let mut all = Picture { width, height, rgb: vec![[255; 3]; width * height] };
-    for (i, kind) in BrushKind::ALL.iter().enumerate() {
-        let one = cell(*kind);
-        let (x, y) = (i % COLUMNS * CELL, i / COLUMNS * CELL);
-        for row in 0..CELL {
+fn drawn(sheet: &Sheet, all: &[(TriMesh, Vec<[u8; 3]>)]) -> Picture {
+    let (w, h) = sheet.cell;
+    let (width, height) = (COLUMNS * w, all.len().div_ceil(COLUMNS) * h);
+    let mut out = Picture { width, height, rgb: vec![[255; 3]; width * height] };
+    for (i, (mesh, tints)) in all.iter().enumerate() {
+        let one = draw(mesh, Some(tints), &sheet.camera, w, h);
+        let (x, y) = (i % COLUMNS * w, i / COLUMNS * h);
+        for row in 0..h {
             let at = (y + row) * width + x;
-            all.rgb[at..at + CELL].copy_from_slice(&one.rgb[row * CELL..(row + 1) * CELL]);
+            out.rgb[at..at + w].copy_from_slice(&one.rgb[row * w..(row + 1) * w]);
         }
     }
-    all
+    out
 }
 
 #[test]
 fn every_brush_looks_as_it_did() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/sheet/brushes.png");
-    let now = sheet();
-    if std::env::var_os("SCULPTD_BLESS").is_some() {
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-        #[allow(clippy::disallowed_methods)] // Under version control: a torn file is seen.
-        std::fs::write(&path, now.png().expect("a picture")).expect("written");
-        return;
-    }
-    let then = image::open(&path).expect("the sheet").into_rgb8();
-    assert_eq!((then.width() as usize, then.height() as usize), (now.width, now.height));
-    for (i, kind) in BrushKind::ALL.iter().enumerate() {
-        let (x, y) = (i % COLUMNS * CELL, i / COLUMNS * CELL);
-        let mut sum = 0u64;
-        for row in y..y + CELL {
-            for column in x..x + CELL {
-                let then = then.get_pixel(column as u32, row as u32).0;
-                let now = now.rgb[row * now.width + column];
-                sum += (0..3).map(|k| u64::from(then[k].abs_diff(now[k]))).sum::<u64>();
-            }
+    for sheet in &SHEETS {
+        let all: Vec<_> = BrushKind::ALL.iter().map(|kind| sculpted(*kind, sheet.small)).collect();
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(sheet.path);
+        let now = drawn(sheet, &all);
+        if std::env::var_os("SCULPTD_BLESS").is_some() {
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+            #[allow(clippy::disallowed_methods)] // Under version control: a torn file is seen.
+            std::fs::write(&path, now.png().expect("a picture")).expect("written");
+            continue;
         }
-        let mean = sum as f64 / (3 * CELL * CELL) as f64;
-        assert!(mean < 1.0, "{kind}: differs by {mean:.2} of 255 a pixel");
+        let then = image::open(&path).expect("the sheet").into_rgb8();
+        assert_eq!((then.width() as usize, then.height() as usize), (now.width, now.height));
+        let (w, h) = sheet.cell;
+        for (i, kind) in BrushKind::ALL.iter().enumerate() {
+            let (x, y) = (i % COLUMNS * w, i / COLUMNS * h);
+            let mut sum = 0u64;
+            for row in y..y + h {
+                for column in x..x + w {
+                    let then = then.get_pixel(column as u32, row as u32).0;
+                    let now = now.rgb[row * now.width + column];
+                    sum += (0..3).map(|k| u64::from(then[k].abs_diff(now[k]))).sum::<u64>();
+                }
+            }
+            let mean = sum as f64 / (3 * w * h) as f64;
+            assert!(mean < 1.0, "{}: {kind} differs by {mean:.2} of 255 a pixel", sheet.path);
+        }
     }
 }
