@@ -85,6 +85,7 @@ pub fn window(
         devices: Box::new(move || adaptors.describe()),
         camera: Box::new(move || cameras.camera()?.preview()),
         session: shown.session.as_ref().map(|p| p.display().to_string()),
+        journal: run.health.clone(),
         history: run.history.clone().map(|h| (h, rate_hz)),
         recent: shown.recent.clone(),
         open_next: shown.open_next.clone(),

@@ -8,11 +8,12 @@ use std::sync::{Arc, Mutex};
 use sculptd_daemon::session::catalog::{self, ENDING};
 use sculptd_daemon::session::history::listing;
 use sculptd_daemon::session::in_use;
+use sculptd_daemon::window_link::NextSculpture;
 
 use super::{Fail, Outcome};
 
-/// The session that a person chose to open next, in the window.
-pub type OpenNext = Arc<Mutex<Option<PathBuf>>>;
+/// The sculpture that a person chose to open next, in the window.
+pub type OpenNext = Arc<Mutex<Option<NextSculpture>>>;
 
 /// Sessions that the window offers.
 const OFFERED: usize = 8;
@@ -45,11 +46,14 @@ pub fn recent(open: Option<&Path>) -> Vec<PathBuf> {
     all.filter(|p| Some(p.as_path()) != open).take(OFFERED).collect()
 }
 
-/// Opens another session in a new process, because each process can create only one window.
-pub fn open(session: &Path, config: Option<&Path>) -> Outcome {
-    let program = std::env::current_exe().map_err(|e| Fail::io(session, &e))?;
+/// Opens another sculpture in a new process, because each process can create only one window.
+pub fn open(sculpture: &NextSculpture, config: Option<&Path>) -> Outcome {
+    let program = std::env::current_exe().map_err(|e| Fail::io(Path::new("sculptd"), &e))?;
     let mut next = std::process::Command::new(&program);
-    next.arg("run").arg("--session").arg(session);
+    next.arg("run");
+    if let NextSculpture::Session(path) = sculpture {
+        next.arg("--session").arg(path);
+    }
     if let Some(config) = config {
         next.arg("--config").arg(config);
     }

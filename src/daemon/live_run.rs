@@ -117,6 +117,8 @@ pub struct LiveRun {
     pub stop: Arc<AtomicBool>,
     /// The session's history, if one is kept.
     pub history: Option<Handle>,
+    /// State of the session's file, if one is kept.
+    pub health: Option<Health>,
     /// The screen of an installation, which replaces the panels.
     pub kiosk: Option<keeper::Screen>,
     /// The user's bindings of tablet controls.
@@ -272,7 +274,7 @@ impl LiveRun {
             let pen = crate::control::stroke::VirtualPen::new(&factory, clock.clone());
             let host = crate::control::Host {
                 stop: stop.clone(),
-                journal: health,
+                journal: health.clone(),
                 history: history.clone(),
                 pen: Some(Arc::new(Mutex::new(pen))),
                 window: options.window.clone(),
@@ -296,7 +298,7 @@ impl LiveRun {
             Served::start(&options, config, host, watched, &mut notices)?
         };
         #[cfg(not(unix))]
-        let _: [Option<Health>; 2] = [health, watched];
+        let _: Option<Health> = watched;
         let window = options.window.clone();
         let demo = match options.demo_devices {
             true => Some(demo_devices::playing(&clock, &factory)?),
@@ -313,6 +315,7 @@ impl LiveRun {
             factory,
             stop,
             history,
+            health,
             kiosk,
             controls: options.controls,
             #[cfg(unix)]

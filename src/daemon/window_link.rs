@@ -36,6 +36,15 @@ pub enum WindowStanding {
     Lost,
 }
 
+/// The sculpture that a window goes on with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NextSculpture {
+    /// A new one.
+    New,
+    /// The one in this session file.
+    Session(PathBuf),
+}
+
 /// Temporary settings of a window in the world.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct WindowClaims {

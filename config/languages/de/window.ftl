@@ -920,6 +920,20 @@ control-wheel = Rad { $number }
 control-ring = Ring { $number }
 control-strip = Streifen { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }: glättet, solange Umschalt gehalten wird
+status-carves = { $brush }: gräbt
+status-times = Takt { $tick } ms, Bild { $frame } ms
+status-devices = { $count ->
+    [one] { $count } Gerät
+   *[other] { $count } Geräte
+}
+status-not-kept = nicht gespeichert
+    .tip = Keine Sitzung bewahrt diese Skulptur: exportieren Sie sie, bevor Sie das Fenster schließen
+status-fault = die Sitzung nimmt nichts auf
+status-lost = der Sitzung fehlen { $ticks } Takte
+
 ## Page: loop
 
 loop-heading = Schleife
@@ -1148,6 +1162,7 @@ action-remesh = Remesh
 action-try-add = Vorschau: gehaltenes Objekt vereinen
 action-try-cut = Vorschau: mit gehaltenem Objekt schneiden
 action-try-keep = Vorschau: Gemeinsames behalten
+action-new = Neue Skulptur
 action-open-mesh = Ein Mesh öffnen
 action-export = Das Mesh exportieren
 action-screenshot = Bildschirmfoto

@@ -920,6 +920,20 @@ control-wheel = Ροδέλα { $number }
 control-ring = Δακτύλιος { $number }
 control-strip = Λωρίδα { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }: λειαίνει όσο κρατιέται το Shift
+status-carves = { $brush }: σκάβει
+status-times = κύκλος { $tick } ms, εικόνα { $frame } ms
+status-devices = { $count ->
+    [one] { $count } συσκευή
+   *[other] { $count } συσκευές
+}
+status-not-kept = δεν αποθηκεύεται
+    .tip = Καμία συνεδρία δεν κρατά αυτό το γλυπτό: εξαγάγετέ το πριν κλείσετε το παράθυρο
+status-fault = η συνεδρία δεν δέχεται τίποτα
+status-lost = από τη συνεδρία λείπουν { $ticks } κύκλοι
+
 ## Page: loop
 
 loop-heading = Βρόχος
@@ -1148,6 +1162,7 @@ action-remesh = Remesh
 action-try-add = Προεπισκόπηση: προσθήκη του κρατούμενου
 action-try-cut = Προεπισκόπηση: κοπή με το κρατούμενο
 action-try-keep = Προεπισκόπηση: το κοινό μέρος
+action-new = Νέο γλυπτό
 action-open-mesh = Άνοιγμα πλέγματος
 action-export = Εξαγωγή του πλέγματος
 action-screenshot = Στιγμιότυπο

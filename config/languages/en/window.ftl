@@ -922,6 +922,20 @@ control-wheel = Wheel { $number }
 control-ring = Ring { $number }
 control-strip = Strip { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }: smooths while Shift is held
+status-carves = { $brush }: carves
+status-times = tick { $tick } ms, frame { $frame } ms
+status-devices = { $count ->
+    [one] { $count } device
+   *[other] { $count } devices
+}
+status-not-kept = not saved
+    .tip = No session keeps this sculpture: export it before you close the window
+status-fault = the session takes nothing
+status-lost = the session lacks { $ticks } ticks
+
 ## Page: loop
 
 loop-heading = Loop
@@ -1150,6 +1164,7 @@ action-remesh = Remesh
 action-try-add = Preview: add the held object
 action-try-cut = Preview: cut with the held object
 action-try-keep = Preview: keep what both share
+action-new = New sculpture
 action-open-mesh = Open a mesh
 action-export = Export the mesh
 action-screenshot = Screenshot

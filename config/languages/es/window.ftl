@@ -920,6 +920,20 @@ control-wheel = Rueda { $number }
 control-ring = Anillo { $number }
 control-strip = Tira { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }: suaviza mientras se mantiene Mayús
+status-carves = { $brush }: talla
+status-times = ciclo { $tick } ms, imagen { $frame } ms
+status-devices = { $count ->
+    [one] { $count } dispositivo
+   *[other] { $count } dispositivos
+}
+status-not-kept = sin guardar
+    .tip = Ninguna sesión guarda esta escultura: expórtela antes de cerrar la ventana
+status-fault = la sesión no admite nada
+status-lost = a la sesión le faltan { $ticks } ciclos
+
 ## Page: loop
 
 loop-heading = Ciclo
@@ -1148,6 +1162,7 @@ action-remesh = Remallar
 action-try-add = Vista previa: unir el objeto sostenido
 action-try-cut = Vista previa: cortar con el objeto sostenido
 action-try-keep = Vista previa: conservar lo común
+action-new = Nueva escultura
 action-open-mesh = Abrir una malla
 action-export = Exportar la malla
 action-screenshot = Captura de pantalla

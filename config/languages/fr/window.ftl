@@ -920,6 +920,20 @@ control-wheel = Molette { $number }
 control-ring = Anneau { $number }
 control-strip = Bande { $number }
 
+## The line below the clay
+
+status-smooths = { $brush } : lisse tant que Maj est tenue
+status-carves = { $brush } : creuse
+status-times = cycle { $tick } ms, image { $frame } ms
+status-devices = { $count ->
+    [one] { $count } appareil
+   *[other] { $count } appareils
+}
+status-not-kept = non enregistré
+    .tip = Aucune session ne garde cette sculpture : exportez-la avant de fermer la fenêtre
+status-fault = la session ne prend plus rien
+status-lost = il manque { $ticks } cycles à la session
+
 ## Page: loop
 
 loop-heading = Boucle
@@ -1148,6 +1162,7 @@ action-remesh = Remailler
 action-try-add = Aperçu : unir l'objet tenu
 action-try-cut = Aperçu : couper avec l'objet tenu
 action-try-keep = Aperçu : garder le commun
+action-new = Nouvelle sculpture
 action-open-mesh = Ouvrir un maillage
 action-export = Exporter le maillage
 action-screenshot = Capture d'écran

@@ -920,6 +920,20 @@ control-wheel = Rotella { $number }
 control-ring = Anello { $number }
 control-strip = Striscia { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }: leviga finché si tiene Maiusc
+status-carves = { $brush }: scava
+status-times = ciclo { $tick } ms, immagine { $frame } ms
+status-devices = { $count ->
+    [one] { $count } dispositivo
+   *[other] { $count } dispositivi
+}
+status-not-kept = non salvato
+    .tip = Nessuna sessione conserva questa scultura: esportala prima di chiudere la finestra
+status-fault = la sessione non accetta nulla
+status-lost = alla sessione mancano { $ticks } cicli
+
 ## Page: loop
 
 loop-heading = Ciclo
@@ -1148,6 +1162,7 @@ action-remesh = Remesh
 action-try-add = Anteprima: aggiungi l'oggetto in mano
 action-try-cut = Anteprima: taglia con l'oggetto in mano
 action-try-keep = Anteprima: tieni il comune
+action-new = Nuova scultura
 action-open-mesh = Apri una mesh
 action-export = Esporta la mesh
 action-screenshot = Schermata

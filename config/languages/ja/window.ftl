@@ -918,6 +918,17 @@ control-wheel = ホイール { $number }
 control-ring = リング { $number }
 control-strip = ストリップ { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }：Shift を押している間は滑らかにします
+status-carves = { $brush }：彫ります
+status-times = 周期 { $tick } ms、描画 { $frame } ms
+status-devices = 機器 { $count } 台
+status-not-kept = 保存されていません
+    .tip = この作品を保存するセッションがありません。ウィンドウを閉じる前に書き出してください
+status-fault = セッションに書き込めません
+status-lost = セッションに { $ticks } 周期が欠けています
+
 ## Page: loop
 
 loop-heading = ループ
@@ -1144,6 +1155,7 @@ action-remesh = リメッシュ
 action-try-add = プレビュー: 持っているものを合体
 action-try-cut = プレビュー: 持っているもので切り取り
 action-try-keep = プレビュー: 共通部分
+action-new = 新しい作品
 action-open-mesh = メッシュを開く
 action-export = メッシュをエクスポート
 action-screenshot = スクリーンショット

@@ -918,6 +918,17 @@ control-wheel = 滚轮 { $number }
 control-ring = 圆环 { $number }
 control-strip = 触条 { $number }
 
+## The line below the clay
+
+status-smooths = { $brush }：按住 Shift 时平滑
+status-carves = { $brush }：雕刻
+status-times = 周期 { $tick } 毫秒，画面 { $frame } 毫秒
+status-devices = { $count } 个设备
+status-not-kept = 未保存
+    .tip = 没有会话保存此作品：请在关闭窗口前导出
+status-fault = 会话无法写入
+status-lost = 会话缺少 { $ticks } 个周期
+
 ## Page: loop
 
 loop-heading = 循环
@@ -1144,6 +1155,7 @@ action-remesh = 重构网格
 action-try-add = 预览: 合并手持物体
 action-try-cut = 预览: 用手持物体切除
 action-try-keep = 预览: 保留共有部分
+action-new = 新作品
 action-open-mesh = 打开网格
 action-export = 导出网格
 action-screenshot = 截图

@@ -5,7 +5,7 @@ use super::cube;
 use super::modal;
 use super::state::action::{self, Action};
 use super::state::region::{RegionPurpose, RegionShape};
-use super::state::{HintsFollowed, ModalSetting, SCALE, SearchBox, UiRequest, UiState, View};
+use super::state::{HintsFollowed, ModalSetting, NextSculpture, SCALE, SearchBox, UiRequest, UiState, View};
 use crate::look::{Light, MATERIALS, Map};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;
@@ -105,6 +105,7 @@ pub fn act(
             out.push(UiRequest::World(Command::Brush(taken.clamped())));
         }
         Action::Lesson => ui_state.prefs.hints = HintsFollowed::default(),
+        Action::New => out.push(UiRequest::OpenNext(NextSculpture::New)),
         Action::OpenMesh
         | Action::Export
         | Action::Screenshot

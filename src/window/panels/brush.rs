@@ -1,7 +1,7 @@
 //! The brush: which one, of the program's and of a person's own, and all its settings.
 
 use super::state::{Action, UiRequest, UiState, View};
-use super::{alphas, brush_palette, brush_size, colours, rows};
+use super::{alphas, brush_palette, brush_size, colours, header, rows};
 use crate::language::tr;
 use crate::language::{text_of, text_or};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Falloff, Measure, Method, StampBy};
@@ -55,26 +55,20 @@ fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, al
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let mut brush: BrushSettings = view.state.brush;
     brush_palette::ui(ui, view, ui_state, &mut brush, out);
-    brush_size::radius(ui, view, ui_state, &mut brush);
-    let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0);
-    let keys = view.both(Action::Weaker, Action::Stronger);
-    let drag = view.keys.text(Action::DragStrength);
-    rows::slider(ui, strength, &tr!("brush-strength")).on_hover_text(tr!(
-        "brush-strength.tip",
-        keys = keys,
-        drag = drag
-    ));
-    rows::flow(ui, |ui| {
-        ui.checkbox(&mut brush.negative, tr!("brush-carve"))
-            .on_hover_text(tr!("brush-carve.tip", action = view.tip(Action::Carve)));
-        check(ui, &mut ui_state.prefs.brushes.radius_in_pixels, "brush-radius-pixels");
-    });
+    let wide = ui.ctx().content_rect().width();
+    if wide < header::ROOM_FOR_BRUSH {
+        first_settings(ui, view, ui_state, &mut brush);
+    }
     let paints = view.state.brush.kind == BrushKind::Paint;
     if paints {
         colours::ui(ui, view, ui_state, &mut brush);
     }
-    rows::folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
+    if wide < header::ROOM_FOR_STROKE {
+        choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
+        rows::folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
+    }
     rows::folded("brush-settings").show(ui, |ui| {
+        check(ui, &mut ui_state.prefs.brushes.radius_in_pixels, "brush-radius-pixels");
         rows::folded("brush-dab").show(ui, |ui| {
             dab(ui, &mut brush);
             if !paints {
@@ -92,6 +86,48 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));
     }
+}
+
+/// The settings that are changed most, in a row.
+pub fn in_a_row(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) {
+    let mut brush = view.state.brush;
+    ui.spacing_mut().slider_width = 80.0;
+    first_settings(ui, view, ui_state, &mut brush);
+    if ui.ctx().content_rect().width() >= header::ROOM_FOR_STROKE {
+        ui.spacing_mut().slider_width = 48.0;
+        choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
+        let stroke = egui::containers::menu::MenuButton::new(tr!("brush-stroke"));
+        let stay = egui::PopupCloseBehavior::CloseOnClickOutside;
+        stroke.config(egui::containers::menu::MenuConfig::new().close_behavior(stay)).ui(ui, |ui| {
+            ui.set_width(240.0);
+            path(ui, &mut brush);
+        });
+    }
+    if brush != view.state.brush {
+        out.push(UiRequest::World(Command::Brush(brush.clamped())));
+    }
+}
+
+/// Radius, strength, and whether it carves.
+fn first_settings(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    brush: &mut BrushSettings,
+) {
+    brush_size::radius(ui, view, ui_state, brush);
+    let strength = egui::Slider::new(&mut brush.strength, 0.0..=1.0);
+    let keys = view.both(Action::Weaker, Action::Stronger);
+    let drag = view.keys.text(Action::DragStrength);
+    let tip = tr!("brush-strength.tip", keys = keys, drag = drag);
+    rows::slider(ui, strength, &tr!("brush-strength")).on_hover_text(tip);
+    let carves = ui.checkbox(&mut brush.negative, tr!("brush-carve"));
+    carves.on_hover_text(tr!("brush-carve.tip", action = view.tip(Action::Carve)));
 }
 
 /// A slider by the message of its name, whose attribute `tip` says what it means.
@@ -135,7 +171,6 @@ fn path(ui: &mut egui::Ui, brush: &mut BrushSettings) {
 }
 
 fn dab(ui: &mut egui::Ui, brush: &mut BrushSettings) {
-    choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
     if brush.falloff == Falloff::Custom {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::rows;
-use super::state::{Action, UNITS, UiRequest, UiState, View};
+use super::state::{Action, NextSculpture, UNITS, UiRequest, UiState, View};
 use super::{start, theme};
 use crate::language::tr;
 
@@ -43,7 +43,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             for path in view.recent {
                 let button = ui.button(start::title(path));
                 if button.on_hover_text(path.display().to_string()).clicked() {
-                    out.push(UiRequest::OpenSession(path.clone()));
+                    out.push(UiRequest::OpenNext(NextSculpture::Session(path.clone())));
                     ui.close();
                 }
             }

@@ -1,8 +1,9 @@
 //! Fonts for languages whose letters egui's own fonts lack: the program brings none along and looks
 //! for one among those of the system.
 
-use egui::{FontData, FontDefinitions, FontFamily, FontId};
+use egui::{FontData, FontFamily, FontId};
 
+use super::icons;
 use super::state::UiState;
 use crate::language::{self, Translation, Translations};
 
@@ -59,10 +60,14 @@ fn prepare(ctx: &egui::Context, translation: &Translation) -> bool {
         false => missing(ctx, letters),
     };
     if lacking.is_empty() {
+        ctx.set_fonts(icons::fonts());
         return true;
     }
-    let Some(font) = system_font(translation.code(), &lacking) else { return false };
-    let mut fonts = FontDefinitions::default();
+    let Some(font) = system_font(translation.code(), &lacking) else {
+        ctx.set_fonts(icons::fonts());
+        return false;
+    };
+    let mut fonts = icons::fonts();
     let name = translation.code().to_owned();
     fonts.font_data.insert(name.clone(), font.into());
     for family in [FontFamily::Proportional, FontFamily::Monospace] {

@@ -1,9 +1,9 @@
-//! The history: undo, redo, a slider through the steps, a click on the picture of a step.
+//! The history: a slider through the steps, a click on the picture of a step.
 
 use egui::{Sense, Stroke, vec2};
 
 use super::rows;
-use super::state::{Action, StepPicture, UiRequest, UiState, View};
+use super::state::{StepPicture, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
 use crate::panels::history_tree;
@@ -14,30 +14,21 @@ const AT_ONCE: usize = 200;
 /// Pictures shown: those nearest to the present step.
 const SHOWN: usize = 9;
 
-pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
-    // A session's file holds steps that memory no longer holds.
+/// Returns whether a step can be undone, and whether one can be redone. A session's file holds
+/// steps that memory no longer holds.
+pub fn ways(view: &View<'_>, ui_state: &UiState) -> (bool, bool) {
     let (first, last) = ui_state.versions.ends();
+    (view.state.undo_steps > 0 || first, view.state.redo_steps > 0 || last)
+}
+
+pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let (back, ahead) = (view.state.undo_steps, view.state.redo_steps);
-    ui.strong(tr!("history-heading"));
-    rows::flow(ui, |ui| {
-        let undo = ui
-            .add_enabled(back > 0 || first, egui::Button::new(tr!("undo")))
-            .on_hover_text(view.tip(Action::Undo));
-        let redo = ui
-            .add_enabled(ahead > 0 || last, egui::Button::new(tr!("redo")))
-            .on_hover_text(view.tip(Action::Redo));
-        if undo.clicked() {
-            out.push(UiRequest::World(Command::Undo));
-        }
-        if redo.clicked() {
-            out.push(UiRequest::World(Command::Redo));
-        }
-        let text = match ui_state.versions.rows.len() {
-            0 => tr!("history-steps", at = back, all = back + ahead),
-            n => tr!("history-versions", count = n),
-        };
-        ui.colored_label(theme::quiet(ui), text);
-    });
+    rows::heading(ui, &tr!("history-heading"));
+    let text = match ui_state.versions.rows.len() {
+        0 => tr!("history-steps", at = back, all = back + ahead),
+        n => tr!("history-versions", count = n),
+    };
+    ui.colored_label(theme::quiet(ui), text);
     if !ui_state.versions.rows.is_empty() {
         history_tree::ui(ui, &mut ui_state.versions, out);
         return;

@@ -1,17 +1,19 @@
-//! Where the panels lie: tools at the left, pages at the right, the rest over the clay.
+//! Where the panels lie: the header above, the brushes at the left, the pages at the right, the
+//! status bar below, the rest over the clay.
 
 use super::act::act;
+use super::icons::{self, Icon};
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, check, check_values, chooser, colours, cube, curve_stroke, devices, face_sets,
-    files, fonts, hand_menu, help, hints, history, keys, layers, legend, light, look, masks,
+    files, fonts, hand_menu, header, help, hints, history, keys, layers, legend, light, look, masks,
     measure, messages, modal, outliner, people, preferences, pressure_curve, radial, region,
-    remesh, retopology, rows, scene, search, start, symmetry, tablet_keys, theme, timing, trim,
+    remesh, retopology, scene, search, start, status_bar, tablet_keys, theme, timing, trim,
     views,
 };
 
 /// Width of either panel, points.
-pub const PANEL: f32 = 236.0;
+pub const PANEL: f32 = 252.0;
 
 /// Narrower windows, points, have one panel.
 const NARROW: f32 = 760.0;
@@ -43,6 +45,10 @@ pub fn all(
     modal::ui(&ctx, view, ui_state, out);
     let narrow = ctx.content_rect().width() < NARROW;
     if !ui_state.hidden {
+        let top = egui::Panel::top("header").exact_size(header::HEIGHT).resizable(false);
+        top.show(ui, |ui| header::ui(ui, view, ui_state, out));
+        let low = egui::Panel::bottom("status").exact_size(status_bar::HEIGHT).resizable(false);
+        low.show(ui, |ui| status_bar::ui(ui, view, ui_state));
         let side = egui::Panel::left("left").exact_size(PANEL).resizable(false);
         side.show(ui, |ui| {
             scrolled(ui, |ui| {
@@ -102,33 +108,41 @@ fn scrolled(ui: &mut egui::Ui, what: impl FnOnce(&mut egui::Ui)) {
 }
 
 fn tools(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
-    ui.heading("sculptd");
-    ui.add_space(6.0);
     brush::ui(ui, view, ui_state, out);
-    ui.add_space(8.0);
-    symmetry::ui(ui, view, out);
-    ui.add_space(8.0);
     pressure_curve::ui(ui, view, &ui_state.devices, out);
-    ui.add_space(8.0);
     masks::ui(ui, view, ui_state, out);
-    ui.add_space(8.0);
     history::ui(ui, view, ui_state, out);
     people::ui(ui, view);
 }
 
+fn icon_of(tab: Tab) -> Icon {
+    match tab {
+        Tab::Look => Icon::Palette,
+        Tab::Scene => Icon::Boxes,
+        Tab::Walls => Icon::Layers2,
+        Tab::Check => Icon::ShieldCheck,
+        Tab::Measure => Icon::Ruler,
+        Tab::Files => Icon::FolderOpen,
+        Tab::Devices => Icon::PenTool,
+        Tab::Loop => Icon::Gauge,
+        Tab::More => Icon::Settings,
+    }
+}
+
 fn pages(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
-    rows::flow(ui, |ui| {
-        ui.spacing_mut().item_spacing = [4.0, 4.0].into();
-        ui.spacing_mut().button_padding.x = 4.0;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        let side = (ui.available_width() / Tab::ALL.len() as f32).min(icons::BUTTON);
         for (tab, ..) in Tab::ALL {
-            let button = egui::Button::selectable(ui_state.tab == tab, tab.title());
-            let button = ui.add(button.min_size([38.0, 22.0].into()));
+            let button = icons::tab(ui, icon_of(tab), &tab.title(), ui_state.tab == tab, side);
             if button.on_hover_text(tab.about()).clicked() {
                 ui_state.tab = tab;
             }
         }
     });
     ui.separator();
+    // A picture says less than a word to who is new.
+    ui.heading(ui_state.tab.title());
     match ui_state.tab {
         Tab::Look => look::ui(ui, ui_state, out, view),
         Tab::Scene => {

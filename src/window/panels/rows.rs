@@ -1,15 +1,15 @@
-//! Rows of a panel that hold in every language: a label that does not fit beside its widget stands
-//! above it.
+//! Rows of a panel that hold in every language: names in one column at the left, values in one at
+//! the right. A name that is too long for its column stands above its value.
 
 use crate::language::tr;
 use egui::{ComboBox, Response, Slider, TextStyle, Ui, WidgetText};
 
-/// Points beside the bar of a slider: its number and the gaps.
-const NUMBER: f32 = 62.0;
-/// A bar beside its name is at least so long, as a part of the usual length.
-const SHORTEST: f32 = 0.75;
-/// Width of a list that unfolds, points.
-const LIST: f32 = 100.0;
+/// Width of the column of names, points.
+const NAMES: f32 = 84.0;
+/// Points beside the bar of a slider: its number and the gap before it.
+const NUMBER: f32 = 66.0;
+/// The shortest bar, points.
+const SHORTEST: f32 = 48.0;
 
 fn width(ui: &Ui, text: &str) -> f32 {
     let font = TextStyle::Body.resolve(ui.style());
@@ -17,25 +17,40 @@ fn width(ui: &Ui, text: &str) -> f32 {
     ui.painter().layout_no_wrap(text.to_owned(), font, colour).size().x
 }
 
+/// A widget behind its name; it is given the width that is left for it. In a row of several, it is
+/// as wide as it is by itself.
+pub fn named(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui, f32) -> Response) -> Response {
+    if ui.layout().is_horizontal() {
+        let label = ui.label(name);
+        let usual = ui.spacing().slider_width + NUMBER;
+        return ui.scope(|ui| add(ui, usual)).inner.labelled_by(label.id);
+    }
+    let gap = NAMES - width(ui, name);
+    if gap < 0.0 {
+        let label = ui.label(name);
+        let left = ui.available_width();
+        return ui.scope(|ui| add(ui, left)).inner.labelled_by(label.id);
+    }
+    let row = ui.horizontal(|ui| {
+        let label = ui.label(name);
+        ui.add_space(NAMES - label.rect.width());
+        let left = ui.available_width();
+        add(ui, left).labelled_by(label.id)
+    });
+    row.inner
+}
+
 /// A slider with its name.
 pub fn slider(ui: &mut Ui, slider: Slider<'_>, name: &str) -> Response {
     slider_beside(ui, slider, name, NUMBER)
 }
 
-/// A slider with its name, whose number and the gaps take so many points beside the bar.
+/// A slider with its name, whose number and the gap take so many points beside the bar.
 pub fn slider_beside(ui: &mut Ui, slider: Slider<'_>, name: &str, number: f32) -> Response {
-    let usual = ui.spacing().slider_width;
-    let bar = (ui.available_width() - number - width(ui, name)).min(usual);
-    // A bar that is a little shorter is better than two kinds of rows on one page.
-    if bar >= SHORTEST * usual {
-        let add = |ui: &mut Ui| {
-            ui.spacing_mut().slider_width = bar;
-            ui.add(slider.text(name))
-        };
-        return ui.scope(add).inner;
-    }
-    let label = ui.label(name);
-    ui.add(slider).labelled_by(label.id)
+    named(ui, name, |ui, left| {
+        ui.spacing_mut().slider_width = (left - number).max(SHORTEST);
+        ui.add(slider)
+    })
 }
 
 /// A list that unfolds, with its name. `now` is what is chosen.
@@ -45,18 +60,17 @@ pub fn list(
     now: impl Into<WidgetText>,
     all: impl FnOnce(&mut Ui),
 ) -> Response {
-    let (now, spacing) = (now.into(), ui.spacing());
-    let gap = spacing.item_spacing.x;
-    // A list grows with what is chosen, and would press its name into two lines.
-    let frame = 2.0 * spacing.button_padding.x + spacing.icon_spacing + spacing.icon_width;
-    let list = LIST.max(width(ui, now.text()) + frame);
-    if list + gap + width(ui, name) <= ui.available_width() {
-        let list = ComboBox::from_label(name).selected_text(now).width(LIST).truncate();
-        return list.show_ui(ui, all).response;
-    }
-    let label = ui.label(name);
-    let list = ComboBox::from_id_salt(name).selected_text(now).width(ui.available_width() - 8.0);
-    list.truncate().show_ui(ui, all).response.labelled_by(label.id)
+    let now = now.into();
+    named(ui, name, |ui, left| {
+        let list = ComboBox::from_id_salt(name).selected_text(now).width(left);
+        list.truncate().show_ui(ui, all).response
+    })
+}
+
+/// The title of a part of a page.
+pub fn heading(ui: &mut Ui, text: &str) {
+    ui.add_space(8.0);
+    ui.strong(text);
 }
 
 /// Widgets in a row that goes on in the next line, each whole.

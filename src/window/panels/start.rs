@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::state::{UiRequest, UiState, View};
+use super::state::{NextSculpture, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
 
@@ -43,7 +43,7 @@ pub fn ui(
             for path in view.recent.iter().take(OFFERED) {
                 let button = ui.button(title(path)).on_hover_text(path.display().to_string());
                 if button.clicked() {
-                    out.push(UiRequest::OpenSession(path.clone()));
+                    out.push(UiRequest::OpenNext(NextSculpture::Session(path.clone())));
                 }
             }
             ui.colored_label(theme::quiet(ui), tr!("start-note"));

@@ -1,6 +1,15 @@
 //! Colours and sizes of the panels.
 
-use egui::{Color32, CornerRadius, Stroke, Visuals};
+use egui::{Color32, CornerRadius, Stroke, TextStyle, Visuals};
+
+/// The sizes of text, points: there are no others but those that a drawn label needs.
+const TYPE_SCALE: [(TextStyle, f32); 5] = [
+    (TextStyle::Heading, 16.0),
+    (TextStyle::Body, 13.0),
+    (TextStyle::Button, 13.0),
+    (TextStyle::Monospace, 12.0),
+    (TextStyle::Small, 11.0),
+];
 
 /// Quiet greys that leave the clay the strongest colour of the screen; text at least 4.5:1 on its
 /// ground, held by a test.
@@ -37,8 +46,15 @@ pub fn apply(ctx: &egui::Context, light: bool) {
     ctx.set_visuals(v);
     ctx.global_style_mut(|s| {
         s.spacing.slider_width = 92.0;
-        s.spacing.item_spacing = egui::vec2(6.0, 5.0);
+        s.spacing.item_spacing = egui::vec2(8.0, 4.0);
+        s.spacing.button_padding = egui::vec2(8.0, 2.0);
+        s.spacing.interact_size = egui::vec2(40.0, 22.0);
         s.interaction.tooltip_delay = 0.4;
+        for (style, size) in TYPE_SCALE {
+            if let Some(font) = s.text_styles.get_mut(&style) {
+                font.size = size;
+            }
+        }
     });
 }
 
@@ -69,6 +85,11 @@ fn quiet_of(light: bool) -> Color32 {
 /// Text that explains, still 4.5:1 on the panel.
 pub fn quiet(ui: &egui::Ui) -> Color32 {
     quiet_of(!ui.visuals().dark_mode)
+}
+
+/// What cannot be pressed now.
+pub fn faint(ui: &egui::Ui) -> Color32 {
+    quiet(ui).gamma_multiply(0.5)
 }
 
 /// Something is wrong.

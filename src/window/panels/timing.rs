@@ -51,8 +51,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
         row(ui, "loop-vertices", format!("{}", s.mesh.vertex_count()));
         row(ui, "loop-triangles", format!("{}", s.mesh.triangle_count()));
     });
-    if let Some(session) = view.session {
-        ui.colored_label(quiet, tr!("loop-saved", path = session));
+    if let Some(session) = &view.session {
+        ui.colored_label(quiet, tr!("loop-saved", path = session.path));
     }
     ui.add_space(8.0);
     ui.colored_label(quiet, view.adapter);

@@ -43,11 +43,10 @@ impl WindowState {
             UiRequest::OpenMesh(path) => {
                 self.tasks.load(path, wiring);
             }
-            UiRequest::OpenSession(path) => {
+            UiRequest::OpenNext(chosen) => {
                 if let Ok(mut next) = wiring.open_next.lock() {
-                    *next = Some(path);
+                    *next = Some(chosen);
                 }
-                // This session is closed as by closing the window.
                 wiring.stop.store(true, Relaxed);
             }
             UiRequest::ListFolder(folder) => self.tasks.list(folder),

@@ -14,8 +14,9 @@ use sculptd_daemon::Published;
 use sculptd_daemon::command_queue::{CommandAnswer, CommandSender};
 use sculptd_daemon::event_clock::EventClock;
 use sculptd_daemon::pen_trail::PenTrail;
+use sculptd_daemon::session::Health;
 use sculptd_daemon::tablet_controls::TabletControls;
-use sculptd_daemon::window_link::WindowLink;
+use sculptd_daemon::window_link::{NextSculpture, WindowLink};
 use sculptd_devices::queue::Sender;
 use sculptd_devices::{Clock, DeviceId};
 
@@ -48,12 +49,14 @@ pub struct Wiring {
     /// The newest picture of the camera that watches hands; asked for while its page is open.
     pub camera: Box<dyn Fn() -> Option<Arc<CameraPreview>>>,
     pub session: Option<String>,
+    /// State of the session's file.
+    pub journal: Option<Health>,
     /// The session's history, and the ticks a second that its versions are counted in.
     pub history: Option<(sculptd_daemon::session::history::Handle, u32)>,
     /// Sessions to offer at the start, the newest first.
     pub recent: Vec<PathBuf>,
-    /// Takes the session that a person chooses to open next; the window then ends.
-    pub open_next: Arc<Mutex<Option<PathBuf>>>,
+    /// Takes the sculpture that a person chooses to open next; the window then ends.
+    pub open_next: Arc<Mutex<Option<NextSculpture>>>,
     /// The time on the clock at which the demo ends, microseconds; 0 without a demo.
     pub demo_until_us: u64,
     /// Bindings of the tablets' controls.

@@ -9,6 +9,7 @@ use sculptd_daemon::decimate_job::DecimateWanted;
 use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::trim::Part;
+use sculptd_daemon::window_link::NextSculpture;
 use sculptd_devices::pad_actions::{Binding, Control};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
@@ -41,8 +42,8 @@ pub enum UiRequest {
     ListFolder(PathBuf),
     /// The mesh is written, over a file of that name too.
     Export(PathBuf),
-    /// The window goes on with another session.
-    OpenSession(PathBuf),
+    /// The window goes on with another sculpture; this one is closed as by closing the window.
+    OpenNext(NextSculpture),
     /// The held object is joined with the object.
     Join(MenuItem),
     /// An object of a primitive is added.

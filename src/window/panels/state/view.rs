@@ -33,8 +33,8 @@ pub struct View<'a> {
     pub camera_preview: Option<&'a Arc<CameraPreview>>,
     /// The controls of tablets; `None` in an installation.
     pub tablet: Option<TabletKeys>,
-    /// The session's file and whether it is well.
-    pub session: Option<&'a str>,
+    /// The session that keeps the sculpture; `None`: nothing keeps it.
+    pub session: Option<SessionView<'a>>,
     /// Earlier sessions, the newest first.
     pub recent: &'a [PathBuf],
     /// Bytes of pages sent to the card with the last frame.
@@ -48,6 +48,16 @@ pub struct View<'a> {
     pub invitation: Option<&'a sculptd_daemon::qr_code::Invitation>,
     /// The demo performs.
     pub demo_runs: bool,
+}
+
+/// The session's file, and whether it is well.
+#[derive(Debug, Clone)]
+pub struct SessionView<'a> {
+    pub path: &'a str,
+    /// Why its file takes nothing now.
+    pub fault: Option<String>,
+    /// Number of ticks whose input the file has lost.
+    pub lost: u64,
 }
 
 impl View<'_> {
