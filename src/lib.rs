@@ -198,6 +198,8 @@
 //!   request; a newer one replaces it.
 //! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the
 //!   history. Waits for: the disk.
+//! * `sculptd-earlier`, made by `window::viewer::earlier_pictures`: reads the pictures of earlier
+//!   sessions. Waits for: the disk.
 //!
 //! Long computations outside the tick (Booleans, thickness, repair) also use the threads of rayon's
 //! global pool.

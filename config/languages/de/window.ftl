@@ -483,6 +483,10 @@ objects-eye = Auge
     .tip = Wird gezeichnet
 objects-lock = Sperre
     .tip = Vor Strichen, Bewegung und Entfernen geschützt
+objects-position = Position { $axis }
+objects-fold = { $group } einklappen
+objects-show = Zeigen oder verbergen
+objects-lock-or-not = Sperren oder entsperren
 objects-reset-place = Lage zurücksetzen
     .tip = Zurück an den Ort der Entstehung
 shape-box = Quader
@@ -854,7 +858,8 @@ chooser-name = Name
 start-heading = Weiter mit
 start-note = Diese neue Skulptur wird beim Arbeiten gespeichert.
 start-stay = Hier bleiben
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = nicht lesbar: { $why }
 
 ## Page: pens
 

@@ -483,6 +483,10 @@ objects-eye = όψη
     .tip = Σχεδιάζεται
 objects-lock = κλειδί
     .tip = Προστατευμένο από κινήσεις, μετακίνηση και αφαίρεση
+objects-position = Θέση { $axis }
+objects-fold = Σύμπτυξη { $group }
+objects-show = Εμφάνιση ή απόκρυψη
+objects-lock-or-not = Κλείδωμα ή ξεκλείδωμα
 objects-reset-place = Αρχική θέση
     .tip = Πίσω εκεί που φτιάχτηκε
 shape-box = Κύβος
@@ -854,7 +858,8 @@ chooser-name = Όνομα
 start-heading = Συνέχεια με
 start-note = Αυτό το νέο γλυπτό αποθηκεύεται καθώς δουλεύετε.
 start-stay = Μείνετε εδώ
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = δεν διαβάζεται: { $why }
 
 ## Page: pens
 

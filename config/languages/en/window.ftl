@@ -485,6 +485,10 @@ objects-eye = eye
     .tip = Drawn
 objects-lock = lock
     .tip = Protected from strokes, moves and removal
+objects-position = Position { $axis }
+objects-fold = Fold { $group }
+objects-show = Show or hide
+objects-lock-or-not = Lock or unlock
 objects-reset-place = Reset place
     .tip = Back to where it was made
 shape-box = Box
@@ -856,7 +860,8 @@ chooser-name = Name
 start-heading = Go on with
 start-note = This new sculpture is saved as you work.
 start-stay = Stay here
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = cannot be read: { $why }
 
 ## Page: pens
 

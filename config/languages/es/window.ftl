@@ -483,6 +483,10 @@ objects-eye = ver
     .tip = Se dibuja
 objects-lock = fijo
     .tip = Protegido de trazos, movimientos y borrado
+objects-position = Posición { $axis }
+objects-fold = Plegar { $group }
+objects-show = Mostrar u ocultar
+objects-lock-or-not = Bloquear o desbloquear
 objects-reset-place = Reponer lugar
     .tip = De vuelta a donde se creó
 shape-box = Cubo
@@ -854,7 +858,8 @@ chooser-name = Nombre
 start-heading = Seguir con
 start-note = Esta nueva escultura se guarda mientras trabajas.
 start-stay = Quedarse aquí
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = no se puede leer: { $why }
 
 ## Page: pens
 

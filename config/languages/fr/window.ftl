@@ -483,6 +483,10 @@ objects-eye = œil
     .tip = Dessiné
 objects-lock = verrou
     .tip = Protégé des traits, des déplacements et du retrait
+objects-position = Position { $axis }
+objects-fold = Replier { $group }
+objects-show = Montrer ou cacher
+objects-lock-or-not = Verrouiller ou déverrouiller
 objects-reset-place = Remettre en place
     .tip = Retour là où il a été créé
 shape-box = Cube
@@ -854,7 +858,8 @@ chooser-name = Nom
 start-heading = Continuer avec
 start-note = Cette nouvelle sculpture est enregistrée au fil du travail.
 start-stay = Rester ici
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = illisible : { $why }
 
 ## Page: pens
 

@@ -483,6 +483,10 @@ objects-eye = vedi
     .tip = Disegnato
 objects-lock = blocca
     .tip = Protetto da tratti, spostamenti e rimozione
+objects-position = Posizione { $axis }
+objects-fold = Comprimi { $group }
+objects-show = Mostra o nascondi
+objects-lock-or-not = Blocca o sblocca
 objects-reset-place = Azzera posizione
     .tip = Torna dove è stato creato
 shape-box = Cubo
@@ -854,7 +858,8 @@ chooser-name = Nome
 start-heading = Continua con
 start-note = Questa nuova scultura viene salvata mentre lavori.
 start-stay = Resta qui
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = non leggibile: { $why }
 
 ## Page: pens
 

@@ -482,6 +482,10 @@ objects-eye = 表示
     .tip = 描画する
 objects-lock = ロック
     .tip = 造形、移動、削除から保護
+objects-position = 位置 { $axis }
+objects-fold = { $group } を折りたたむ
+objects-show = 表示／非表示
+objects-lock-or-not = ロック／解除
 objects-reset-place = 位置をリセット
     .tip = 作成した位置に戻します
 shape-box = 箱
@@ -853,7 +857,8 @@ chooser-name = 名前
 start-heading = 続きから
 start-note = この新しい作品は作業中に自動で保存されます。
 start-stay = このまま始める
-start-session = { $object }、{ $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = 読み込めません：{ $why }
 
 ## Page: pens
 

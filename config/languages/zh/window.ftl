@@ -482,6 +482,10 @@ objects-eye = 显示
     .tip = 绘制
 objects-lock = 锁定
     .tip = 防止雕刻、移动与移除
+objects-position = 位置 { $axis }
+objects-fold = 折叠 { $group }
+objects-show = 显示或隐藏
+objects-lock-or-not = 锁定或解锁
 objects-reset-place = 重置位置
     .tip = 回到创建之处
 shape-box = 立方体
@@ -853,7 +857,8 @@ chooser-name = 名称
 start-heading = 继续
 start-note = 此新作品会随工作自动保存。
 start-stay = 留在此处
-start-session = { $object }, { $date } { $time }
+start-session = { $object }, { $begun }
+start-unreadable = 无法读取：{ $why }
 
 ## Page: pens
 

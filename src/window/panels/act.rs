@@ -5,7 +5,9 @@ use super::cube;
 use super::modal;
 use super::state::action::{self, Action};
 use super::state::region::{RegionPurpose, RegionShape};
-use super::state::{HintsFollowed, ModalSetting, NextSculpture, SCALE, SearchBox, UiRequest, UiState, View};
+use super::state::{
+    HintsFollowed, ModalSetting, NextSculpture, SCALE, SearchBox, UiRequest, UiState, View,
+};
 use crate::look::{Light, MATERIALS, Map};
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::MenuItem;

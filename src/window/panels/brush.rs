@@ -98,15 +98,19 @@ pub fn in_a_row(
     let mut brush = view.state.brush;
     ui.spacing_mut().slider_width = 80.0;
     first_settings(ui, view, ui_state, &mut brush);
+    ui.add_space(8.0);
     if ui.ctx().content_rect().width() >= header::ROOM_FOR_STROKE {
         ui.spacing_mut().slider_width = 48.0;
         choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
         let stroke = egui::containers::menu::MenuButton::new(tr!("brush-stroke"));
         let stay = egui::PopupCloseBehavior::CloseOnClickOutside;
-        stroke.config(egui::containers::menu::MenuConfig::new().close_behavior(stay)).ui(ui, |ui| {
-            ui.set_width(240.0);
-            path(ui, &mut brush);
-        });
+        stroke.config(egui::containers::menu::MenuConfig::new().close_behavior(stay)).ui(
+            ui,
+            |ui| {
+                ui.set_width(240.0);
+                path(ui, &mut brush);
+            },
+        );
     }
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush.clamped())));

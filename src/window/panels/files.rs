@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::rows;
-use super::state::{Action, NextSculpture, UNITS, UiRequest, UiState, View};
-use super::{start, theme};
+use super::state::{Action, UNITS, UiRequest, UiState, View};
+use super::theme;
 use crate::language::tr;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
@@ -39,15 +39,9 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         });
     }
     if !view.recent.is_empty() {
-        ui.menu_button(tr!("files-earlier"), |ui| {
-            for path in view.recent {
-                let button = ui.button(start::title(path));
-                if button.on_hover_text(path.display().to_string()).clicked() {
-                    out.push(UiRequest::OpenNext(NextSculpture::Session(path.clone())));
-                    ui.close();
-                }
-            }
-        });
+        if ui.button(tr!("files-earlier")).clicked() {
+            ui_state.earlier.open = true;
+        }
     }
     ui.add_space(8.0);
     ui.strong(tr!("files-export"));

@@ -36,7 +36,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         ui.add_enabled_ui(ahead, |ui| button(ui, view, Icon::Redo2, Action::Redo, &mut chosen));
         gap(ui);
         if wide {
-            brush::in_a_row(ui, view, ui_state, out);
+            ui.scope(|ui| brush::in_a_row(ui, view, ui_state, out));
             gap(ui);
         }
         symmetry::ui(ui, view, out);

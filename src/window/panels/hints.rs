@@ -10,7 +10,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use sculptd_clay::brush::BrushKind;
 
 use super::state::{Action, Hint, HintsFollowed, UiState, View};
-use super::theme;
+use super::{start, theme};
 use crate::language::tr;
 
 /// So long the hand shows one hint, seconds.
@@ -21,8 +21,9 @@ const FRAME_S: f32 = 1.0 / 30.0;
 /// Follows what the person does, and shows the hint low in the middle of the view.
 pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: Rect) {
     follow(view, &mut ui_state.prefs.hints);
-    // Who works with bare hands is not told about keys.
-    if view.state.hands.is_some() {
+    // Who works with bare hands is not told about keys, and who is offered earlier sculptures
+    // answers that first.
+    if view.state.hands.is_some() || start::offers(view, ui_state) {
         return;
     }
     let next = ui_state.prefs.hints.hint();

@@ -6,10 +6,9 @@ use super::icons::{self, Icon};
 use super::state::{Tab, UiRequest, UiState, View};
 use super::{
     analysis, brush, check, check_values, chooser, colours, cube, curve_stroke, devices, face_sets,
-    files, fonts, hand_menu, header, help, hints, history, keys, layers, legend, light, look, masks,
-    measure, messages, modal, outliner, people, preferences, pressure_curve, radial, region,
-    remesh, retopology, scene, search, start, status_bar, tablet_keys, theme, timing, trim,
-    views,
+    files, fonts, hand_menu, header, help, hints, history, keys, layers, legend, light, look,
+    masks, measure, messages, modal, outliner, people, preferences, pressure_curve, radial, region,
+    remesh, retopology, scene, search, start, status_bar, tablet_keys, theme, timing, trim, views,
 };
 
 /// Width of either panel, points.
@@ -49,7 +48,9 @@ pub fn all(
         top.show(ui, |ui| header::ui(ui, view, ui_state, out));
         let low = egui::Panel::bottom("status").exact_size(status_bar::HEIGHT).resizable(false);
         low.show(ui, |ui| status_bar::ui(ui, view, ui_state));
-        let side = egui::Panel::left("left").exact_size(PANEL).resizable(false);
+        // A small window is for the clay first.
+        let wide = PANEL.min(ctx.content_rect().width() * 0.57);
+        let side = egui::Panel::left("left").exact_size(wide).resizable(false);
         side.show(ui, |ui| {
             scrolled(ui, |ui| {
                 tools(ui, view, ui_state, out);
@@ -100,7 +101,7 @@ pub fn all(
 
 fn scrolled(ui: &mut egui::Ui, what: impl FnOnce(&mut egui::Ui)) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        ui.set_max_width(PANEL - 26.0);
+        ui.set_max_width(ui.available_width() - 10.0);
         ui.add_space(6.0);
         what(ui);
         ui.add_space(6.0);

@@ -7,7 +7,7 @@ use crate::language::tr;
 use crate::look::{Light, MATERIALS};
 
 /// Points along a side of a material's button, and of a picture in it.
-const BUTTON: f32 = 26.0;
+const BUTTON: f32 = 24.0;
 
 /// One button of a row of balls; `paint` draws what is in it.
 fn ball(
@@ -22,7 +22,7 @@ fn ball(
     paint(ui, rect);
     if chosen || response.hovered() || response.has_focus() {
         let stroke = egui::Stroke::new(2.0, ui.visuals().text_color());
-        ui.painter().circle_stroke(rect.center(), 12.0, stroke);
+        ui.painter().circle_stroke(rect.center(), 11.0, stroke);
     }
     response.on_hover_text(name).clicked()
 }
@@ -33,12 +33,13 @@ pub fn materials(ui: &mut egui::Ui, ui_state: &mut UiState) {
     let by_picture = look.light == Light::Matcap;
     ui.strong(tr!("look-material"));
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
         for (i, m) in MATERIALS.iter().enumerate() {
             let [r, g, b] = m.base.map(|c| (c.powf(1.0 / 2.2) * 255.0) as u8);
             let chosen = !by_picture && look.material == i;
             let pressed = ball(ui, &tr!(m.name), chosen, |ui, rect| {
                 let painter = ui.painter();
-                painter.circle_filled(rect.center(), 11.0, egui::Color32::from_rgb(r, g, b));
+                painter.circle_filled(rect.center(), 10.0, egui::Color32::from_rgb(r, g, b));
                 let shine = rect.center() - egui::vec2(4.0, 4.0);
                 painter.circle_filled(shine, 2.5, egui::Color32::from_white_alpha(110));
             });

@@ -9,19 +9,22 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
     light::materials(ui, ui_state);
     light::lights(ui, ui_state, view);
     let look = &mut ui_state.look;
-    ui.add_space(4.0);
-    ui.checkbox(&mut look.flat, tr!("look-facets")).on_hover_text(view.tip(Action::Facets));
     rows::slider(ui, egui::Slider::new(&mut look.cavity, 0.0..=2.0), &tr!("look-cavity"))
         .on_hover_text(tr!("look-cavity.tip"));
     rows::slider(ui, egui::Slider::new(&mut look.shade, 0.0..=2.0), &tr!("look-occlusion"))
         .on_hover_text(tr!("look-occlusion.tip", action = view.tip(Action::Ssao)));
-    ui.checkbox(&mut look.wireframe, tr!("look-wireframe"))
-        .on_hover_text(view.tip(Action::Wireframe));
-    ui.checkbox(&mut look.grid, tr!("look-grid")).on_hover_text(view.tip(Action::Grid));
+    rows::flow(ui, |ui| {
+        for (on, name, action) in [
+            (&mut look.flat, "look-facets", Action::Facets),
+            (&mut look.wireframe, "look-wireframe", Action::Wireframe),
+            (&mut look.grid, "look-grid", Action::Grid),
+        ] {
+            ui.checkbox(on, tr!(name)).on_hover_text(view.tip(action));
+        }
+    });
     ui.checkbox(&mut ui_state.prefs.smooth_edges, tr!("look-smooth-edges"))
         .on_hover_text(tr!("look-smooth-edges.tip"));
-    ui.add_space(8.0);
-    ui.strong(tr!("look-map"));
+    rows::heading(ui, &tr!("look-map"));
     rows::flow(ui, |ui| {
         for (map, tip) in [
             (Map::None, tr!("map-none.tip")),
@@ -34,10 +37,8 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
             ui.selectable_value(&mut ui_state.look.map, map, tr!(map.title())).on_hover_text(tip);
         }
     });
-    ui.add_space(8.0);
     light::reference(ui, ui_state);
-    ui.add_space(8.0);
-    ui.strong(tr!("look-camera"));
+    rows::heading(ui, &tr!("look-camera"));
     let mut camera = view.camera;
     ui.checkbox(&mut camera.orthographic, tr!("look-orthographic"))
         .on_hover_text(view.tip(Action::Perspective));

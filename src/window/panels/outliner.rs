@@ -1,18 +1,15 @@
-//! The outliner: every object of the scene with its name, its eye and its lock; what can be done to
-//! the active one; the numbers of where it stands and of what it was made of.
-//!
-//! Numbers are sent when a person lets go of them, so that a drag is one step of undo.
+//! The outliner: every object of the scene in a tree of groups, with its eye and its lock, and what
+//! can be done to the chosen ones. A press chooses one, with Ctrl or Shift several; they are
+//! dragged onto a group, and the right button shows all that can be done.
 
-use std::cell::Cell;
-
-use glam::{DQuat, DVec3, EulerRot};
-
-use super::rows;
+use super::icons::{self, Icon};
 use super::state::{Outliner, Pairing, SnapPicks, UiRequest, UiState, View};
-use super::theme;
+use super::{inspector, rows, theme};
 use crate::language::tr;
 use sculptd_engine::command::Command;
-use sculptd_engine::scene::{ObjectTransform, ObjectView, Primitive, PrimitiveShape, SceneCommand};
+use sculptd_engine::scene::{
+    ObjectId, ObjectView, Primitive, PrimitiveShape, SceneCommand, SceneView,
+};
 use sculptd_geometry::boolean::Operation;
 
 /// The message of a name, and the primitive of a size.
@@ -37,52 +34,39 @@ const PAIRINGS: [(Operation, &str); 4] = [
     (Operation::ReverseDifference, "operation-reverse-difference"),
 ];
 
-fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
+pub(super) fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
     out.push(UiRequest::World(Command::Scene(command)));
 }
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let scene = &view.state.scene;
+    let Some(active) = scene.active() else { return };
+    ui_state.outliner.keep_to(scene);
     ui.horizontal(|ui| {
         ui.strong(tr!("objects-heading"));
-        ui.menu_button(tr!("objects-add"), |ui| {
-            for (name, shape) in PRIMITIVES {
-                if ui.button(tr!(name)).clicked() {
-                    let shape = shape(f64::from(view.state.extent.max(1e-6)));
-                    let edge = shape.usual_edge();
-                    out.push(UiRequest::AddPrimitive(Primitive { shape, edge }));
-                    ui.close();
-                }
-            }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.menu_button(tr!("objects-add"), |ui| add(ui, view, out));
         });
     });
     let busy = ui_state.joining;
     let mut group = "";
-    for (i, object) in scene.objects.iter().enumerate() {
+    let mut open = true;
+    for object in &scene.objects {
         // Consecutive objects of one group have its name above them.
         if object.settings.group != group {
             group = &object.settings.group;
-            if !group.is_empty() {
-                ui.colored_label(theme::quiet(ui), group);
-            }
+            open = group.is_empty() || group_row(ui, group, &mut ui_state.outliner, out);
         }
-        row(ui, object, i == scene.active, busy, &mut ui_state.outliner, out);
+        if open {
+            row(ui, object, scene, busy, &mut ui_state.outliner, out);
+        }
     }
-    let Some(active) = scene.active() else { return };
-    let id = active.id;
-    rows::flow(ui, |ui| {
-        if ui.button(tr!("objects-duplicate")).clicked() {
-            ask(out, SceneCommand::Duplicate(id));
-        }
-        if ui.button(tr!("objects-rename")).clicked() {
-            ui_state.outliner.renaming = Some((id, active.settings.name.clone()));
-        }
-        let more = scene.objects.len() > 1 && !active.settings.locked;
-        if more && ui.button(tr!("objects-remove")).clicked() {
-            ask(out, SceneCommand::Remove(id));
-        }
-    });
-    arrange(ui, view, active, &mut ui_state.outliner, out);
+    // Who drags a member here takes it out of its group.
+    if let Some(dropped) = ui.separator().dnd_release_payload::<Vec<ObjectId>>() {
+        ask(out, SceneCommand::Group(dropped.to_vec(), String::new()));
+    }
+    buttons(ui, scene, active, &mut ui_state.outliner, out);
+    grouping(ui, &mut ui_state.outliner, out);
     rows::flow(ui, |ui| {
         let gizmo = ui.selectable_label(ui_state.outliner.gizmo, tr!("objects-gizmo"));
         if gizmo.on_hover_text(tr!("objects-gizmo.tip")).clicked() {
@@ -102,89 +86,73 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             ui_state.outliner.snapping = picking.is_none().then(SnapPicks::default);
         }
     });
-    if active.settings.locked {
-        ui.colored_label(theme::quiet(ui), tr!("objects-locked"));
-    } else {
-        place(ui, active, view.state.extent, &mut ui_state.outliner, out);
-        let untouched = view.state.mesh.revision() == 0;
-        if let Some(primitive) = active.settings.primitive.filter(|_| untouched) {
-            numbers(ui, active, primitive, &mut ui_state.outliner, out);
-        }
-    }
+    following(ui, view, active, &mut ui_state.outliner, out);
+    inspector::ui(ui, view, active, &mut ui_state.outliner, out);
     ui.separator();
 }
 
-/// Arranges the active object: its place in the list, its mirrored duplicate, and its live Boolean.
-fn arrange(
+/// What can be added.
+fn add(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
+    for (name, shape) in PRIMITIVES {
+        if ui.button(tr!(name)).clicked() {
+            let shape = shape(f64::from(view.state.extent.max(1e-6)));
+            let edge = shape.usual_edge();
+            out.push(UiRequest::AddPrimitive(Primitive { shape, edge }));
+            ui.close();
+        }
+    }
+}
+
+/// A group's name, which takes what is dropped on it; false: its members are folded away.
+fn group_row(
     ui: &mut egui::Ui,
-    view: &View<'_>,
-    active: &ObjectView,
+    group: &str,
     outliner: &mut Outliner,
     out: &mut Vec<UiRequest>,
-) {
-    let scene = &view.state.scene;
-    let (id, place) = (active.id, scene.active);
-    rows::flow(ui, |ui| {
-        let mut to = |ui: &mut egui::Ui, can: bool, name: &str, place: usize| {
-            if ui.add_enabled(can, egui::Button::new(tr!(name))).clicked() {
-                ask(out, SceneCommand::Move(id, place as u32));
-            }
-        };
-        to(ui, place > 0, "layers-up", place.saturating_sub(1));
-        to(ui, place + 1 < scene.objects.len(), "layers-down", place + 1);
-        let group = ui.button(tr!("objects-group"));
-        if group.on_hover_text(tr!("objects-group.tip")).clicked() {
-            outliner.grouping = Some((id, active.settings.group.clone()));
-        }
-        ui.menu_button(tr!("objects-mirror"), |ui| {
-            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                if ui.button(name).clicked() {
-                    out.push(UiRequest::Mirror(id, axis));
-                    ui.close();
-                }
-            }
-        });
+) -> bool {
+    let folded = outliner.folded.iter().position(|name| name == group);
+    let icons = [Icon::ChevronDown, Icon::ChevronRight];
+    let shown = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let fold = icons::switch(ui, icons, &tr!("objects-fold", group = group), folded.is_none());
+        let name = egui::Button::selectable(false, icons::text(Icon::Folder, group)).truncate();
+        (fold, ui.add(name))
     });
-    if let Some((grouped, text)) = outliner.grouping.as_mut().filter(|g| g.0 == id) {
-        let field = ui.text_edit_singleline(text);
-        if field.lost_focus() {
-            ask(out, SceneCommand::Group(vec![*grouped], text.trim().into()));
-            outliner.grouping = None;
-        } else {
-            field.request_focus();
+    let (fold, name) = shown.inner;
+    if fold.clicked() || name.clicked() {
+        match folded {
+            Some(place) => drop(outliner.folded.remove(place)),
+            None => outliner.folded.push(group.to_owned()),
         }
     }
-    if scene.objects.len() > 1 {
-        let live = ui.checkbox(&mut outliner.live, tr!("objects-live"));
-        live.on_hover_text(tr!("objects-live.tip"));
+    if let Some(dropped) = name.dnd_release_payload::<Vec<ObjectId>>() {
+        ask(out, SceneCommand::Group(dropped.to_vec(), group.to_owned()));
     }
-    if active.live(&view.state.mesh).is_some() {
-        rows::flow(ui, |ui| {
-            ui.colored_label(theme::quiet(ui), tr!("objects-follows"));
-            let apply = ui.button(tr!("objects-apply"));
-            if apply.on_hover_text(tr!("objects-apply.tip")).clicked() {
-                ask(out, SceneCommand::ApplyLive(id));
-            }
-        });
-    }
+    folded.is_none()
 }
 
 fn row(
     ui: &mut egui::Ui,
     object: &ObjectView,
-    active: bool,
+    scene: &SceneView,
     busy: bool,
     outliner: &mut Outliner,
     out: &mut Vec<UiRequest>,
 ) {
     let (id, settings) = (object.id, &object.settings);
+    let active = scene.active().is_some_and(|a| a.id == id);
     ui.horizontal(|ui| {
-        let eye = ui.selectable_label(settings.visible, tr!("objects-eye"));
-        let eye = eye.on_hover_text(tr!("objects-eye.tip"));
-        if eye.clicked() {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        if !settings.group.is_empty() {
+            ui.add_space(16.0);
+        }
+        let eyes = [Icon::Eye, Icon::EyeOff];
+        let eye = icons::switch(ui, eyes, &tr!("objects-eye"), settings.visible);
+        if eye.on_hover_text(tr!("objects-eye.tip")).clicked() {
             ask(out, SceneCommand::Show(id, !settings.visible));
         }
-        let lock = ui.selectable_label(settings.locked, tr!("objects-lock"));
+        let locks = [Icon::Lock, Icon::LockOpen];
+        let lock = icons::switch(ui, locks, &tr!("objects-lock"), settings.locked);
         if lock.on_hover_text(tr!("objects-lock.tip")).clicked() {
             ask(out, SceneCommand::Lock(id, !settings.locked));
         }
@@ -198,146 +166,165 @@ fn row(
             }
             return;
         }
-        let name = egui::Button::selectable(active, &settings.name).truncate();
-        let name = ui.add(name);
+        let chosen = active || outliner.chosen.contains(&id);
+        let name = egui::Button::selectable(chosen, (settings.name.as_str(), egui::Atom::grow()));
+        let name = name.truncate().min_size([ui.available_width(), 22.0].into());
+        let name = ui.add(name.sense(egui::Sense::click_and_drag()));
+        name.dnd_set_drag_payload(outliner.with(id));
         if name.double_clicked() {
             outliner.renaming = Some((id, settings.name.clone()));
-        } else if name.clicked() && !active {
-            ask(out, SceneCommand::Activate(id));
+        } else if name.clicked() {
+            let keys = ui.input(|i| i.modifiers);
+            if outliner.choose(id, scene, keys.command, keys.shift) && !active {
+                ask(out, SceneCommand::Activate(id));
+            }
         }
-        if !active {
-            name.context_menu(|ui| {
-                for (operation, name) in PAIRINGS {
-                    let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
-                    if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
-                        let (with, live) = (id, outliner.live);
-                        let pairing = Pairing { operation, with, live, all: false };
-                        out.push(UiRequest::BooleanWith(pairing));
-                        ui.close();
-                    }
-                }
-                let all = ui.add_enabled(!busy, egui::Button::new(tr!("operation-all")));
-                if all.on_hover_text(tr!("operation-all.tip")).clicked() {
-                    let operation = Operation::Union;
-                    let pairing = Pairing { operation, with: id, live: false, all: true };
-                    out.push(UiRequest::BooleanWith(pairing));
+        name.context_menu(|ui| menu(ui, object, scene, busy, outliner, out));
+    });
+}
+
+/// All that can be done to an object, and to those that are chosen with it.
+fn menu(
+    ui: &mut egui::Ui,
+    object: &ObjectView,
+    scene: &SceneView,
+    busy: bool,
+    outliner: &mut Outliner,
+    out: &mut Vec<UiRequest>,
+) {
+    let id = object.id;
+    let all = outliner.with(id);
+    let active = scene.active().is_some_and(|a| a.id == id);
+    let item = |ui: &mut egui::Ui, icon: Icon, name: &str| {
+        let pressed = ui.button(icons::text(icon, &tr!(name))).clicked();
+        if pressed {
+            ui.close();
+        }
+        pressed
+    };
+    if item(ui, Icon::Pencil, "objects-rename") {
+        outliner.renaming = Some((id, object.settings.name.clone()));
+    }
+    if item(ui, Icon::Copy, "objects-duplicate") {
+        all.iter().for_each(|id| ask(out, SceneCommand::Duplicate(*id)));
+    }
+    if item(ui, Icon::Folder, "objects-group") {
+        outliner.grouping = Some((all.clone(), object.settings.group.clone()));
+    }
+    if item(ui, Icon::Eye, "objects-show") {
+        let seen = object.settings.visible;
+        all.iter().for_each(|id| ask(out, SceneCommand::Show(*id, !seen)));
+    }
+    if item(ui, Icon::Lock, "objects-lock-or-not") {
+        let locked = object.settings.locked;
+        all.iter().for_each(|id| ask(out, SceneCommand::Lock(*id, !locked)));
+    }
+    if scene.objects.len() > all.len() && item(ui, Icon::Trash2, "objects-remove") {
+        all.iter().for_each(|id| ask(out, SceneCommand::Remove(*id)));
+    }
+    if active {
+        return;
+    }
+    ui.separator();
+    for (operation, name) in PAIRINGS {
+        let button = ui.add_enabled(!busy, egui::Button::new(tr!(name)));
+        if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
+            let (with, live) = (id, outliner.live);
+            let pairing = Pairing { operation, with, live, all: false };
+            out.push(UiRequest::BooleanWith(pairing));
+            ui.close();
+        }
+    }
+    let all = ui.add_enabled(!busy, egui::Button::new(tr!("operation-all")));
+    if all.on_hover_text(tr!("operation-all.tip")).clicked() {
+        let operation = Operation::Union;
+        let pairing = Pairing { operation, with: id, live: false, all: true };
+        out.push(UiRequest::BooleanWith(pairing));
+        ui.close();
+    }
+}
+
+/// What is done most to the active object, in a row.
+fn buttons(
+    ui: &mut egui::Ui,
+    scene: &SceneView,
+    active: &ObjectView,
+    outliner: &mut Outliner,
+    out: &mut Vec<UiRequest>,
+) {
+    let (id, place) = (active.id, scene.active);
+    let all = outliner.with(id);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        let button = |ui: &mut egui::Ui, can: bool, icon: Icon, name: &str| {
+            let name = tr!(name);
+            let add = |ui: &mut egui::Ui| icons::button(ui, icon, &name).on_hover_text(&name);
+            ui.add_enabled_ui(can, add).inner.clicked()
+        };
+        if button(ui, true, Icon::Copy, "objects-duplicate") {
+            all.iter().for_each(|id| ask(out, SceneCommand::Duplicate(*id)));
+        }
+        if button(ui, true, Icon::Pencil, "objects-rename") {
+            outliner.renaming = Some((id, active.settings.name.clone()));
+        }
+        if button(ui, true, Icon::Folder, "objects-group") {
+            outliner.grouping = Some((all.clone(), active.settings.group.clone()));
+        }
+        if button(ui, place > 0, Icon::ArrowUp, "layers-up") {
+            ask(out, SceneCommand::Move(id, place.saturating_sub(1) as u32));
+        }
+        if button(ui, place + 1 < scene.objects.len(), Icon::ArrowDown, "layers-down") {
+            ask(out, SceneCommand::Move(id, place as u32 + 1));
+        }
+        let more = scene.objects.len() > all.len() && !active.settings.locked;
+        if button(ui, more, Icon::Trash2, "objects-remove") {
+            all.iter().for_each(|id| ask(out, SceneCommand::Remove(*id)));
+        }
+        let name = tr!("objects-mirror");
+        let mirror = icons::button(ui, Icon::FlipHorizontal2, &name).on_hover_text(name);
+        egui::Popup::menu(&mirror).show(|ui| {
+            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+                if ui.button(name).clicked() {
+                    out.push(UiRequest::Mirror(id, axis));
                     ui.close();
                 }
-            });
-        }
+            }
+        });
     });
 }
 
-/// A number as a drag shows it; what rounds to zero has no sign.
-fn plain_number(value: f64, decimals: std::ops::RangeInclusive<usize>) -> String {
-    let text = egui::emath::format_with_decimals_in_range(value, decimals);
-    let zero = text.chars().all(|c| !c.is_ascii_digit() || c == '0');
-    if zero { text.trim_start_matches(['-', '\u{2212}']).into() } else { text }
+/// The name of a group, while it is typed.
+fn grouping(ui: &mut egui::Ui, outliner: &mut Outliner, out: &mut Vec<UiRequest>) {
+    let Some((grouped, text)) = &mut outliner.grouping else { return };
+    let label = ui.label(tr!("objects-group")).on_hover_text(tr!("objects-group.tip"));
+    let field = ui.text_edit_singleline(text).labelled_by(label.id);
+    if field.lost_focus() {
+        ask(out, SceneCommand::Group(std::mem::take(grouped), text.trim().into()));
+        outliner.grouping = None;
+    } else {
+        field.request_focus();
+    }
 }
 
-/// Shows the transform of the active object.
-fn place(
+/// Whether Booleans follow their operands, and the end of it for the active object.
+fn following(
     ui: &mut egui::Ui,
-    object: &ObjectView,
-    extent: f32,
+    view: &View<'_>,
+    active: &ObjectView,
     outliner: &mut Outliner,
     out: &mut Vec<UiRequest>,
 ) {
-    let now = object.settings.transform;
-    let mut shown = outliner.place.filter(|p| p.0 == object.id).map_or(now, |p| p.1);
-    let before = shown;
-    let done = Cell::new(false);
-    let drag = |ui: &mut egui::Ui, value: &mut f64, speed: f64, name: &str| {
-        let value = egui::DragValue::new(value).speed(speed).custom_formatter(plain_number);
-        let response = ui.add(value.prefix(format!("{name} ")));
-        done.set(done.get() || response.drag_stopped() || response.lost_focus());
-    };
-    let step = f64::from(extent) * 0.01;
-    rows::flow(ui, |ui| {
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            drag(ui, &mut shown.shift[axis], step, name);
-        }
-    });
-    let (yaw, pitch, roll) = shown.turn.to_euler(EulerRot::YXZ);
-    let mut degrees = [yaw, pitch, roll].map(f64::to_degrees);
-    let turned = degrees;
-    rows::flow(ui, |ui| {
-        for (angle, name) in degrees.iter_mut().zip(["scene-yaw", "scene-pitch", "scene-roll"]) {
-            drag(ui, angle, 1.0, &tr!(name));
-        }
-    });
-    if degrees != turned {
-        let [yaw, pitch, roll] = degrees.map(f64::to_radians);
-        shown.turn = DQuat::from_euler(EulerRot::YXZ, yaw, pitch, roll).normalize();
+    if view.state.scene.objects.len() > 1 {
+        let live = ui.checkbox(&mut outliner.live, tr!("objects-live"));
+        live.on_hover_text(tr!("objects-live.tip"));
     }
-    rows::flow(ui, |ui| {
-        drag(ui, &mut shown.scale, 0.01, &tr!("scene-scale"));
-        let reset = ui.button(tr!("objects-reset-place"));
-        if reset.on_hover_text(tr!("objects-reset-place.tip")).clicked() {
-            shown = ObjectTransform { shift: DVec3::ZERO, ..ObjectTransform::NONE };
-            done.set(true);
-        }
-    });
-    shown.scale = shown.scale.clamp(1e-6, 1e6);
-    if shown != before {
-        outliner.place = Some((object.id, shown));
-    }
-    if done.get() {
-        outliner.place = None;
-        if shown != now && shown.is_sane() {
-            ask(out, SceneCommand::Transform(object.id, shown));
-        }
-    }
-}
-
-/// Returns the name of a shape.
-fn shape_title(shape: &PrimitiveShape) -> String {
-    tr!(match shape {
-        PrimitiveShape::Box(_) => "shape-box",
-        PrimitiveShape::Ball(_) => "shape-ball",
-        PrimitiveShape::Cylinder(_) => "shape-cylinder",
-        PrimitiveShape::Cone(_) => "shape-cone",
-        PrimitiveShape::Torus(_) => "shape-torus",
-        PrimitiveShape::Tube(_) => "shape-tube",
-        PrimitiveShape::Plane(_) => "shape-plane",
-    })
-}
-
-/// The numbers that the active object was made of.
-fn numbers(
-    ui: &mut egui::Ui,
-    object: &ObjectView,
-    now: Primitive,
-    outliner: &mut Outliner,
-    out: &mut Vec<UiRequest>,
-) {
-    let mut shown = outliner.primitive.filter(|p| p.0 == object.id).map_or(now, |p| p.1);
-    let before = shown;
-    let mut done = false;
-    rows::flow(ui, |ui| {
-        ui.colored_label(theme::quiet(ui), shape_title(&now.shape));
-        let all: &mut [f64] = match &mut shown.shape {
-            PrimitiveShape::Box(n) | PrimitiveShape::Tube(n) => n,
-            PrimitiveShape::Ball(n) => std::slice::from_mut(n),
-            PrimitiveShape::Cylinder(n)
-            | PrimitiveShape::Cone(n)
-            | PrimitiveShape::Torus(n)
-            | PrimitiveShape::Plane(n) => n,
-        };
-        for n in all {
-            let speed = n.abs() * 0.01;
-            let response = ui.add(egui::DragValue::new(n).speed(speed).range(1e-6..=1e6));
-            done |= response.drag_stopped() || response.lost_focus();
-        }
-    });
-    if shown != before {
-        outliner.primitive = Some((object.id, shown));
-    }
-    if done {
-        outliner.primitive = None;
-        if shown.shape != now.shape {
-            shown.edge = shown.shape.usual_edge();
-            out.push(UiRequest::Reshape(object.id, shown));
-        }
+    if active.live(&view.state.mesh).is_some() {
+        rows::flow(ui, |ui| {
+            ui.colored_label(theme::quiet(ui), tr!("objects-follows"));
+            let apply = ui.button(tr!("objects-apply"));
+            if apply.on_hover_text(tr!("objects-apply.tip")).clicked() {
+                ask(out, SceneCommand::ApplyLive(active.id));
+            }
+        });
     }
 }

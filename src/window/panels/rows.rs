@@ -53,6 +53,11 @@ pub fn slider_beside(ui: &mut Ui, slider: Slider<'_>, name: &str, number: f32) -
     })
 }
 
+/// A number that is dragged or typed, with its name.
+pub fn value(ui: &mut Ui, name: &str, value: egui::DragValue<'_>) -> Response {
+    named(ui, name, |ui, left| ui.add_sized([left, ui.spacing().interact_size.y], value))
+}
+
 /// A list that unfolds, with its name. `now` is what is chosen.
 pub fn list(
     ui: &mut Ui,

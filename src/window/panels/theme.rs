@@ -89,7 +89,7 @@ pub fn quiet(ui: &egui::Ui) -> Color32 {
 
 /// What cannot be pressed now.
 pub fn faint(ui: &egui::Ui) -> Color32 {
-    quiet(ui).gamma_multiply(0.5)
+    quiet(ui).gamma_multiply(if ui.visuals().dark_mode { 0.58 } else { 0.7 })
 }
 
 /// Something is wrong.

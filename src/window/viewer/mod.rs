@@ -13,6 +13,7 @@ mod clay_frame;
 mod clay_picture;
 mod coarse_pages;
 pub mod distance_field;
+mod earlier_pictures;
 pub mod environment;
 mod event_times;
 mod fingers;

@@ -1,14 +1,16 @@
 //! Polling of the window between frames, at a separate pace: the published state, background tasks,
 //! the session's history, the devices. A frame follows only after a change.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::earlier_pictures::EarlierPictures;
 use super::state::WindowState;
 use super::tasks::TaskReport;
 use super::wiring::Wiring;
 use crate::language::tr;
 use crate::look::Map;
-use crate::panels::state::{FileChooser, FilePurpose, Tab, UiRequest};
+use crate::panels::state::{EarlierWork, FileChooser, FilePurpose, Tab, UiRequest};
 use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_daemon::Published;
 use sculptd_engine::hand::HeldObject;
@@ -85,7 +87,10 @@ impl WindowState {
                 changed |= view != self.drawn_kiosk;
                 self.drawn_kiosk = view;
             }
-            None => changed |= self.poll_history(&state, now, wiring),
+            None => {
+                changed |= self.poll_history(&state, now, wiring);
+                changed |= self.poll_earlier(wiring);
+            }
         }
         if changed {
             self.pacing.want();
@@ -118,6 +123,20 @@ impl WindowState {
         true
     }
 
+    /// The pictures of earlier sculptures, read once.
+    fn poll_earlier(&mut self, wiring: &Wiring) -> bool {
+        let shown = &mut self.ui_state.earlier.all;
+        if shown.is_empty() && !wiring.recent.is_empty() {
+            let work =
+                |path: &PathBuf| EarlierWork { path: path.clone(), picture: None, told: None };
+            *shown = wiring.recent.iter().map(work).collect();
+            let context = self.egui.egui_ctx().clone();
+            self.earlier_pictures = EarlierPictures::read(wiring.recent.clone(), context);
+        }
+        let reader = self.earlier_pictures.as_ref();
+        reader.is_some_and(|reader| reader.update(shown, self.egui.egui_ctx()))
+    }
+
     /// The versions of the session, or the pictures of the steps where there is none.
     fn poll_history(&mut self, state: &Published, now: u64, wiring: &Wiring) -> bool {
         match &wiring.history {
@@ -131,7 +150,7 @@ impl WindowState {
     }
 
     /// Returns the first folder of a file chooser: beside the last used file, or the documents.
-    fn usual_folder(&self) -> std::path::PathBuf {
+    fn usual_folder(&self) -> PathBuf {
         let recent = self.ui_state.prefs.recent.first().and_then(|p| p.parent());
         let dirs = directories::UserDirs::new();
         let own = dirs.as_ref().map(|d| d.document_dir().unwrap_or(d.home_dir()));

@@ -10,6 +10,7 @@ use winit::window::Window;
 use super::camera_animation::CameraAnimation;
 use super::check_task::CheckKey;
 use super::clay_picture::ClayPicture;
+use super::earlier_pictures::EarlierPictures;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
@@ -133,6 +134,7 @@ pub(super) struct WindowState {
     pub(super) distances: Option<MapValues>,
     pub(super) step_pictures: StepPictures,
     pub(super) version_pictures: VersionPictures,
+    pub(super) earlier_pictures: Option<EarlierPictures>,
     pub(super) overlay_mesh: Triangles,
     pub(super) overlay_key: OverlayKey,
     /// A turntable under way.
@@ -303,6 +305,7 @@ impl WindowState {
             distances: None,
             step_pictures: Default::default(),
             version_pictures: Default::default(),
+            earlier_pictures: None,
             overlay_mesh: Triangles::default(),
             overlay_key: Default::default(),
             turning: None,

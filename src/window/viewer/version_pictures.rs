@@ -25,7 +25,8 @@ pub(super) struct VersionPictures {
     reader: Option<(cc::Sender<u64>, cc::Receiver<Found>)>,
 }
 
-fn decode(png: &[u8]) -> Option<egui::ColorImage> {
+/// A picture of a session file.
+pub(super) fn decode(png: &[u8]) -> Option<egui::ColorImage> {
     let picture = image::load_from_memory_with_format(png, image::ImageFormat::Png).ok()?.to_rgb8();
     let size = [picture.width() as usize, picture.height() as usize];
     Some(egui::ColorImage::from_rgb(size, picture.as_raw()))

@@ -170,6 +170,8 @@ fn a_radius_in_pixels_stays_on_the_screen_and_one_in_units_on_the_object() {
     };
     zoom(&mut h);
     assert!(brushes(&h).is_empty(), "on the object it stays as it is");
+    h.get_by_label("More settings").click();
+    h.run_steps(8);
     h.get_by_label("Radius in pixels").click();
     h.run_steps(3);
     assert!(h.state().ui_state.prefs.brushes.radius_in_pixels);

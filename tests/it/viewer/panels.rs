@@ -20,7 +20,7 @@ use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
     ThicknessSummary, ThinSpot, TrialStatus, Views,
 };
-use sculptd_window::panels::{PANEL, Tab, UiRequest, UiState, View, all};
+use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
 
 pub(super) struct State {
     pub published: Published,
@@ -87,6 +87,11 @@ pub(super) fn harness(tab: Tab) -> Harness<'static, State> {
         .build_ui_state(show, state(tab));
     h.run_steps(3);
     h
+}
+
+/// The part of the window that shows the clay, points.
+pub(super) fn view_of(h: &Harness<'_, State>) -> egui::Rect {
+    h.state().ui_state.brush_panel.free.expect("a frame was shown")
 }
 
 pub(super) fn brushes(h: &Harness<'_, State>) -> Vec<sculptd_clay::brush::BrushSettings> {
@@ -236,7 +241,7 @@ fn the_search_finds_an_action_and_enter_does_it() {
     let mut h = harness(Tab::Look);
     h.key_press_modifiers(Modifiers::COMMAND, Key::K);
     h.run_steps(3);
-    h.get_by_label("Search actions").type_text("wirefr");
+    h.get_by_role_and_label(Role::TextInput, "Search actions").type_text("wirefr");
     h.run_steps(3);
     // Letters that are typed are not shortcuts.
     assert!(!h.state().ui_state.look.wireframe);
@@ -315,6 +320,9 @@ fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
 fn a_thing_is_taken_up_placed_and_joined() {
     let mut world = super::world(2_000);
     let mut h = harness(Tab::Scene);
+    // The whole page is in view.
+    h.set_size(egui::vec2(1280.0, 1200.0));
+    h.run_steps(2);
     h.get_by_label("Ball").click();
     h.run_steps(2);
     let asked = std::mem::take(&mut h.state_mut().asked);
@@ -377,7 +385,7 @@ fn a_join_is_tried_then_applied_or_dismissed() {
     assert!(h.query_by_role_and_label(Role::ComboBox, "Preview").is_some());
     h.key_press_modifiers(Modifiers::COMMAND, Key::K);
     h.run_steps(3);
-    h.get_by_label("Search actions").type_text("preview: cut");
+    h.get_by_role_and_label(Role::TextInput, "Search actions").type_text("preview: cut");
     h.run_steps(3);
     h.key_press(Key::Enter);
     h.run_steps(3);
@@ -408,6 +416,8 @@ fn a_join_is_tried_then_applied_or_dismissed() {
 #[test]
 fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
     let mut h = harness(Tab::Scene);
+    h.get_by_label("Finer").scroll_to_me();
+    h.run_steps(3);
     assert!(h.query_by_label_contains("level 1 of 1").is_some());
     h.get_by_label("Coarser").click();
     h.run_steps(2);
@@ -432,8 +442,13 @@ fn levels_go_up_and_down_and_a_box_is_trimmed_by_a_drag() {
         panic!("{:?}", h.state().asked)
     };
     // Shares of the part between the panels, which the harness surrounds by a margin of 8.
-    let (left, width) = (PANEL + 8.0, 1280.0 - 2.0 * (PANEL + 8.0));
-    let want = [(480.0 - left) / width, (180.0 - 8.0) / 704.0, 0.5, 0.5];
+    let view = view_of(&h);
+    let share = |x: f32, y: f32| {
+        let at = (egui::pos2(x, y) - view.min) / view.size();
+        [at.x, at.y]
+    };
+    let [from, to] = [share(480.0, 180.0), share(640.0, 360.0)];
+    let want = [from[0], from[1], to[0], to[1]];
     assert!(part.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-2), "{part:?}");
     assert!(h.state().ui_state.region.drawing.is_none());
     // Escape leaves the work as it is.

@@ -12,14 +12,15 @@ use sculptd_engine::mask_region::MaskRegion;
 use sculptd_engine::scene::SceneCommand;
 use sculptd_engine::view_region::{MOST_CORNERS, SetsRegion, ViewRegion};
 use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
-use sculptd_window::panels::{PANEL, Tab, UiRequest};
+use sculptd_window::panels::{Tab, UiRequest};
 
-use super::panels::{State, harness};
+use super::panels::{State, harness, view_of};
 
-/// The view, which the harness surrounds by a margin of 8.
-fn share(at: Pos2) -> Vec2 {
-    let width = 1280.0 - 2.0 * (PANEL + 8.0);
-    Vec2::new((at.x - PANEL - 8.0) / width, (at.y - 8.0) / 704.0)
+/// A place of the window as shares of the view.
+fn share(h: &Harness<'_, State>, at: Pos2) -> Vec2 {
+    let view = view_of(h);
+    let at = (at - view.min) / view.size();
+    Vec2::new(at.x, at.y)
 }
 
 fn drag(h: &mut Harness<'_, State>, way: &[Pos2]) {
@@ -75,7 +76,7 @@ fn a_lasso_masks_and_frees_until_escape_ends_it() {
     assert_eq!((*mask, *front_faces), (1.0, false));
     let ViewRegion::Polygon(corners) = region else { panic!("{region:?}") };
     assert!(corners.len() > 20, "{}", corners.len());
-    assert!((corners[0] - share(around()[0])).length() < 1e-2, "{:?}", corners[0]);
+    assert!((corners[0] - share(&h, around()[0])).length() < 1e-2, "{:?}", corners[0]);
     // It goes on: front faces only, and freeing, which the bar over the view offers.
     h.get_by_label("Front faces only").click();
     h.get_by_label("Unmask").click();
@@ -148,7 +149,7 @@ fn a_box_hides_ctrl_turns_it_round_and_a_polyline_makes_a_face_set() {
     let SetsRegion { region, edit, front_faces } = sets(&mut h);
     assert_eq!((edit, front_faces), (PartEdit::Hide, false));
     let ViewRegion::Box(corners) = region else { panic!("{region:?}") };
-    let off = corners.iter().zip(ends).map(|(a, b)| (*a - share(b)).length());
+    let off = corners.iter().zip(ends).map(|(a, b)| (*a - share(&h, b)).length());
     assert!(off.fold(0.0, f32::max) < 1e-2, "{corners:?}");
     // A slip of the hand is none.
     drag(&mut h, &[ends[0], ends[0] + egui::vec2(2.0, 1.0)]);
@@ -180,7 +181,7 @@ fn a_box_hides_ctrl_turns_it_round_and_a_polyline_makes_a_face_set() {
     assert_eq!(made.edit, PartEdit::NewSet);
     let ViewRegion::Polygon(drawn) = made.region else { panic!("a polygon") };
     assert_eq!(drawn.len(), 3);
-    assert!(drawn.iter().zip(corners).all(|(a, b)| (*a - share(b)).length() < 1e-2));
+    assert!(drawn.iter().zip(corners).all(|(a, b)| (*a - share(&h, b)).length() < 1e-2));
     // The side of a line, ended by the button.
     h.get_by_label("Line").click();
     h.run_steps(2);

@@ -54,6 +54,15 @@ pub fn places(tree: &Tree) -> Vec<Place> {
         .collect()
 }
 
+/// Reads the newest small picture of a session's sculpture, PNG; `None` if it has none.
+///
+/// # Errors
+/// Returns an error if the file cannot be read.
+pub fn newest_picture(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
+    let store = Store::read(path)?;
+    if store.has_tables()? { store.newest_thumbnail() } else { Ok(None) }
+}
+
 /// Reads a session's history; it is empty if the session has none.
 ///
 /// # Errors

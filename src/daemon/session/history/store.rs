@@ -346,6 +346,12 @@ impl Store {
         Ok(found?)
     }
 
+    /// The small picture of the newest node that has one, PNG.
+    pub fn newest_thumbnail(&self) -> Result<Option<Vec<u8>>, StoreError> {
+        let sql = "SELECT png FROM sight ORDER BY node DESC LIMIT 1";
+        Ok(self.db.query_row(sql, [], |r| r.get(0)).optional()?)
+    }
+
     pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<usize, StoreError> {
         let data = plain(postcard::to_stdvec(c))?;
         let row = (c.tick as i64, crc32fast::hash(&data), &data, VERSION);

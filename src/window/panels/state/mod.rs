@@ -6,6 +6,7 @@ pub mod brush_panel;
 pub mod brush_preferences;
 pub mod check;
 pub mod chooser;
+pub mod earlier;
 pub mod face_sets;
 pub mod files;
 pub mod history;
@@ -42,6 +43,7 @@ pub use check::{
     MarkedFinding, ObjectVersion,
 };
 pub use chooser::{FileChooser, FilePurpose, FolderEntry, FolderListing, MESH_ENDINGS};
+pub use earlier::{EarlierWork, EarlierWorks};
 pub use face_sets::FaceSetPanel;
 pub use files::{FilesPage, UNITS};
 pub use history::{HistoryVersions, KEPT, StepPicture, VersionRow};
@@ -57,8 +59,8 @@ pub use outliner::{Outliner, Pairing, SnapPicks};
 pub use pens::PenTrace;
 pub use preferences::{Hint, HintsFollowed, Preferences, SCALE, TwoFingers, VIEWS};
 pub use request::UiRequest;
-pub use sculptd_daemon::window_link::NextSculpture;
 pub use retopology::{CREASE, Retopology};
+pub use sculptd_daemon::window_link::NextSculpture;
 pub use search::SearchBox;
 pub use sizes::{DistanceSummary, DistanceTarget, Measured, SizesPage};
 pub use tab::Tab;

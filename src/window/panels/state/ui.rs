@@ -3,6 +3,7 @@
 use super::brush_panel::BrushPanel;
 use super::check::CheckPage;
 use super::chooser::FileChooser;
+use super::earlier::EarlierWorks;
 use super::face_sets::FaceSetPanel;
 use super::files::FilesPage;
 use super::history::{HistoryVersions, StepPicture};
@@ -52,8 +53,7 @@ pub struct UiState {
     pub walls: WallsPage,
     pub check: CheckPage,
     pub devices: PenTrace,
-    /// The offer of earlier sessions was answered.
-    pub start_answered: bool,
+    pub earlier: EarlierWorks,
     /// A Boolean is under way.
     pub joining: bool,
     pub trial: BooleanTrial,
