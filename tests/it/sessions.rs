@@ -354,7 +354,8 @@ fn an_empty_or_half_made_session_is_taken_over_and_another_s_file_is_not() {
     assert!(warnings.iter().any(|w| w.contains("begun anew")), "{warnings:?}");
     assert_eq!(begin(), Ok(vec![]), "it is whole now");
     put(&path, b"somebody's notes");
-    assert!(begin().is_err_and(|e| e.contains("not a session file")));
+    let told = begin().expect_err("somebody else's file");
+    assert!(told.contains("not a session file"), "{told}");
     assert_eq!(std::fs::read(&path).expect("read"), b"somebody's notes");
     let left: Vec<_> = std::fs::read_dir(dir.path())
         .expect("a folder")

@@ -5,6 +5,7 @@ mod beside;
 mod brush_panel;
 mod check;
 mod check_maps;
+mod files;
 mod four_views;
 mod kiosk;
 mod languages;
@@ -22,6 +23,7 @@ mod scene;
 mod stall;
 mod stall_order;
 mod versions;
+mod workbench;
 
 use std::sync::OnceLock;
 

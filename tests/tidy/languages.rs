@@ -22,16 +22,18 @@ const OF_DATA: [&str; 8] = [
 ];
 
 /// Texts that stay in the code, and why.
-const STAY: [(&str, &[&str]); 16] = [
+const STAY: [(&str, &[&str]); 17] = [
     // English names of what messages name too, by which Ctrl+K finds an action in any language:
     // tests/it/viewer/languages.rs holds them equal to the messages.
     ("panels/state/action.rs", &[]),
     ("panels/state/tab.rs", &[]),
     // Names of programs.
     ("panels/state/key_map.rs", &["sculptd", "Blender", "ZBrush"]),
-    ("panels/layout.rs", &["sculptd"]),
     // Families of fonts.
     ("panels/fonts.rs", &[]),
+    ("panels/icons.rs", &["icons"]),
+    // A file of the crate.
+    ("panels/brush_picture.rs", &["brush_pictures.png"]),
     // Keys of a keypad that need no word; the other words of an installation have files of their
     // own (config/languages/CODE.toml).
     ("panels/kiosk.rs", &["OK", "door", "keypad"]),
@@ -77,12 +79,15 @@ const STAY: [(&str, &[&str]); 16] = [
 
 /// Words of a line after which a text is no text for people: names of widgets, of keys in files, of
 /// fields, errors that go to standard error.
-const TECHNICAL: [&str; 14] = [
+const TECHNICAL: [&str; 17] = [
     "unique(",
     "id_salt(",
     "Grid::new(",
     "Panel::left(",
     "Panel::right(",
+    "Panel::top(",
+    "Panel::bottom(",
+    "load_texture(",
     "grid(",
     "with((",
     "#[",

@@ -453,10 +453,10 @@ scene-apply = Εφαρμογή
     .tip = Να γίνει ό,τι δείχνεται
 scene-dismiss = Απόρριψη
     .tip = Το αντικείμενο μένει όπως είναι· και το κρατούμενο
-scene-yaw = εκτροπή
-scene-pitch = πρόνευση
-scene-roll = κλίση
-scene-scale = κλίμακα
+scene-yaw = Εκτροπή
+scene-pitch = Πρόνευση
+scene-roll = Κλίση
+scene-scale = Κλίμακα
 scene-held-size = μέγεθος
 
 objects-heading = Αντικείμενα

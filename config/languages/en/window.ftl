@@ -455,10 +455,10 @@ scene-apply = Apply
     .tip = Do what is shown
 scene-dismiss = Dismiss
     .tip = The object stays as it is; the held one too
-scene-yaw = yaw
-scene-pitch = pitch
-scene-roll = roll
-scene-scale = scale
+scene-yaw = Yaw
+scene-pitch = Pitch
+scene-roll = Roll
+scene-scale = Scale
 scene-held-size = size
 
 objects-heading = Objects

@@ -453,10 +453,10 @@ scene-apply = Aplicar
     .tip = Hacer lo que se muestra
 scene-dismiss = Descartar
     .tip = El objeto queda como está; el sostenido también
-scene-yaw = guiñada
-scene-pitch = cabeceo
-scene-roll = alabeo
-scene-scale = escala
+scene-yaw = Guiñada
+scene-pitch = Cabeceo
+scene-roll = Alabeo
+scene-scale = Escala
 scene-held-size = tamaño
 
 objects-heading = Objetos

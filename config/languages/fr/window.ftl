@@ -453,10 +453,10 @@ scene-apply = Appliquer
     .tip = Faire ce qui est montré
 scene-dismiss = Rejeter
     .tip = L'objet reste tel quel ; l'objet tenu aussi
-scene-yaw = lacet
-scene-pitch = tangage
-scene-roll = roulis
-scene-scale = échelle
+scene-yaw = Lacet
+scene-pitch = Tangage
+scene-roll = Roulis
+scene-scale = Échelle
 scene-held-size = taille
 
 objects-heading = Objets

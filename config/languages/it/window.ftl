@@ -453,10 +453,10 @@ scene-apply = Applica
     .tip = Fai ciò che è mostrato
 scene-dismiss = Scarta
     .tip = L'oggetto resta com'è; anche quello in mano
-scene-yaw = imbardata
-scene-pitch = beccheggio
-scene-roll = rollio
-scene-scale = scala
+scene-yaw = Imbardata
+scene-pitch = Beccheggio
+scene-roll = Rollio
+scene-scale = Scala
 scene-held-size = grandezza
 
 objects-heading = Oggetti

@@ -1,7 +1,7 @@
 //! The brush: which one, of the program's and of a person's own, and all its settings.
 
 use super::state::{Action, UiRequest, UiState, View};
-use super::{alphas, brush_palette, brush_size, colours, header, rows};
+use super::{alphas, brush_palette, brush_size, colours, rows};
 use crate::language::tr;
 use crate::language::{text_of, text_or};
 use sculptd_clay::brush::{BrushKind, BrushSettings, Falloff, Measure, Method, StampBy};
@@ -42,6 +42,11 @@ const MEASURES: [(Measure, &str); 4] = [
     (Measure::View, "topology-view"),
 ];
 
+/// Narrower windows, points, have radius and strength in the left panel, not in the header.
+pub const ROOM_IN_HEADER: f32 = 900.0;
+/// Narrower windows, points, have the stroke and the falloff there.
+const ROOM_FOR_STROKE: f32 = 1240.0;
+
 /// One of several, in a list that unfolds; `title` and the names are messages.
 fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, title: &str, value: &mut T, all: &[(T, &str)]) {
     let now = all.iter().find(|(v, _)| v == value).map_or_else(String::new, |(_, name)| tr!(name));
@@ -56,14 +61,14 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let mut brush: BrushSettings = view.state.brush;
     brush_palette::ui(ui, view, ui_state, &mut brush, out);
     let wide = ui.ctx().content_rect().width();
-    if wide < header::ROOM_FOR_BRUSH {
+    if wide < ROOM_IN_HEADER {
         first_settings(ui, view, ui_state, &mut brush);
     }
     let paints = view.state.brush.kind == BrushKind::Paint;
     if paints {
         colours::ui(ui, view, ui_state, &mut brush);
     }
-    if wide < header::ROOM_FOR_STROKE {
+    if wide < ROOM_FOR_STROKE {
         choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
         rows::folded("brush-stroke").show(ui, |ui| path(ui, &mut brush));
     }
@@ -99,7 +104,7 @@ pub fn in_a_row(
     ui.spacing_mut().slider_width = 80.0;
     first_settings(ui, view, ui_state, &mut brush);
     ui.add_space(8.0);
-    if ui.ctx().content_rect().width() >= header::ROOM_FOR_STROKE {
+    if ui.ctx().content_rect().width() >= ROOM_FOR_STROKE {
         ui.spacing_mut().slider_width = 48.0;
         choice(ui, "dab-falloff", &mut brush.falloff, &FALLOFFS);
         let stroke = egui::containers::menu::MenuButton::new(tr!("brush-stroke"));

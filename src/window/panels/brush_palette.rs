@@ -7,7 +7,7 @@ use super::brush_picture;
 use super::icons::{self, Icon};
 use super::rows::folded;
 use super::state::action::brush_title;
-use super::state::{UiRequest, UiState, View};
+use super::state::{Action, UiRequest, UiState, View};
 use super::theme;
 use crate::language::{text_of, tr};
 use sculptd_clay::brush::own_brush::check_name;
@@ -99,7 +99,8 @@ fn button(
     let response = picture(ui, pictures, kind, chosen);
     let about = view.presets.get(kind).about();
     let about = text_of(&format!("kind-{}.about", kind.name()), about);
-    if response.on_hover_text(about).clicked() && !chosen {
+    let tip = format!("{}\n{about}", view.tip(Action::Brush(kind)));
+    if response.on_hover_text(tip).clicked() && !chosen {
         *brush = view.presets.recalled(brush, &view.state.kept_brushes, kind);
     }
 }

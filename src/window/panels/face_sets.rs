@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::icons::{self, Icon};
 use super::region;
 use super::rows;
 use super::state::region::RegionPurpose;
@@ -83,7 +84,8 @@ fn list(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Ve
             ui.push_id(set, |ui| {
                 ui.horizontal(|ui| {
                     let shown = hidden < vertices;
-                    let eye = ui.selectable_label(shown, tr!("layers-eye"));
+                    let eyes = [Icon::Eye, Icon::EyeOff];
+                    let eye = icons::switch(ui, eyes, &tr!("layers-eye"), shown);
                     if eye.on_hover_text(tr!("sets-eye-tip")).clicked() {
                         ask(out, if shown { SetsEdit::Hide(set) } else { SetsEdit::Show(set) });
                     }

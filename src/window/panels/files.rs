@@ -38,7 +38,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             }
         });
     }
-    if !view.recent.is_empty() {
+    if !ui_state.earlier.all.is_empty() {
         if ui.button(tr!("files-earlier")).clicked() {
             ui_state.earlier.open = true;
         }

@@ -9,10 +9,6 @@ use super::{act, brush, history, symmetry};
 
 /// Height of the row, points.
 pub const HEIGHT: f32 = 40.0;
-/// Narrower windows, points, have the settings of the brush in the left panel alone.
-pub const ROOM_FOR_BRUSH: f32 = 900.0;
-/// Narrower windows, points, have the stroke and the falloff there.
-pub const ROOM_FOR_STROKE: f32 = 1240.0;
 
 /// Each with its icon.
 const FILES: [(Icon, Action); 3] = [
@@ -24,7 +20,7 @@ const FILES: [(Icon, Action); 3] = [
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let ctx = ui.ctx().clone();
     let mut chosen = None;
-    let wide = ctx.content_rect().width() >= ROOM_FOR_BRUSH;
+    let wide = ctx.content_rect().width() >= brush::ROOM_IN_HEADER;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for (icon, action) in FILES {

@@ -42,6 +42,14 @@ pub fn button(ui: &mut egui::Ui, icon: Icon, name: &str) -> Response {
     shown(ui, icon, name, None, BUTTON)
 }
 
+/// The name of something in a list, as wide as the list.
+pub fn row(ui: &egui::Ui, chosen: bool, name: &str) -> egui::Button<'static> {
+    let wide = [ui.available_width(), 22.0].into();
+    egui::Button::selectable(chosen, (name.to_owned(), egui::Atom::grow()))
+        .truncate()
+        .min_size(wide)
+}
+
 /// One of several of which one is chosen.
 pub fn tab(ui: &mut egui::Ui, icon: Icon, name: &str, chosen: bool, side: f32) -> Response {
     shown(ui, icon, name, Some(chosen), side)

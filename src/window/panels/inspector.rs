@@ -5,11 +5,16 @@ use std::cell::Cell;
 
 use glam::{DQuat, DVec3, EulerRot};
 
-use super::outliner::ask;
 use super::state::{Outliner, UiRequest, View};
 use super::{rows, theme};
 use crate::language::tr;
+use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, ObjectView, Primitive, PrimitiveShape, SceneCommand};
+
+/// Asks the scene for a change.
+pub fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
+    out.push(UiRequest::World(Command::Scene(command)));
+}
 
 /// Shows where the active object stands, and what it was made of.
 pub fn ui(

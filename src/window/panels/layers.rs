@@ -4,6 +4,7 @@
 //! While an intensity is dragged, each value is sent as it comes, so that the surface follows; all
 //! of them are one step of undo.
 
+use super::icons::{self, Icon};
 use super::rows;
 use super::state::{LayerPanel, UiRequest, UiState, View};
 use super::theme;
@@ -38,7 +39,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         for layer in stack.layers.iter().rev() {
             row(ui, layer, stack, &mut ui_state.layers, out);
         }
-        let base = egui::Button::selectable(stack.active.is_none(), tr!("layers-base"));
+        let base = icons::row(ui, stack.active.is_none(), &tr!("layers-base"));
         if ui.add(base).on_hover_text(tr!("layers-base.tip")).clicked() {
             ask(out, LayerEdit::Activate(None));
         }
@@ -65,9 +66,10 @@ fn row(
 ) {
     let id = layer.id;
     let named = ui.horizontal(|ui| {
-        let eye = ui.selectable_label(layer.visible, tr!("layers-eye"));
-        let eye = eye.on_hover_text(tr!("layers-eye.tip"));
-        if eye.clicked() {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let eyes = [Icon::Eye, Icon::EyeOff];
+        let eye = icons::switch(ui, eyes, &tr!("layers-eye"), layer.visible);
+        if eye.on_hover_text(tr!("layers-eye.tip")).clicked() {
             let visible = Some(!layer.visible);
             ask(out, LayerEdit::Set { id, intensity: None, visible, live: false });
         }
@@ -82,7 +84,7 @@ fn row(
             return None;
         }
         let active = stack.active == Some(id);
-        let name = ui.add(egui::Button::selectable(active, &layer.name).truncate());
+        let name = ui.add(icons::row(ui, active, &layer.name));
         if name.double_clicked() {
             panel.renaming = Some((id, layer.name.clone()));
         } else if name.clicked() && !active {
@@ -92,7 +94,11 @@ fn row(
     });
     let mut shown = panel.dragged.filter(|d| d.0 == id).map_or(layer.intensity, |d| d.1);
     let slider = egui::Slider::new(&mut shown, -MAX_INTENSITY..=MAX_INTENSITY).fixed_decimals(2);
-    let mut slider = ui.push_id(id.0, |ui| ui.add(slider)).inner;
+    let add = |ui: &mut egui::Ui| {
+        ui.spacing_mut().slider_width = ui.available_width() - 56.0;
+        ui.add(slider)
+    };
+    let mut slider = ui.push_id(id.0, add).inner;
     if let Some(name) = named.inner {
         slider = slider.labelled_by(name);
     }
@@ -117,31 +123,34 @@ fn buttons(
     let id = active.id;
     let Some(place) = stack.index_of(id) else { return };
     let below = place.checked_sub(1).map(|below| &stack.layers[below]);
-    rows::flow(ui, |ui| {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        if icons::button(ui, Icon::Pencil, &tr!("layers-rename")).clicked() {
+            panel.renaming = Some((id, active.name.clone()));
+        }
         // By the message of its name, whose attribute `tip` says what it does.
-        let mut button = |ui: &mut egui::Ui, can: bool, name: &str, edit| {
-            let button = ui.add_enabled(can, egui::Button::new(tr!(name)));
-            if button.on_hover_text(tr!(&format!("{name}.tip"))).clicked() {
+        let mut button = |ui: &mut egui::Ui, can: bool, (icon, name): (Icon, &str), edit| {
+            let add = |ui: &mut egui::Ui| icons::button(ui, icon, &tr!(name));
+            let button = ui.add_enabled_ui(can, add).inner;
+            let tip = format!("{}: {}", tr!(name), tr!(&format!("{name}.tip")));
+            if button.on_hover_text(tip).clicked() {
                 ask(out, edit);
             }
         };
         let highest = place + 1 == stack.layers.len();
         let to = |place: usize| LayerEdit::Move(id, place as u32);
-        button(ui, !highest, "layers-up", to(place + 1));
-        button(ui, place > 0, "layers-down", to(place.saturating_sub(1)));
+        button(ui, !highest, (Icon::ArrowUp, "layers-up"), to(place + 1));
+        let lower = to(place.saturating_sub(1));
+        button(ui, place > 0, (Icon::ArrowDown, "layers-down"), lower);
         let seen = active.visible && below.is_none_or(|l| l.visible);
-        button(ui, seen, "layers-merge", LayerEdit::MergeDown(id));
+        let merge = (Icon::ArrowDownToLine, "layers-merge");
+        button(ui, seen, merge, LayerEdit::MergeDown(id));
         let room = stack.layers.len() < MAX_LAYERS;
-        button(ui, room, "layers-duplicate", LayerEdit::Duplicate(id));
-        button(ui, true, "layers-clear", LayerEdit::Clear(id));
-        button(ui, true, "layers-remove", LayerEdit::Remove(id));
+        button(ui, room, (Icon::Copy, "layers-duplicate"), LayerEdit::Duplicate(id));
+        button(ui, true, (Icon::Eraser, "layers-clear"), LayerEdit::Clear(id));
+        button(ui, true, (Icon::Trash2, "layers-remove"), LayerEdit::Remove(id));
     });
-    rows::flow(ui, |ui| {
-        if ui.button(tr!("layers-rename")).clicked() {
-            panel.renaming = Some((id, active.name.clone()));
-        }
-        bake(ui, out);
-    });
+    bake(ui, out);
 }
 
 fn bake(ui: &mut egui::Ui, out: &mut Vec<UiRequest>) {

@@ -49,7 +49,7 @@ pub fn all(
         let low = egui::Panel::bottom("status").exact_size(status_bar::HEIGHT).resizable(false);
         low.show(ui, |ui| status_bar::ui(ui, view, ui_state));
         // A small window is for the clay first.
-        let wide = PANEL.min(ctx.content_rect().width() * 0.57);
+        let wide = PANEL.min(ctx.content_rect().width() * 0.56);
         let side = egui::Panel::left("left").exact_size(wide).resizable(false);
         side.show(ui, |ui| {
             scrolled(ui, |ui| {

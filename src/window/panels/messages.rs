@@ -55,11 +55,12 @@ pub fn toast(ctx: &egui::Context, ui_state: &mut UiState, free: egui::Rect) {
     // The frame that takes it away.
     ctx.request_repaint_after(Duration::from_secs_f64(left + 0.05));
     let place = egui::Area::new(egui::Id::unique("toast"))
-        .fixed_pos(free.center_top() + vec2(0.0, 14.0))
-        .pivot(egui::Align2::CENTER_TOP)
+        // Above the hint, and away from the bars and scales at the top.
+        .fixed_pos(free.center_bottom() - vec2(0.0, 70.0))
+        .pivot(egui::Align2::CENTER_BOTTOM)
         .interactable(false);
     place.show(ctx, |ui| {
-        ui.set_max_width((free.width() - 260.0).clamp(120.0, 560.0));
+        ui.set_max_width((free.width() - 120.0).clamp(120.0, 560.0));
         egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {
             if last.wrong {
                 ui.colored_label(theme::alarm(ui), &last.text);

@@ -3,10 +3,10 @@
 //! dragged onto a group, and the right button shows all that can be done.
 
 use super::icons::{self, Icon};
+use super::inspector::ask;
 use super::state::{Outliner, Pairing, SnapPicks, UiRequest, UiState, View};
 use super::{inspector, rows, theme};
 use crate::language::tr;
-use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
     ObjectId, ObjectView, Primitive, PrimitiveShape, SceneCommand, SceneView,
 };
@@ -33,10 +33,6 @@ const PAIRINGS: [(Operation, &str); 4] = [
     (Operation::Difference, "operation-difference"),
     (Operation::ReverseDifference, "operation-reverse-difference"),
 ];
-
-pub(super) fn ask(out: &mut Vec<UiRequest>, command: SceneCommand) {
-    out.push(UiRequest::World(Command::Scene(command)));
-}
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let scene = &view.state.scene;
@@ -167,8 +163,7 @@ fn row(
             return;
         }
         let chosen = active || outliner.chosen.contains(&id);
-        let name = egui::Button::selectable(chosen, (settings.name.as_str(), egui::Atom::grow()));
-        let name = name.truncate().min_size([ui.available_width(), 22.0].into());
+        let name = icons::row(ui, chosen, &settings.name);
         let name = ui.add(name.sense(egui::Sense::click_and_drag()));
         name.dnd_set_drag_payload(outliner.with(id));
         if name.double_clicked() {

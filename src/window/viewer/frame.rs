@@ -140,7 +140,6 @@ impl WindowState {
                 fault: wiring.journal.as_ref().and_then(Health::trouble),
                 lost: wiring.journal.as_ref().map_or(0, |health| health.lost.load(Relaxed)),
             }),
-            recent: &wiring.recent,
             uploaded: self.uploaded,
             adapter: &self.adapter,
             frame: self.figures,

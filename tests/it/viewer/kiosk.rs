@@ -47,7 +47,6 @@ fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
             camera_preview: None,
             tablet: None,
             session: None,
-            recent: &[],
             uploaded: 0,
             adapter: "an adapter",
             frame: FrameFigures::default(),

@@ -288,7 +288,6 @@ fn the_free_part_lies_between_the_panels_and_the_legend_waits_for_numbers() {
                 camera_preview: None,
                 tablet: None,
                 session: None,
-                recent: &[],
                 uploaded: 0,
                 adapter: "an adapter",
                 frame: FrameFigures::default(),

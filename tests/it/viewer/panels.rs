@@ -17,8 +17,8 @@ use sculptd_window::language::Translations;
 use sculptd_window::look::Map;
 use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{
-    Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, StepPicture, TabletKeys,
-    ThicknessSummary, ThinSpot, TrialStatus, Views,
+    Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, SessionView, StepPicture,
+    TabletKeys, ThicknessSummary, ThinSpot, TrialStatus, Views,
 };
 use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
 
@@ -33,6 +33,13 @@ pub(super) struct State {
     pub views: Views,
     pub translations: &'static Translations,
     pub presets: Presets,
+    pub session: Option<TestSession>,
+}
+
+/// State of the session's file.
+pub(super) struct TestSession {
+    pub fault: Option<String>,
+    pub lost: u64,
 }
 
 /// The preferences of a person who has chosen English.
@@ -53,6 +60,7 @@ pub(super) fn state(tab: Tab) -> State {
         views: Views::default(),
         translations: super::translations(),
         presets: sculptd::presets().apart(),
+        session: None,
     }
 }
 
@@ -68,8 +76,11 @@ pub(super) fn show(ui: &mut egui::Ui, s: &mut State) {
         devices: &s.devices,
         camera_preview: None,
         tablet: s.tablet.clone(),
-        session: None,
-        recent: &[],
+        session: s.session.as_ref().map(|session| SessionView {
+            path: "/s/head.sculpt",
+            fault: session.fault.clone(),
+            lost: session.lost,
+        }),
         uploaded: 0,
         adapter: "an adapter",
         frame: FrameFigures::default(),
@@ -296,24 +307,6 @@ fn the_device_page_says_what_is_there() {
     h.run_steps(2);
     assert!(h.query_by_label_contains("No tablet found").is_none());
     assert!(h.query_by_label_contains("hidraw0: connected").is_some());
-}
-
-#[test]
-fn files_are_opened_by_name_and_exported_with_scale_and_unit() {
-    let mut h = harness(Tab::Files);
-    h.state_mut().ui_state.files.open = "/some/mesh.obj".into();
-    h.state_mut().ui_state.files.scale = 2.0;
-    h.state_mut().ui_state.files.unit = 1;
-    h.run_steps(2);
-    // A ball of radius 1, twice as large, in centimetres.
-    assert!(h.query_by_label_contains("0.400 x 0.400 x 0.400 cm").is_some());
-    h.get_by_role_and_label(Role::Button, "Open").click();
-    h.run_steps(2);
-    h.get_by_role_and_label(Role::Button, "Export").click();
-    h.run_steps(2);
-    let asked = &h.state().asked;
-    assert!(matches!(&asked[0], UiRequest::OpenMesh(p) if p.ends_with("mesh.obj")), "{asked:?}");
-    assert!(matches!(&asked[1], UiRequest::Export(p) if p.ends_with("sculpture.stl")), "{asked:?}");
 }
 
 #[test]
@@ -565,33 +558,6 @@ fn a_step_is_gone_to_by_its_picture() {
         "{:?}",
         h.state().asked
     );
-}
-
-#[test]
-fn an_export_asks_before_it_replaces_a_file() {
-    let dir = tempfile::tempdir().expect("a folder");
-    let path = dir.path().join("mine.stl");
-    std::fs::File::create(&path).expect("a file");
-    let mut h = harness(Tab::Files);
-    h.state_mut().ui_state.files.export = path.display().to_string();
-    h.run_steps(3);
-    let exports = |h: &Harness<'_, State>| {
-        let of = |a: &&UiRequest| matches!(a, UiRequest::Export(p) if *p == path);
-        h.state().asked.iter().filter(of).count()
-    };
-    h.get_by_role_and_label(Role::Button, "Export").click();
-    h.run_steps(4);
-    assert_eq!(exports(&h), 0, "the file is there");
-    h.get_by_label_contains("exists. Replace it?");
-    h.get_by_label("Cancel").click();
-    h.run_steps(4);
-    assert_eq!(exports(&h), 0);
-    assert!(h.query_by_label("Replace").is_none());
-    h.get_by_role_and_label(Role::Button, "Export").click();
-    h.run_steps(4);
-    h.get_by_label("Replace").click();
-    h.run_steps(4);
-    assert_eq!(exports(&h), 1);
 }
 
 #[test]

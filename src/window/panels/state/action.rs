@@ -158,12 +158,30 @@ fn english_title(kind: BrushKind) -> String {
     letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
 }
 
+/// The key of a brush; those of Blender's sculpt mode where no other action has them.
+const fn key_of_brush(kind: BrushKind) -> Option<KeyCombination> {
+    match kind {
+        BrushKind::Draw => key(Key::V),
+        BrushKind::Clay => key(Key::A),
+        BrushKind::ClayStrips => shift(Key::A),
+        BrushKind::Smooth => key(Key::S),
+        BrushKind::Crease => shift(Key::C),
+        BrushKind::Inflate => key(Key::I),
+        BrushKind::Grab => key(Key::D),
+        BrushKind::SnakeHook => key(Key::K),
+        BrushKind::Pinch => key(Key::P),
+        BrushKind::Flatten => shift(Key::T),
+        BrushKind::Paint => key(Key::Q),
+        _ => None,
+    }
+}
+
 fn brush(kind: BrushKind) -> ActionEntry {
     let name = format!("{} brush", english_title(kind));
     ActionEntry {
         action: Action::Brush(kind),
         name: name.into(),
-        keys: None,
+        keys: key_of_brush(kind),
         also: also_of(kind).into(),
     }
 }

@@ -53,17 +53,12 @@ const fn ctrl(key: Key) -> Option<KeyCombination> {
 
 /// The keys of sculpt mode in the manual of Blender 4; its numeric pad is the row of digits here.
 const BLENDER: &[(Action, Option<KeyCombination>)] = &[
-    (Action::Brush(BrushKind::Draw), key(Key::V)),
-    (Action::Brush(BrushKind::Smooth), key(Key::S)),
-    (Action::Brush(BrushKind::Pinch), key(Key::P)),
-    (Action::Brush(BrushKind::Inflate), key(Key::I)),
     (Action::Brush(BrushKind::Grab), key(Key::G)),
     (Action::Brush(BrushKind::Layer), key(Key::L)),
     (Action::Brush(BrushKind::Scrape), key(Key::T)),
-    (Action::Brush(BrushKind::Flatten), shift(Key::T)),
     (Action::Brush(BrushKind::Clay), key(Key::C)),
-    (Action::Brush(BrushKind::Crease), shift(Key::C)),
-    (Action::Brush(BrushKind::SnakeHook), key(Key::K)),
+    (Action::Brush(BrushKind::ClayStrips), None),
+    (Action::Brush(BrushKind::Paint), None),
     (Action::Brush(BrushKind::Mask), key(Key::M)),
     (Action::SampleColour, shift(Key::X)),
     (Action::NextMaterial, None),
@@ -98,6 +93,9 @@ const ZBRUSH: &[(Action, Option<KeyCombination>)] = &[
     (Action::Finer, key(Key::D)),
     (Action::Coarser, shift(Key::D)),
     (Action::Distance, None),
+    (Action::Brush(BrushKind::Smooth), None),
+    (Action::Brush(BrushKind::Pinch), None),
+    (Action::Brush(BrushKind::Grab), None),
 ];
 
 /// The person's changes, as the file of preferences keeps them.

@@ -1,6 +1,5 @@
 //! What the panels see: plain data, gathered once a frame.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::action::Action;
@@ -35,8 +34,6 @@ pub struct View<'a> {
     pub tablet: Option<TabletKeys>,
     /// The session that keeps the sculpture; `None`: nothing keeps it.
     pub session: Option<SessionView<'a>>,
-    /// Earlier sessions, the newest first.
-    pub recent: &'a [PathBuf],
     /// Bytes of pages sent to the card with the last frame.
     pub uploaded: u64,
     pub adapter: &'a str,
