@@ -32,6 +32,9 @@ use crate::simulated_loop::Feed;
 /// any machine.
 pub const START_VERTICES: usize = 160_000;
 
+/// Radius of that ball, mm: as large as a head that is held in both hands.
+pub const START_RADIUS: f32 = 50.0;
+
 #[derive(Debug, thiserror::Error)]
 pub enum StartupError {
     #[error(transparent)]
@@ -63,7 +66,8 @@ pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
             Ok(loaded)
         }
         None => {
-            let ball = shapes::sphere_of_about(START_VERTICES);
+            let mut ball = shapes::sphere_of_about(START_VERTICES);
+            ball.positions.iter_mut().for_each(|p| *p *= START_RADIUS);
             build(ball, vec![], "the start ball".into(), job)
         }
     }

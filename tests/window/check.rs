@@ -4,12 +4,11 @@ use glam::{DQuat, Vec3};
 use sculptd_engine::camera::Camera;
 use serde_json::json;
 
+use super::places::FIRST_FINDING;
 use super::stage::{Stage, differs, pause};
 
-/// The first finding on the page.
-const FIRST: (i32, i32) = (1150, 440);
 /// Beside the clay and the panels' widgets.
-const NOWHERE: (i32, i32) = (640, 700);
+const NOWHERE: (i32, i32) = (640, 680);
 
 fn camera(s: &Stage) -> Camera {
     serde_json::from_value(s.ask("camera", &json!({}))).expect("a camera")
@@ -24,7 +23,7 @@ fn click(s: &Stage, (x, y): (i32, i32)) {
 /// Clicks on the first finding; the place that the camera flies to.
 fn flown_to(s: &mut Stage) -> Option<Vec3> {
     let before = camera(s).target;
-    click(s, FIRST);
+    click(s, FIRST_FINDING);
     let flies = s.soon(|s| camera(s).target != before);
     // The flight takes half a second.
     pause(1500);
@@ -40,6 +39,7 @@ fn a_finding_is_flown_to_and_is_gone_once_the_part_is_turned() {
     let place = json!({ "turn": turn.to_array() });
     let cube = json!({ "primitive": { "box": [20.0, 20.0, 20.0] }, "transform": place });
     let id = s.ask("scene.add", &cube)["id"].as_u64().expect("an id");
+    s.ask("scene.show", &json!({ "id": 0, "visible": false }));
     let view = json!({ "yaw": 0.0, "pitch": 0.0, "distance": 120.0, "target": [0.0, 0.0, 0.0] });
     s.ask("camera", &view);
     s.seen("check-view");

@@ -15,6 +15,7 @@ mod four_views;
 mod idle;
 mod lost_screen;
 mod objects;
+mod places;
 mod presses;
 mod regions;
 mod sessions;

@@ -5,27 +5,11 @@ use glam::{DQuat, DVec3};
 use sculptd_engine::camera::Camera;
 use serde_json::{Value, json};
 
-use super::stage::{SIZE, Stage, differs};
-
-/// Points that a panel takes on each side.
-const PANEL: f32 = 236.0;
-
-/// Positions on the scene page with two objects, the second of them active; the rest with the first
-/// one active and a layer.
-const NAME_OF_BALL: (i32, i32) = (1167, 107);
-const NAME_OF_BOX: (i32, i32) = (1159, 132);
-const EYE_OF_BOX: (i32, i32) = (1071, 132);
-const FOLLOW: (i32, i32) = (1060, 232);
-const GIZMO: (i32, i32) = (1079, 257);
-const ADD_LAYER: (i32, i32) = (1131, 368);
-const EYE_OF_LAYER: (i32, i32) = (1071, 393);
-const SLIDER_OF_LAYER: (i32, i32) = (1119, 418);
-const FACE_SETS: (i32, i32) = (1097, 579);
-const SET_FROM_MASK: (i32, i32) = (1110, 654);
-/// Below the row of what is in no set.
-const EYE_OF_SET: (i32, i32) = (1089, 654);
-/// Of the menu of the box's name, from where it was opened.
-const DIFFERENCE: (i32, i32) = (-87, 67);
+use super::places::{
+    ADD_LAYER, DIFFERENCE, EYE_OF_LAYER, EYE_OF_SECOND, EYE_OF_SET, FACE_SETS, FOLLOW, GIZMO,
+    NAME_OF_FIRST, NAME_OF_SECOND, SET_FROM_MASK, SLIDER_OF_LAYER, TURNS,
+};
+use super::stage::{Stage, VIEW, differs};
 
 /// The camera of the window.
 fn camera(s: &Stage) -> Camera {
@@ -35,8 +19,8 @@ fn camera(s: &Stage) -> Camera {
 /// Returns the pixel of a point in the world.
 fn pixel(s: &Stage, place: DVec3) -> (i32, i32) {
     let view = camera(s).project(place.as_vec3()).expect("before the eye");
-    let (wide, high) = (SIZE.0 as f32 - 2.0 * PANEL, SIZE.1 as f32);
-    ((PANEL + view.x * wide).round() as i32, (view.y * high).round() as i32)
+    let at = VIEW[0] + view * VIEW[1];
+    (at.x.round() as i32, at.y.round() as i32)
 }
 
 fn at(s: &Stage, (x, y): (i32, i32)) {
@@ -95,11 +79,13 @@ fn gizmo(s: &Stage, id: u64) -> Gizmo {
 fn stage() -> Option<(Stage, u64)> {
     let mut s = Stage::open(&[])?;
     s.seen("objects-start");
-    let place = json!({ "shift": [1.6, 0.0, 0.0] });
-    let added =
-        s.ask("scene.add", &json!({ "primitive": { "box": [0.8, 0.8, 0.8] }, "transform": place }));
+    let place = json!({ "shift": [80.0, 0.0, 0.0] });
+    let added = s.ask(
+        "scene.add",
+        &json!({ "primitive": { "box": [40.0, 40.0, 40.0] }, "transform": place }),
+    );
     let id = added["id"].as_u64().expect("an id");
-    let view = json!({ "yaw": 0.4, "pitch": 0.3, "distance": 6.0, "target": [0.8, 0.0, 0.0] });
+    let view = json!({ "yaw": 0.4, "pitch": 0.3, "distance": 300.0, "target": [40.0, 0.0, 0.0] });
     s.ask("camera", &view);
     s.seen("objects-view");
     s.answer("ctrl+k", "scene");
@@ -112,14 +98,14 @@ fn the_outliner_is_clicked_and_the_gizmo_dragged() {
     let Some((mut s, id)) = stage() else { return };
     let active = |s: &Stage| s.ask("scene.list", &Value::Null)["active"].as_u64();
     assert_eq!(active(&s), Some(id));
-    click(&s, NAME_OF_BALL);
+    click(&s, NAME_OF_FIRST);
     s.until("the ball is active", |s| active(s) == Some(0));
-    click(&s, NAME_OF_BOX);
+    click(&s, NAME_OF_SECOND);
     s.until("the box is active", |s| active(s) == Some(id));
-    click(&s, EYE_OF_BOX);
+    click(&s, EYE_OF_SECOND);
     s.until("the box is hidden", |s| object(s, id)["visible"] == false);
     s.seen("objects-hidden");
-    click(&s, EYE_OF_BOX);
+    click(&s, EYE_OF_SECOND);
     s.until("the box is shown", |s| object(s, id)["visible"] == true);
     let bare = s.seen("objects-shown");
     click(&s, GIZMO);
@@ -132,15 +118,15 @@ fn the_outliner_is_clicked_and_the_gizmo_dragged() {
     let (steps, before) = (s.figure("undo_steps"), shift(&s, id));
     let g = gizmo(&s, id);
     let tip = g.centre + DVec3::X * g.size * 0.95;
-    let (from, to) = (pixel(&s, tip), pixel(&s, tip + DVec3::X * 0.5));
+    let (from, to) = (pixel(&s, tip), pixel(&s, tip + DVec3::X * 25.0));
     pull(&s, from, to);
-    s.until("it goes with the pointer", |s| (shift(s, id) - before).x > 0.4);
+    s.until("it goes with the pointer", |s| (shift(s, id) - before).x > 20.0);
     s.look("objects-dragged");
     s.drive(&["mouseup", "1"]);
     s.until("it is moved in one step", |s| s.figure("undo_steps") == steps + 1);
     let moved = |s: &Stage| shift(s, id) - before;
-    s.until("it is moved by 0.5 along x", |s| (moved(s) - DVec3::X * 0.5).length() < 0.02);
-    println!("moved by {}, asked 0.5 along x", moved(&s));
+    s.until("it is moved by 25 along x", |s| (moved(s) - DVec3::X * 25.0).length() < 1.0);
+    println!("moved by {}, asked 25 along x", moved(&s));
 
     // About y, by 0.6 radians.
     let g = gizmo(&s, id);
@@ -176,13 +162,13 @@ fn layers_and_face_sets_are_worked_with_the_pointer() {
     let Some((mut s, _)) = stage() else { return };
     let layers = |s: &Stage| s.ask("layers.list", &Value::Null)["layers"].clone();
     let hash = |s: &Stage| s.ask("hash", &Value::Null)["hash"].clone();
-    click(&s, NAME_OF_BALL);
+    click(&s, NAME_OF_FIRST);
     s.until("the ball is active", |s| s.ask("scene.list", &Value::Null)["active"] == 0);
     click(&s, ADD_LAYER);
     s.until("there is a layer", |s| layers(s).as_array().is_some_and(|l| l.len() == 1));
     s.seen("objects-layer");
     let bare = hash(&s);
-    let (dabs, ball) = (s.figure("dabs"), pixel(&s, DVec3::new(0.0, 0.0, 1.0)));
+    let (dabs, ball) = (s.figure("dabs"), pixel(&s, DVec3::new(0.0, 0.0, 50.0)));
     let steps = s.figure("undo_steps");
     pull(&s, (ball.0 - 40, ball.1), (ball.0 + 40, ball.1 + 10));
     s.drive(&["mouseup", "1"]);
@@ -205,6 +191,8 @@ fn layers_and_face_sets_are_worked_with_the_pointer() {
     s.ask("mask-region", &json!({ "region": { "box": [0.0, 0.0, 0.5, 1.0] } }));
     click(&s, FACE_SETS);
     s.seen("objects-sets");
+    (0..TURNS).for_each(|_| s.drive(&["click", "5"]));
+    s.seen("objects-sets-below");
     click(&s, SET_FROM_MASK);
     let sets = |s: &Stage| s.ask("sets.list", &Value::Null);
     s.until("there is a set", |s| {
@@ -222,36 +210,36 @@ fn layers_and_face_sets_are_worked_with_the_pointer() {
 fn a_result_follows_the_operand_that_the_gizmo_drags() {
     let Some((mut s, id)) = stage() else { return };
     click(&s, GIZMO);
-    click(&s, NAME_OF_BALL);
+    click(&s, NAME_OF_FIRST);
     s.until("the ball is active", |s| s.ask("scene.list", &Value::Null)["active"] == 0);
     click(&s, FOLLOW);
     s.seen("follow-asked");
-    at(&s, NAME_OF_BOX);
+    at(&s, NAME_OF_SECOND);
     s.drive(&["click", "3"]);
     s.seen("follow-menu");
-    click(&s, (NAME_OF_BOX.0 + DIFFERENCE.0, NAME_OF_BOX.1 + DIFFERENCE.1));
+    click(&s, (NAME_OF_SECOND.0 + DIFFERENCE.0, NAME_OF_SECOND.1 + DIFFERENCE.1));
     let last = |s: &Stage| {
         let list = s.ask("scene.list", &Value::Null);
         list["objects"].as_array().and_then(|l| l.last().cloned()).expect("objects")
     };
     s.until("there is a result", |s| last(s)["follows"]["operation"] == "difference");
     let result = last(&s)["id"].as_u64().expect("an id");
-    assert_eq!((&object(&s, id)["visible"], shift(&s, id).x), (&json!(false), 1.6));
+    assert_eq!((&object(&s, id)["visible"], shift(&s, id).x), (&json!(false), 80.0));
     s.seen("follow-result");
-    click(&s, NAME_OF_BOX);
+    click(&s, NAME_OF_SECOND);
     s.until("the box is active", |s| s.ask("scene.list", &Value::Null)["active"] == id);
     s.seen("follow-operand");
     let (steps, g) = (s.figure("undo_steps"), gizmo(&s, id));
     let tip = g.centre + DVec3::X * g.size * 0.95;
     let right = |s: &Stage| numbers::<3>(&object(s, result)["bounds"][1])[0];
-    assert!(right(&s) > 0.99);
-    pull(&s, pixel(&s, tip), pixel(&s, tip - DVec3::X * 0.6));
+    assert!(right(&s) > 49.5);
+    pull(&s, pixel(&s, tip), pixel(&s, tip - DVec3::X * 30.0));
     // The button is still down.
-    s.until("the result follows", |s| right(s) < 0.95);
+    s.until("the result follows", |s| right(s) < 47.5);
     s.look("follow-dragged");
     s.drive(&["mouseup", "1"]);
     s.until("it is one step", |s| s.figure("undo_steps") == steps + 1);
     s.seen("follow-done");
     s.drive(&["key", "ctrl+z"]);
-    s.until("both are taken back", |s| right(s) > 0.99 && shift(s, id).x == 1.6);
+    s.until("both are taken back", |s| right(s) > 49.5 && shift(s, id).x == 80.0);
 }

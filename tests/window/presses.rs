@@ -2,10 +2,11 @@
 
 use serde_json::Value;
 
+use super::places::{CLAY, DRAW};
 use super::stage::{MIDDLE, Stage};
 
 /// Two brushes of the left panel: where their buttons are, and their names.
-const BRUSHES: [((i32, i32), &str); 2] = [((41, 80), "draw"), ((111, 80), "clay")];
+const BRUSHES: [((i32, i32), &str); 2] = [(DRAW, "draw"), (CLAY, "clay")];
 /// Presses on each side.
 const PRESSES: u32 = 100;
 

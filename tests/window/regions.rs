@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::stage::{MIDDLE, SIZE, Stage, differs};
+use super::stage::{MIDDLE, Stage, VIEW, differs};
 
 /// A drag with the button held, in pixels from the middle of the clay, that is not released.
 fn lasso(s: &Stage, way: &[(i32, i32)]) {
@@ -41,9 +41,9 @@ fn a_lasso_drawn_with_the_pointer_masks_what_it_surrounds() {
     s.drive(&["mouseup", "1"]);
     s.until("the mask is a step", |s| s.figure("undo_steps") == steps + 1);
     let through = masked(&s);
-    // The same as by request: the view fills what the panels leave, 236 points each.
+    // The same as by request: the view fills what the panels leave.
     s.ask("undo", &Value::Null);
-    let (wide, high) = (f64::from(SIZE.0) - 2.0 * 236.0, f64::from(SIZE.1));
+    let (wide, high) = (f64::from(VIEW[1].x), f64::from(VIEW[1].y));
     let share = |(x, y): &(i32, i32)| [0.5 + f64::from(*x) / wide, 0.5 + f64::from(*y) / high];
     let corners: Vec<[f64; 2]> = around.iter().map(share).collect();
     s.ask("mask-region", &json!({ "region": { "polygon": corners } }));

@@ -6,14 +6,21 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use glam::Vec2;
 use image::RgbaImage;
 use image::imageops::FilterType;
 use sculptd_daemon::control::client::call;
+use sculptd_window::panels::{HEADER, PANEL, STATUS};
 use serde_json::Value;
 
 pub const SIZE: (u32, u32) = (1280, 720);
-/// The middle of the clay: between two panels.
-pub const MIDDLE: (i32, i32) = (640, 360);
+/// The middle of the clay: between the panels.
+pub const MIDDLE: (i32, i32) = (640, (HEADER + (SIZE.1 as f32 - HEADER - STATUS) / 2.0) as i32);
+/// The first pixel of the clay, and its size.
+pub const VIEW: [Vec2; 2] = [
+    Vec2::new(PANEL, HEADER),
+    Vec2::new(SIZE.0 as f32 - 2.0 * PANEL, SIZE.1 as f32 - HEADER - STATUS),
+];
 const PATIENCE: Duration = Duration::from_secs(30);
 /// References are kept this small: form and colour, not the pixels of one driver.
 const KEPT: (u32, u32) = (160, 90);

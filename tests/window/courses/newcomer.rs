@@ -5,6 +5,7 @@ use sculptd_geometry::shapes;
 use serde_json::json;
 
 use super::{Course, brush, drag_with, hash, key, press, steps};
+use crate::places::{LANGUAGES, MIRROR_X, RADIUS, page};
 use crate::stage::{Stage, differs, pause};
 
 #[test]
@@ -31,7 +32,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
     c.step("5 of 6: Ctrl+Z takes back", |s| key(s, "ctrl+z"), |s| steps(s) == 2);
     c.step(
         "6 of 6: the mirror",
-        |s| press(s, (65, 405)),
+        |s| press(s, MIRROR_X),
         |s| brush(s)["symmetry"] == json!([true, false, false]),
     );
     c.step("the lesson is over", |s| s.drag((-60, -90), (60, -80)), |s| steps(s) == 3);
@@ -59,18 +60,17 @@ fn a_newcomer_s_hour_with_a_mouse() {
     let was = radius(&c.s);
     c.step(
         "a drag on the slider of the radius",
-        |s| drag_with(s, "1", (65, 272), (85, 272)),
+        |s| drag_with(s, "1", RADIUS, (RADIUS.0 + 20, RADIUS.1)),
         |s| radius(s) > was * 1.1,
     );
 
     // Every page is opened by its tab and says something.
-    let tabs = [(1128, 19), (1181, 19), (1232, 19), (1076, 45), (1127, 45), (1178, 45), (1229, 45)];
     let mut last = c.s.look("course-newcomer-look");
-    for (i, tab) in tabs.into_iter().enumerate() {
+    for number in 1..9 {
         let mut now = last.clone();
         c.step(
-            &format!("page {} of 8", i + 2),
-            |s| press(s, tab),
+            &format!("page {} of 9", number + 1),
+            |s| press(s, page(number)),
             |s| {
                 now = s.look("course-newcomer-page");
                 differs(&last, &now) > 0.3
@@ -78,7 +78,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
         );
         last = now;
     }
-    c.step("and the first again", |s| press(s, (1076, 19)), |_| true);
+    c.step("and the first again", |s| press(s, page(0)), |_| true);
 
     // Looks: another material, facets, light panels, larger letters, no panels at all.
     let mut before = c.s.look("course-newcomer-before");
@@ -230,12 +230,12 @@ fn preferences(c: &mut Course) {
     let was = c.s.look("course-newcomer-english");
     let choose = |y: i32| {
         move |s: &mut Stage| {
-            press(s, (1150, 122));
+            press(s, LANGUAGES);
             pause(1500);
-            press(s, (1090, y));
+            press(s, (LANGUAGES.0, LANGUAGES.1 + y));
         }
     };
-    c.step("Italian", choose(299), |s| {
+    c.step("Italian", choose(177), |s| {
         kept("language = \"it\"") && differs(&was, &s.look("course-newcomer-italian")) > 0.3
     });
     c.step(
@@ -255,7 +255,7 @@ fn four_views(c: &mut Course) {
     c.step(
         "four views",
         |s| {
-            go(s, "842", "179");
+            go(s, "834", "203");
             key(s, "4");
         },
         |s| differs(&before, &s.look("course-newcomer-four-views")) > 1.0,
@@ -274,7 +274,7 @@ fn four_views(c: &mut Course) {
     c.step(
         "and one again",
         |s| {
-            go(s, "842", "179");
+            go(s, "834", "203");
             pause(500);
             key(s, "4");
         },

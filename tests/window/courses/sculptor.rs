@@ -8,6 +8,9 @@ use sculptd_devices::sim::{PenScript, SerialPen, SerialPenConfig, Shape, Stroke}
 use serde_json::json;
 
 use super::{Course, brush, hash, key, press, steps};
+use crate::places::{
+    ADD_LAYER, CLAY_STRIPS, DIFFERENCE, DRAW, EYE_OF_LAYER, MIRROR_X, NAME_OF_FIRST, NAME_OF_SECOND,
+};
 use crate::sessions::kept;
 use crate::stage::{Stage, differs, pause};
 
@@ -118,7 +121,7 @@ fn a_tablet_sculptor_s_hour() {
     // Brushes by button, key and name.
     c.step(
         "clay strips by its button",
-        |s| press(s, (181, 80)),
+        |s| press(s, CLAY_STRIPS),
         |s| brush(s)["kind"] == "clay-strips",
     );
     let before = steps(&c.s);
@@ -136,12 +139,12 @@ fn a_tablet_sculptor_s_hour() {
     let before = steps(&c.s);
     let valley = |_: &mut Stage| tablet.draw();
     c.step("a valley", valley, |s| steps(s) == before + 1);
-    c.step("draw again", |s| press(s, (41, 80)), |s| brush(s)["kind"] == "draw");
+    c.step("draw again", |s| press(s, DRAW), |s| brush(s)["kind"] == "draw");
 
     // The mirror: what is drawn at one side comes at both.
     c.step(
         "the mirror over x",
-        |s| press(s, (65, 405)),
+        |s| press(s, MIRROR_X),
         |s| brush(s)["symmetry"] == json!([true, false, false]),
     );
     let before = steps(&c.s);
@@ -150,7 +153,7 @@ fn a_tablet_sculptor_s_hour() {
     c.is_as_kept();
     c.step(
         "the mirror is taken away",
-        |s| press(s, (65, 405)),
+        |s| press(s, MIRROR_X),
         |s| brush(s)["symmetry"] == json!([false, false, false]),
     );
 
@@ -220,13 +223,13 @@ fn composed(c: &mut Course) {
         (list["objects"].as_array().map_or(0, Vec::len), list["active"].as_u64())
     };
     c.step("the page of the scene", |s| s.answer("ctrl+k", "page: scene"), |_| true);
-    let beside = json!({ "primitive": { "box": [0.8, 0.8, 0.8] },
-        "transform": { "shift": [1.0, 0.0, 0.0] } });
+    let beside = json!({ "primitive": { "box": [40.0, 40.0, 40.0] },
+        "transform": { "shift": [50.0, 0.0, 0.0] } });
     c.step("a box in its flank", |s| drop(s.ask("scene.add", &beside)), |s| objects(s).0 == 2);
-    c.step("the ball is the active one", |s| press(s, (1167, 107)), |s| objects(s).1 == Some(0));
+    c.step("the ball is the active one", |s| press(s, NAME_OF_FIRST), |s| objects(s).1 == Some(0));
     let layers = |s: &Stage| s.ask("layers.list", &json!({}))["layers"].clone();
     let shown = move |s: &Stage| layers(s)[0]["visible"].as_bool();
-    c.step("a layer", |s| press(s, (1131, 368)), |s| shown(s) == Some(true));
+    c.step("a layer", |s| press(s, ADD_LAYER), |s| shown(s) == Some(true));
     let (bare, dabs) = (hash(&c.s), c.s.figure("dabs"));
     c.step(
         "a stroke of the mouse goes to it",
@@ -238,17 +241,18 @@ fn composed(c: &mut Course) {
     let with = hash(&c.s);
     c.step(
         "its eye hides the layer",
-        |s| press(s, (1071, 393)),
+        |s| press(s, EYE_OF_LAYER),
         |s| shown(s) == Some(false) && hash(s) != with,
     );
-    c.step("and shows it, to the bit", |s| press(s, (1071, 393)), |s| hash(s) == with);
+    c.step("and shows it, to the bit", |s| press(s, EYE_OF_LAYER), |s| hash(s) == with);
     let whole = volume(&c.s);
     c.step(
         "the box is cut out of the ball",
         |s| {
-            s.drive(&["mousemove", "1159", "132", "click", "3"]);
+            let (x, y) = NAME_OF_SECOND;
+            s.drive(&["mousemove", &x.to_string(), &y.to_string(), "click", "3"]);
             pause(1500);
-            press(s, (1159 - 87, 132 + 67));
+            press(s, (x + DIFFERENCE.0, y + DIFFERENCE.1));
         },
         |s| objects(s).0 == 1,
     );
