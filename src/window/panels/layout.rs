@@ -17,6 +17,9 @@ pub const PANEL: f32 = 252.0;
 /// Narrower windows, points, have one panel.
 const NARROW: f32 = 760.0;
 
+/// Narrower views, points, have the view cube or the bar of a region, not both.
+const ROOM_FOR_CUBE: f32 = 480.0;
+
 /// Everything over the clay, once a frame. Returns the part of the window that the panels leave
 /// free, points.
 pub fn all(
@@ -78,7 +81,10 @@ pub fn all(
     if ui_state.tab == Tab::Check && !ui_state.hidden {
         check_values::label(&ctx, view, &ui_state.check, worked_in);
     }
-    cube::ui(&ctx, view, free, out);
+    // Its corner belongs to the bar of a region where there is no room for both.
+    if ui_state.region.drawing.is_none() || free.width() >= ROOM_FOR_CUBE {
+        cube::ui(&ctx, view, free, out);
+    }
     legend::ui(&ctx, ui_state, free);
     hints::ui(&ctx, view, ui_state, free);
     light::beside(&ctx, ui_state, free);

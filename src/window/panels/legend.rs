@@ -22,7 +22,9 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
         _ => ui_state.look.scale,
     };
     let area = egui::Area::new(egui::Id::unique("legend"))
-        .fixed_pos(free.left_top() + vec2(12.0, 12.0))
+        // Away from the bars at the top and what is said at the bottom.
+        .fixed_pos(free.left_center() + vec2(12.0, 0.0))
+        .pivot(egui::Align2::LEFT_CENTER)
         .interactable(false);
     area.show(ctx, |ui| {
         egui::Frame::popup(ui.style()).inner_margin(8.0).show(ui, |ui| {

@@ -8,12 +8,15 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 
+use super::layout::misplaced;
 use super::panels::{State, TestSession, brushes, harness};
 use sculptd_clay::brush::BrushKind;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{
     NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, PrimitiveShape, SceneCommand,
 };
+use sculptd_window::look::Map;
+use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{EarlierWork, NextSculpture};
 use sculptd_window::panels::{Tab, UiRequest};
 
@@ -146,4 +149,22 @@ fn the_line_below_says_whether_the_work_is_kept() {
     h.state_mut().session = Some(TestSession { fault: Some("disk full".into()), lost: 7 });
     h.run_steps(2);
     assert!(says(&h, "the session takes nothing") && !says(&h, "head.sculpt"));
+}
+
+#[test]
+fn bars_scales_hints_and_messages_keep_apart_on_small_screens() {
+    let mut bad = Vec::new();
+    for (wide, high) in [(800.0, 600.0), (1024.0, 700.0), (1280.0, 720.0)] {
+        let mut h = harness(Tab::Look);
+        h.set_size(egui::vec2(wide, high));
+        let s = h.state_mut();
+        s.ui_state.look.map = Map::Thickness;
+        s.ui_state.look.scale = (0.5, 2.5);
+        s.ui_state.region.begin(RegionShape::Lasso, RegionPurpose::Mask);
+        s.ui_state.say("/a/long/path/to/a/file/that/was/not/there.stl: no such file", true);
+        h.run_steps(4);
+        let wrong = misplaced(&h);
+        bad.extend(wrong.into_iter().map(|what| format!("{wide} x {high}: {what}")));
+    }
+    assert!(bad.is_empty(), "{} faults: {bad:#?}", bad.len());
 }
