@@ -38,10 +38,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
             }
         });
     }
-    if !ui_state.earlier.all.is_empty() {
-        if ui.button(tr!("files-earlier")).clicked() {
-            ui_state.earlier.open = true;
-        }
+    if !ui_state.earlier.all.is_empty() && ui.button(tr!("files-earlier")).clicked() {
+        ui_state.earlier.open = true;
     }
     ui.add_space(8.0);
     ui.strong(tr!("files-export"));
