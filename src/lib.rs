@@ -29,6 +29,8 @@
 //! 3. **The tick thread never waits.** No locks held by others, no IO, no unbounded work; after
 //!    warm-up it neither allocates nor frees in the steady state of a stroke. A contact or
 //!    proximity change is never lost; motion may be coalesced, and every loss is counted and shown.
+//!    While a result of an operation is put in place, input may wait for a tenth of a second in its
+//!    channels: [`sculptd_daemon::input_hold`].
 //!    Nothing large is freed on the tick thread, whatever is full: see
 //!    [`sculptd_clay::GarbageSink`].
 //!    Dynamic topology is bounded by counted work, including scanning and writing pages; work that

@@ -76,6 +76,7 @@ mod step_authors;
 pub mod stored;
 mod undo;
 mod verify;
+mod vertex_states;
 mod workers;
 
 pub use assembly::{
@@ -99,4 +100,5 @@ pub use snapshot::{Ranks, Snapshot};
 pub use step_authors::Author;
 pub use stored::{BadPage, ObjectState};
 pub use undo::{StepPages, StepPlace};
+pub use vertex_states::VertexState;
 pub use workers::Workers;

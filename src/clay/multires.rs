@@ -182,19 +182,32 @@ impl Levels {
         }
         coarse.mesh.colours = now.mesh.colours.as_ref().map(|c| c[..n].to_vec());
         coarse.masks = now.masks.as_ref().map(|m| m[..n].to_vec());
-        levels.above.insert(
-            0,
-            Upper {
-                positions: now.mesh.positions.clone(),
-                colours: now.mesh.colours.clone(),
-                masks: now.masks.clone(),
-                base: coarse.mesh.positions.clone(),
-                base_colours: coarse.mesh.colours.clone(),
-                base_masks: coarse.masks.clone(),
-            },
-        );
+        levels.above.insert(0, Upper::of(now.clone(), &coarse));
         levels.shape = shape(&coarse.mesh);
         Ok((coarse, levels))
+    }
+
+    /// Replaces the next finer level, which was changed after this one was made of it. `shown` is
+    /// this level, which has taken over what it can of that; going up again gives `finer` to the
+    /// bit.
+    pub fn keep_above(&mut self, finer: Level, shown: &Level) {
+        if let Some(above) = self.above.first_mut() {
+            *above = Upper::of(finer, shown);
+        }
+    }
+}
+
+impl Upper {
+    /// A level that is left for the next coarser one.
+    fn of(left: Level, base: &Level) -> Upper {
+        Upper {
+            positions: left.mesh.positions,
+            colours: left.mesh.colours,
+            masks: left.masks,
+            base: base.mesh.positions.clone(),
+            base_colours: base.mesh.colours.clone(),
+            base_masks: base.masks.clone(),
+        }
     }
 }
 

@@ -15,9 +15,9 @@ use serde::Serialize;
 use super::command_queue::{CommandSender, NoAnswer};
 use super::hand_jobs;
 pub use super::hand_jobs::operation;
-use super::operations::{self, Computed, OperationError, Target};
+use super::operations::basis::{Basis, Placing};
+use super::operations::{self, Computed, OperationError, Target, in_place};
 use super::published::Published;
-use super::remesh_job::in_place;
 use sculptd_clay::{Grafted, Level, LevelError, Levels, PAGE_VERTICES};
 use sculptd_engine::answer::Answer;
 use sculptd_engine::command::{Carving, Command};
@@ -78,7 +78,9 @@ pub fn join(
     let masks = masks.map(|m| boolean::mixed(&solid, &work, &m));
     let pages = plain.positions.len().div_ceil(PAGE_VERTICES);
     let new = in_place(Arc::new(plain), masks, None, job)?;
-    Ok(Computed { then, ..Computed::of_clay(shown, new, pages) })
+    let tool = Some(tool.triangulate().0);
+    let basis = Basis::of_active(shown, Placing::Boolean { tool });
+    Ok(Computed { then, ..Computed::of_clay(shown, new, pages).following(basis) })
 }
 
 /// Computes the active object one level finer or coarser. Returns the new level and the number of
@@ -100,8 +102,9 @@ pub fn level(
         (false, None) => return Err(LevelError::Lowest.into()),
     };
     let at = levels.at();
-    let queued = in_place(Arc::new(level.mesh), level.masks, Some(levels), job)?;
-    Ok(Computed::of_clay(now, queued, at))
+    let queued = in_place(Arc::new(level.mesh), level.masks, Some(Arc::new(levels)), job)?;
+    let placing = if finer { Placing::Finer } else { Placing::Coarser };
+    Ok(Computed::of_clay(now, queued, at).following(Basis::of_active(now, placing)))
 }
 
 /// Request from tracked hands.

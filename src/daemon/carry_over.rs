@@ -1,4 +1,5 @@
-//! Masks and colours of an old surface on a new one: those of the nearest place on the old.
+//! Masks, colours and movements of an old surface on a new one: those of the nearest place on the
+//! old.
 
 use glam::{DVec3, Vec3};
 
@@ -17,6 +18,13 @@ pub struct OldPlace {
 }
 
 impl OldPlace {
+    /// Returns the place in a triangle that has these parts of its corners.
+    pub fn within(old: &TriMesh, triangle: usize, weights: [f64; 3]) -> OldPlace {
+        let corners = old.corners(triangle).map(Vec3::as_dvec3);
+        let point = (0..3).map(|i| corners[i] * weights[i]).sum();
+        OldPlace { point, triangle, weights }
+    }
+
     /// The normal of its triangle, of length 1; zero where that has no area.
     pub fn normal(&self, old: &TriMesh) -> DVec3 {
         let [a, b, c] = old.corners(self.triangle).map(Vec3::as_dvec3);
@@ -29,8 +37,14 @@ impl OldPlace {
         (0..3).map(|i| f64::from(values[t[i] as usize]) * self.weights[i]).sum::<f64>() as f32
     }
 
+    /// A shift of each old vertex here.
+    pub fn shift(&self, old: &TriMesh, by: impl Fn(usize) -> DVec3) -> DVec3 {
+        let t = old.triangles[self.triangle];
+        (0..3).map(|i| by(t[i] as usize) * self.weights[i]).sum()
+    }
+
     /// A colour of each old vertex here.
-    fn colour(&self, old: &TriMesh, colours: &[[u8; 4]]) -> [u8; 4] {
+    pub fn colour(&self, old: &TriMesh, colours: &[[u8; 4]]) -> [u8; 4] {
         let t = old.triangles[self.triangle];
         std::array::from_fn(|k| {
             let each = |i: usize| f64::from(colours[t[i] as usize][k]) * self.weights[i];

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crossbeam_channel as cc;
 
 use crate::event_clock::EventClock;
+use crate::input_hold::InputHold;
 use sculptd_engine::answer::CommandResult;
 use sculptd_engine::command::Command;
 use sculptd_engine::payload::Payload;
@@ -25,6 +26,8 @@ pub struct QueuedCommand {
     /// Time of the event that asked for it, on the clock of the samples, in microseconds: older
     /// samples are stepped before it, newer ones after it. `None`: it is carried out at once.
     pub t_us: Option<u64>,
+    /// The hold that this command starts, or whose holder sent it.
+    pub hold: Option<InputHold>,
 }
 
 /// Result of a command, and the tick of its effect.
@@ -52,7 +55,7 @@ pub enum NoAnswer {
 
 impl From<Command> for QueuedCommand {
     fn from(command: Command) -> Self {
-        QueuedCommand { command, payload: None, answer: None, t_us: None }
+        QueuedCommand { command, payload: None, answer: None, t_us: None, hold: None }
     }
 }
 

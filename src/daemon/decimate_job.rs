@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use crate::operations::{Computed, OperationError};
-use crate::remesh_job::in_place;
+use crate::operations::basis::{Basis, Placing};
+use crate::operations::{Computed, OperationError, in_place};
 use crate::{Published, carry_over};
 use sculptd_geometry::decimate::{DecimationTarget, decimate};
 use sculptd_geometry::distance::DistanceSolid;
@@ -83,5 +83,6 @@ pub fn decimated(
         repeated: done.repeated,
     };
     let queued = in_place(Arc::new(new), carried, None, job)?;
-    Ok(Computed::of_clay(now, queued, made))
+    let basis = Basis::of_active(now, Placing::Nearest);
+    Ok(Computed::of_clay(now, queued, made).following(basis))
 }

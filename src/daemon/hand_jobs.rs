@@ -71,8 +71,7 @@ pub fn join(
     let operation = operation(choice).ok_or(CombineError::Nothing)?;
     let other = partner(shown, held).ok_or(SceneError::Last)?;
     let done = scene_jobs::boolean(shown, [other, held], SceneBoolean::new(operation), job)?;
-    let (command, payload) = done.command();
-    Ok(Computed::of_scene(command, Some(payload), ()))
+    Ok(Computed::of_combined(shown, done, ()))
 }
 
 #[cfg(test)]

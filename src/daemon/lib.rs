@@ -26,6 +26,7 @@ pub mod garbage_thread;
 pub mod hand_jobs;
 #[cfg(unix)]
 pub mod http;
+pub mod input_hold;
 pub mod kiosk;
 pub mod live;
 pub mod live_booleans;

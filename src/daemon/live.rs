@@ -20,6 +20,7 @@ use crate::boolean_jobs::{BooleanJobs, HandRequest};
 use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
+use crate::input_hold::LoopHold;
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
 use crate::people::PeopleHere;
 use crate::priority::raise_priority;
@@ -206,8 +207,11 @@ struct TickBuffers {
     late: AnswerSender,
     /// Answers to send once the state that shows them is published.
     answers: Vec<(cc::Sender<CommandAnswer>, CommandAnswer)>,
-    /// Commands that wait for the end of such an edit, in order; they precede the inbox.
+    /// Commands that wait for the end of such an edit or of a hold, in order; they precede the
+    /// inbox.
     held: VecDeque<QueuedCommand>,
+    /// Input held back for an operation.
+    hold: LoopHold,
     /// For a shared sculpture: channels for the answers of local commands still in transit.
     waiting: VecDeque<AnswerSender>,
     /// Requests of hands to workers, sent once the state that they refer to is published.
@@ -233,7 +237,8 @@ impl Ticking {
             senders: Vec::with_capacity(COMMANDS_PER_TICK),
             late: None,
             answers: Vec::with_capacity(COMMANDS_PER_TICK),
-            held: VecDeque::with_capacity(COMMANDS_PER_TICK),
+            held: VecDeque::with_capacity(COMMANDS),
+            hold: LoopHold::default(),
             asked: Vec::new(),
             waiting: VecDeque::new(),
             figures: TickStatistics::default(),
@@ -255,18 +260,20 @@ impl Ticking {
                 now.figures.ticks += slept;
             }
             pacer.wait(&self.clock, &sleeper);
+            now.hold.end(self.clock.now_us(), self.is_stopped());
             now.samples.clear();
-            now.samples.append(&mut now.later);
-            let room = self.drain_per_tick.saturating_sub(now.samples.len());
-            self.receiver.drain(room, &mut now.samples);
-            in_order_of_time(&mut now.samples);
+            if now.hold.now().is_none() {
+                now.samples.append(&mut now.later);
+                let room = self.drain_per_tick.saturating_sub(now.samples.len());
+                self.receiver.drain(room, &mut now.samples);
+                in_order_of_time(&mut now.samples);
+            }
             // A command that needs the surface would finish the whole pending edit within this
             // tick.
             let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
             let mut begins = false;
             for _ in 0..COMMANDS_PER_TICK {
-                let next = now.held.pop_front().or_else(|| self.inbox.try_recv().ok());
-                let Some(mut queued) = next else { break };
+                let Some(mut queued) = now.next_command(&self.inbox) else { break };
                 if now.puts_off(&mut queued, self.receiver.waiting() > 0) {
                     now.held.push_front(queued);
                     break;
@@ -278,6 +285,22 @@ impl Ticking {
                 if edits && queued.command.needs_surface() {
                     now.held.push_front(queued);
                     break;
+                }
+                if let Some(hold) = queued.hold.take()
+                    && matches!(queued.command, Command::LiftAll)
+                {
+                    // What others at a shared sculpture do is not held back.
+                    let refused = match self.shared.is_some() {
+                        true => Some(SceneError::NotShared),
+                        false if now.hold.begin(hold, self.clock.now_us()) => None,
+                        false => Some(SceneError::Busy),
+                    };
+                    if let Some(refused) = refused {
+                        now.answer(queued.answer.take(), tick, Err(refused));
+                        continue;
+                    }
+                    // These are stepped after the hold.
+                    now.later.append(&mut now.samples);
                 }
                 begins |= self.shared.is_none() && queued.command.begins_surface_edit();
                 edits |= begins;
@@ -318,6 +341,7 @@ impl Ticking {
             }
             let mut shown = published_figures(&now.figures, &self.receiver, now.stepped);
             shown.garbage_overflows = self.garbage.overflowed();
+            (shown.input_holds, shown.longest_hold_us) = (now.hold.count, now.hold.longest_us);
             (shown.newest_us, shown.newest_tick, shown.input_to_snapshot_ms) = now.newest;
             let mut state = Published::of(&mut self.world, shown);
             if let Some(shared) = &mut self.shared {
@@ -359,6 +383,7 @@ impl Ticking {
         let report = self.world.report();
         let waits = now.late.is_some() || !now.answers.is_empty();
         let waits = waits || !now.held.is_empty() || !now.later.is_empty();
+        let waits = waits || now.hold.now().is_some();
         self.shared.is_some()
             || matches!(self.clock, Clock::Manual(_))
             || waits
@@ -477,6 +502,21 @@ impl Ticking {
 }
 
 impl TickBuffers {
+    /// Takes the next command. During a hold that is the holder's next one; others wait.
+    fn next_command(&mut self, inbox: &cc::Receiver<QueuedCommand>) -> Option<QueuedCommand> {
+        let Some(hold) = self.hold.now() else {
+            return self.held.pop_front().or_else(|| inbox.try_recv().ok());
+        };
+        while self.held.len() < COMMANDS {
+            let queued = inbox.try_recv().ok()?;
+            if queued.hold.as_ref().is_some_and(|h| h.is(hold)) {
+                return Some(queued);
+            }
+            self.held.push_back(queued);
+        }
+        None
+    }
+
     /// Returns true if samples older than the command are still to be stepped: then this tick
     /// steps only those. `more`: the channel holds samples that did not fit this tick.
     fn puts_off(&mut self, queued: &mut QueuedCommand, more: bool) -> bool {

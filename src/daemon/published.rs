@@ -101,6 +101,10 @@ pub struct PublishedFigures {
     pub topology_dropped: u64,
     /// Number of times that the garbage queue was full and the overflow queue was used.
     pub garbage_overflows: u64,
+    /// Number of times that input was held back for an operation, and the longest such time in
+    /// microseconds.
+    pub input_holds: u64,
+    pub longest_hold_us: u64,
     pub tick_ms: Percentiles,
     pub losses: Losses,
     /// Duration of the newest tick, ms.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use crate::carry_over::OldPlace;
-use crate::operations::{Computed, OperationError};
-use crate::remesh_job::in_place;
+use crate::operations::basis::{Basis, Placing};
+use crate::operations::{Computed, OperationError, in_place};
 use crate::{Published, carry_over, polygons};
 use sculptd_clay::{Level, Levels};
 use sculptd_geometry::distance::DistanceSolid;
@@ -125,8 +125,9 @@ pub fn quads(
         without_detail,
         warnings: done.warnings,
     };
-    let queued = in_place(Arc::new(new), level.masks, levels, job)?;
-    Ok(Computed::of_clay(now, queued, made))
+    let queued = in_place(Arc::new(new), level.masks, levels.map(Arc::new), job)?;
+    let basis = Basis::of_active(now, Placing::Nearest);
+    Ok(Computed::of_clay(now, queued, made).following(basis))
 }
 
 /// The normal of each vertex, weighted by area; not of length 1.

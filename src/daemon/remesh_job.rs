@@ -1,16 +1,13 @@
-//! Voxel remeshing of the object in the caller's thread: one closed surface of even triangles. If
-//! the object changes meanwhile, it is computed again, so that no stroke is lost.
+//! Voxel remeshing of the object in the caller's thread: one closed surface of even triangles. It
+//! follows strokes made meanwhile, so that none is lost.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::command_queue::QueuedCommand;
-use crate::operations::{Computed, OperationError};
+use crate::operations::basis::{Basis, Placing};
+use crate::operations::{Computed, OperationError, in_place};
 use crate::{Published, carry_over};
-use sculptd_clay::{Clay, Levels};
-use sculptd_engine::command::{Command, NewClay};
-use sculptd_engine::payload::Payload;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::job::Job;
@@ -90,24 +87,6 @@ pub fn remeshed(
         lost,
     };
     let queued = in_place(Arc::new(new), masks, None, job)?;
-    Ok(Computed::of_clay(now, queued, found))
-}
-
-/// Returns the command that replaces the object's triangles, with masks and levels. The pages are
-/// built here.
-pub fn in_place(
-    new: Arc<TriMesh>,
-    masks: Option<Vec<f32>>,
-    levels: Option<Levels>,
-    job: &Job,
-) -> Result<QueuedCommand, OperationError> {
-    let built = Clay::build_masked(&new, masks.as_deref().unwrap_or(&[]), job);
-    let built = built.map_err(|e| OperationError::Build(e.to_string()))?;
-    let mut clay = NewClay::new(new, true);
-    clay.levels = levels.map(Arc::new);
-    let command = match masks {
-        Some(masks) => Command::ReplaceMasked(clay, Arc::new(masks)),
-        None => Command::Replace(clay),
-    };
-    Ok(QueuedCommand::with_payload(command, Payload::Clay(Box::new(built))))
+    let basis = Basis::of_active(now, Placing::Nearest);
+    Ok(Computed::of_clay(now, queued, found).following(basis))
 }

@@ -140,7 +140,8 @@ fn operand(
     Ok((object, clay, as_operand(object, clay)))
 }
 
-fn as_operand(object: &ObjectView, clay: &Snapshot) -> Operand {
+/// Returns what an [`Exchange`] says of an object.
+pub fn as_operand(object: &ObjectView, clay: &Snapshot) -> Operand {
     let transform = object.settings.transform;
     Operand { id: object.id, clay: clay.object_id(), revision: clay.revision(), transform }
 }

@@ -50,6 +50,8 @@ pub fn published_figures(
         losses: Losses { motion: count.lost_motion, transition: count.lost_transition },
         last_tick_ms: last_tick_ns as f64 / 1e6,
         garbage_overflows: 0,
+        input_holds: 0,
+        longest_hold_us: 0,
         newest_us: 0,
         newest_tick: 0,
         input_to_snapshot_ms: 0.0,

@@ -19,7 +19,7 @@ use crate::payload::PayloadId;
 use crate::scene::{ObjectId, ObjectSettings, SceneCommand};
 use crate::stroke::CurveAction;
 use sculptd_clay::brush::{BrushSettings, MaskAction, Picture};
-use sculptd_clay::{Cut, Levels, ObjectState};
+use sculptd_clay::{Cut, Levels, ObjectState, VertexState};
 use sculptd_geometry::TriMesh;
 
 /// Something that was asked of the world.
@@ -82,6 +82,18 @@ pub enum Command {
     /// A sculpture that several people had shared goes on with one: the view and the brush are
     /// those of the first of them, and every device is that person's.
     OnePerson,
+    /// Another command that puts new objects or new clay in place, and their vertices that differ
+    /// from the triangles there: strokes that were made while these were computed.
+    Rebased(Box<Rebased>),
+}
+
+/// A command that puts new clay in place, and what of the vertices differs from its triangles.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Rebased {
+    /// Wrapped command: a [`Command::OfClay`] or a [`Command::Scene`].
+    pub command: Command,
+    /// For each new clay, in the order of the command.
+    pub vertices: Arc<Vec<Vec<VertexState>>>,
 }
 
 /// A command, and whose it is.
@@ -100,7 +112,7 @@ pub struct OfClay {
     pub clay: u32,
     /// The revision that it must still have; `None`: whatever it has.
     pub revision: Option<u64>,
-    /// Wrapped command; never a [`Command::OfClay`].
+    /// Wrapped command; never a [`Command::OfClay`] or a [`Command::Rebased`].
     pub command: Command,
 }
 
@@ -153,6 +165,7 @@ impl Command {
             | Command::MaskRegion(_)
             | Command::ReplaceMasked(..)
             | Command::OfClay(_)
+            | Command::Rebased(_)
             | Command::JumpScene(_) => true,
             Command::Scene(scene) => scene.owns_memory(),
             Command::OfPerson(of) => of.command.owns_memory(),
@@ -179,6 +192,7 @@ impl Command {
             Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
             Command::Begin(beginning) => Some(&mut beginning.clay),
             Command::OfPerson(of) => of.command.new_clay_mut(),
+            Command::Rebased(rebased) => rebased.command.new_clay_mut(),
             Command::OfClay(of) => match &mut of.command {
                 Command::Replace(new) | Command::ReplaceMasked(new, _) => Some(new),
                 _ => None,

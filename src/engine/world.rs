@@ -40,17 +40,17 @@ pub use self::scene_steps::SceneResult;
 use self::stroke_context::{Stroke, StrokeContext, goes_on_by_time};
 use crate::answer::{Answer, CommandResult};
 use crate::camera::Camera;
-use crate::command::{Carving, Command, NewClay};
+use crate::command::{Carving, Command};
 use crate::desktop_layout::DesktopLayout;
 use crate::hand::{HandSettings, HandTools, HeldObject, MenuItem};
 use crate::layer_work::LayerWork;
-use crate::payload::{Payload, PayloadStore};
+use crate::payload::PayloadStore;
 use crate::scene::{ObjectId, Scene, SceneError, Timeline};
 use crate::stroke::{CurveAction, PenTrack};
 use crate::surface_edit::SurfaceWork;
 use crate::topology_work::TopologyWork;
 use sculptd_clay::brush::{BrushSettings, Grip, Measure, Method, Scratch};
-use sculptd_clay::{Author, Clay, Garbage, GarbageSink, PageSupply, Workers};
+use sculptd_clay::{Author, Clay, Garbage, GarbageSink, PageSupply, VertexState, Workers};
 use sculptd_devices::{Body, DeviceId, Hands, Sample};
 
 /// Devices that may sculpt at once. A device beyond them is heard but does not sculpt;
@@ -146,6 +146,8 @@ pub struct World {
     /// Gives pages that dynamic topology needs.
     pages: PageSupply,
     payloads: PayloadStore,
+    /// Of a [`Command::Rebased`] that is carried out.
+    rebased: Option<Arc<Vec<Vec<VertexState>>>>,
     /// Results of the commands of this tick, each at its command's index.
     answers: Vec<CommandResult>,
     late_answer: Option<CommandResult>,
@@ -207,6 +209,7 @@ impl World {
             garbage: GarbageSink::default(),
             pages: PageSupply::default(),
             payloads: PayloadStore::new(),
+            rebased: None,
             answers: Vec::with_capacity(PayloadStore::CAPACITY),
             late_answer: None,
             lineages: 0,
@@ -298,6 +301,7 @@ impl World {
             Command::Jump(jump) => return self.jump(jump),
             Command::Scene(scene) => return self.apply_scene(scene),
             Command::OfClay(of) => return self.apply_of_clay(of),
+            Command::Rebased(rebased) => return self.apply_rebased(rebased),
             Command::OfPerson(of) => return self.apply_of_person(of),
             Command::OnePerson => self.forget_people(),
             Command::JumpScene(jump) => return self.jump_scene(jump),
@@ -352,16 +356,6 @@ impl World {
     /// Discards the curves that pens have laid. False: there were none.
     fn put_away(&mut self) -> bool {
         self.own_pens().fold(false, |any, s| s.track.cancel() | any)
-    }
-
-    /// The clay of a new object: the payload where there is one, else built here.
-    fn built(&mut self, new: &NewClay, masks: &[f32]) -> Option<Clay> {
-        match new.built.and_then(|id| self.payloads.take(id)) {
-            Some(Payload::Clay(clay)) => return Some(*clay),
-            Some(other) => self.garbage.discard_owned(other),
-            None => {}
-        }
-        Clay::build_masked(&new.plain, masks, &Default::default()).ok()
     }
 
     fn cut(&mut self, carving: &Carving) -> CommandResult {

@@ -17,7 +17,11 @@ pub fn refused_command(command: &Command) -> Option<&'static str> {
         Command::Cut(_) => Some("a cut is computed for one replica; share the whole object"),
         Command::OfPerson(_) => Some("whose a command is, the host says"),
         Command::OfClay(of) => match &of.command {
-            Command::OfClay(_) => Some("it is nested"),
+            Command::OfClay(_) | Command::Rebased(_) => Some("it is nested"),
+            other => refused_command(other),
+        },
+        Command::Rebased(rebased) => match &rebased.command {
+            Command::Rebased(_) => Some("it is nested"),
             other => refused_command(other),
         },
         _ => None,

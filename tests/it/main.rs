@@ -35,6 +35,7 @@ mod io_files;
 mod kiosk;
 #[cfg(unix)]
 mod kiosk_kills;
+mod meanwhile;
 mod mesh_craft;
 #[cfg(unix)]
 mod mutations;

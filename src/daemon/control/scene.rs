@@ -236,8 +236,7 @@ pub(super) fn combine(
             layers_baked: operands().map(layers).sum(),
             sets_dropped: operands().map(|clay| clay.face_set_count()).sum(),
         };
-        let (command, payload) = combined.command();
-        Ok(Computed::of_scene(command, Some(payload), made))
+        Ok(Computed::of_combined(shown, combined, made))
     })?;
     let seconds = (clock.now_us() - begun) as f64 * 1e-6;
     Ok(CombineReply { id: object_of(done.answer), seconds, ..done.made })

@@ -3,7 +3,7 @@
 
 use super::{HistoryEvent, World};
 use crate::answer::{Answer, CommandResult};
-use crate::command::{Command, JumpObject, NewClay, OfClay, SceneJump};
+use crate::command::{Command, JumpObject, NewClay, OfClay, Rebased, SceneJump};
 use crate::hand::ReachBox;
 use crate::payload::{Payload, PayloadId};
 use crate::scene::{
@@ -251,8 +251,15 @@ impl World {
         let Some(first) = exchange.add.first() else { return Err(SceneError::Build) };
         self.room(exchange.add.len())?;
         let mut clays = self.take_clays(first.built).into_iter();
-        let made: Result<Vec<Object>, SceneError> =
-            exchange.add.iter().map(|new| self.new_object(new, clays.next())).collect();
+        let made: Result<Vec<Object>, SceneError> = exchange
+            .add
+            .iter()
+            .enumerate()
+            .map(|(k, new)| {
+                let built = clays.next().or_else(|| self.rebased_clay(k, new));
+                self.new_object(new, built)
+            })
+            .collect();
         let mut made = made?;
         if let (Some(live), Some(first)) = (live, made.first_mut()) {
             let result = first.clay.object_id();
@@ -281,6 +288,14 @@ impl World {
         }
         self.push(SceneStep::Group(steps));
         Ok(ids[0])
+    }
+
+    /// The clay of a new object with its vertices of a [`Command::Rebased`], where that is carried
+    /// out without the clay.
+    fn rebased_clay(&self, k: usize, new: &NewObject) -> Option<Clay> {
+        let states = self.rebased.as_ref()?.get(k)?;
+        let ObjectSource::Mesh(plain) = &new.source else { return None };
+        Some(Clay::build(plain, &Default::default()).ok()?.with_vertices(states))
     }
 
     pub(super) fn new_object(
@@ -411,13 +426,25 @@ impl World {
 
     /// Another command, where the clay that it was computed for is the active one.
     pub(super) fn apply_of_clay(&mut self, of: &OfClay) -> CommandResult {
-        if matches!(of.command, Command::OfClay(_)) {
+        if matches!(of.command, Command::OfClay(_) | Command::Rebased(_)) {
             return Err(SceneError::Value("a command of one clay"));
         }
         let now = &self.scene.active().clay;
         let fits = now.object_id() == of.clay
             && of.revision.is_none_or(|r| r == now.revision() && !now.is_in_step());
         if fits { self.apply_command(&of.command) } else { Err(SceneError::Stale) }
+    }
+
+    /// Another command, whose new clay has other vertices than its triangles.
+    pub(super) fn apply_rebased(&mut self, rebased: &Rebased) -> CommandResult {
+        if !matches!(rebased.command, Command::OfClay(_) | Command::Scene(_)) {
+            return Err(SceneError::Value("a command of one clay or of the scene"));
+        }
+        self.rebased = Some(rebased.vertices.clone());
+        let done = self.apply_command(&rebased.command);
+        // The command keeps the list.
+        self.rebased = None;
+        done
     }
 
     /// Other clay takes the place of the active object's: a Boolean's result, or a file.
@@ -460,6 +487,20 @@ impl World {
         }
         self.note(HistoryEvent::Replace);
         Ok(Answer::Done)
+    }
+
+    /// The clay of a new object: the payload where there is one, else built here.
+    pub(super) fn built(&mut self, new: &NewClay, masks: &[f32]) -> Option<Clay> {
+        match new.built.and_then(|id| self.payloads.take(id)) {
+            Some(Payload::Clay(clay)) => return Some(*clay),
+            Some(other) => self.garbage.discard_owned(other),
+            None => {}
+        }
+        let clay = Clay::build_masked(&new.plain, masks, &Default::default()).ok()?;
+        Some(match self.rebased.as_ref().and_then(|all| all.first()) {
+            Some(states) => clay.with_vertices(states),
+            None => clay,
+        })
     }
 
     /// The scene as it was at another node.

@@ -196,7 +196,9 @@ impl World {
     /// command. A payload that the command cannot use, or for which there is no room, goes to the
     /// garbage sink; the world then builds what the command needs, or ignores a jump.
     pub fn deliver(&mut self, command: &mut Command, payload: Payload) {
-        if let Command::Jump(jump) = command {
+        if let Command::Rebased(rebased) = command {
+            self.deliver(&mut rebased.command, payload);
+        } else if let Command::Jump(jump) = command {
             self.deliver_for_jump(jump, payload);
         } else if let Command::JumpScene(jump) = command {
             self.deliver_for_scene_jump(jump, payload);

@@ -327,8 +327,7 @@ impl Tasks {
         let Pairing { operation, live, all, .. } = pairing;
         let asked = SceneBoolean { live, all, ..SceneBoolean::new(operation) };
         let compute = move |now: &Published, job: &Job| {
-            let (command, built) = scene_jobs::boolean(now, ids, asked, job)?.command();
-            Ok(Computed::of_scene(command, Some(built), ()))
+            Ok(Computed::of_combined(now, scene_jobs::boolean(now, ids, asked, job)?, ()))
         };
         let done = move |_| tr!("task-done", operation = operation_title(operation));
         self.operate("sculptd-boolean", (shown, commands), Arc::default(), compute, done);
@@ -337,8 +336,7 @@ impl Tasks {
     /// A mirrored twin of an object, in a plane through the origin of the world.
     pub fn mirror(&self, id: ObjectId, axis: usize, to: Loop) {
         let compute = move |now: &Published, job: &Job| {
-            let (command, built) = scene_jobs::mirror(now, id, axis, job)?.command();
-            Ok(Computed::of_scene(command, Some(built), ()))
+            Ok(Computed::of_combined(now, scene_jobs::mirror(now, id, axis, job)?, ()))
         };
         self.operate("sculptd-boolean", to, Arc::default(), compute, |_| tr!("task-mirrored"));
     }
