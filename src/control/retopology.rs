@@ -98,7 +98,7 @@ pub struct DecimateParams {
 }
 
 /// Reply of `decimate`. Volumes are in the mesh's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DecimateReply {
     /// Vertices of the new mesh.
@@ -119,4 +119,7 @@ pub struct DecimateReply {
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     pub layers_baked: u64,
+    /// What must be known of the figures, one sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }

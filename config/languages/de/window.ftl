@@ -1199,6 +1199,7 @@ task-remeshed = Remesh: { $count } Dreiecke, Voxel von { $voxel }, Volumen { $ch
 task-remesh-lost = Teile, die dünner als ein Voxel sind, gingen verloren, zum Beispiel bei { $x }, { $y }, { $z }: rückgängig machen und einen kleineren Voxel wählen
 task-quads = { $quads } Vierecke und { $triangles } Dreiecke; Durchdringungen: { $crossings }
 task-decimated = Aus { $before } Dreiecken wurden { $now }; neue Durchdringungen: { $crossings }
+task-followed = Striche von unterwegs sind darin; die Zahlen sind von vorher.
 task-layers-baked = In die neue Fläche eingerechnete Ebenen: { $count }
 task-sets-made = Flächengruppen angelegt
 task-mask-measured = Maskiert: { $count } Eckpunkte

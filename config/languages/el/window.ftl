@@ -1199,6 +1199,7 @@ task-remeshed = Remesh: { $count } τρίγωνα, voxel { $voxel }, όγκος 
 task-remesh-lost = Χάθηκαν μέρη λεπτότερα από ένα voxel, για παράδειγμα στο { $x }, { $y }, { $z }: αναιρέστε και χρησιμοποιήστε μικρότερο voxel
 task-quads = { $quads } τετράπλευρα και { $triangles } τρίγωνα· τομές: { $crossings }
 task-decimated = { $before } τρίγωνα έγιναν { $now }· νέες τομές: { $crossings }
+task-followed = Οι πινελιές που έγιναν στο μεταξύ υπάρχουν· οι αριθμοί είναι από πριν.
 task-layers-baked = Στρώσεις που ενσωματώθηκαν στη νέα επιφάνεια: { $count }
 task-sets-made = Δημιουργήθηκαν ομάδες όψεων
 task-mask-measured = Με μάσκα: { $count } κορυφές

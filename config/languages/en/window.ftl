@@ -1201,6 +1201,7 @@ task-remeshed = Remeshed: { $count } triangles, voxels of { $voxel }, volume { $
 task-remesh-lost = Parts thinner than a voxel are lost, for instance at { $x }, { $y }, { $z }: undo, and use a smaller voxel
 task-quads = { $quads } quads and { $triangles } triangles; crossings: { $crossings }
 task-decimated = { $before } triangles became { $now }; new crossings: { $crossings }
+task-followed = Strokes made meanwhile are in it; the figures are from before them.
 task-layers-baked = Layers baked into the new surface: { $count }
 task-sets-made = Face sets made
 task-mask-measured = Masked: { $count } vertices

@@ -1199,6 +1199,7 @@ task-remeshed = Remallado: { $count } triángulos, vóxeles de { $voxel }, volum
 task-remesh-lost = Se perdieron partes más finas que un vóxel, por ejemplo en { $x }, { $y }, { $z }: deshaz y usa un vóxel más pequeño
 task-quads = { $quads } cuadriláteros y { $triangles } triángulos; intersecciones: { $crossings }
 task-decimated = { $before } triángulos pasaron a { $now }; nuevas intersecciones: { $crossings }
+task-followed = Los trazos hechos mientras tanto están en él; las cifras son de antes.
 task-layers-baked = Capas consolidadas en la nueva superficie: { $count }
 task-sets-made = Conjuntos de caras creados
 task-mask-measured = Enmascarados: { $count } vértices

@@ -1199,6 +1199,7 @@ task-remeshed = Remaillé : { $count } triangles, voxels de { $voxel }, volume {
 task-remesh-lost = Des parties plus fines qu’un voxel sont perdues, par exemple en { $x }, { $y }, { $z } : annulez et prenez un voxel plus petit
 task-quads = { $quads } quadrilatères et { $triangles } triangles ; intersections : { $crossings }
 task-decimated = { $before } triangles sont devenus { $now } ; nouvelles intersections : { $crossings }
+task-followed = Les traits faits entre-temps y sont ; les chiffres datent d'avant.
 task-layers-baked = Calques fusionnés dans la nouvelle surface : { $count }
 task-sets-made = Groupes de faces créés
 task-mask-measured = Masqués : { $count } sommets

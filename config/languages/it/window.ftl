@@ -1199,6 +1199,7 @@ task-remeshed = Remesh: { $count } triangoli, voxel di { $voxel }, volume { $cha
 task-remesh-lost = Parti più sottili di un voxel sono andate perse, per esempio in { $x }, { $y }, { $z }: annulla e usa un voxel più piccolo
 task-quads = { $quads } quadrilateri e { $triangles } triangoli; intersezioni: { $crossings }
 task-decimated = { $before } triangoli sono diventati { $now }; nuove intersezioni: { $crossings }
+task-followed = I tratti fatti nel frattempo ci sono; le cifre sono di prima.
 task-layers-baked = Livelli consolidati nella nuova superficie: { $count }
 task-sets-made = Insiemi di facce creati
 task-mask-measured = Mascherati: { $count } vertici

@@ -1192,6 +1192,7 @@ task-remeshed = リメッシュ: 三角形 { $count } 枚、ボクセル { $voxe
 task-remesh-lost = ボクセルより薄い部分が失われました（例: { $x }, { $y }, { $z }）。元に戻して、より小さいボクセルを使ってください
 task-quads = 四角形 { $quads } 枚、三角形 { $triangles } 枚、交差: { $crossings }
 task-decimated = 三角形 { $before } 枚が { $now } 枚に、新しい交差: { $crossings }
+task-followed = 計算中のストロークは反映済みです。数値はその前のものです。
 task-layers-baked = 新しい面に統合したレイヤー: { $count }
 task-sets-made = 面セットを作りました
 task-mask-measured = マスク: { $count } 頂点

@@ -1192,6 +1192,7 @@ task-remeshed = 已重构网格: { $count } 个三角面, 体素 { $voxel }, 体
 task-remesh-lost = 比体素更薄的部分已丢失，例如在 { $x }, { $y }, { $z }：请撤销并使用更小的体素
 task-quads = 四边形 { $quads }, 三角面 { $triangles }; 相交: { $crossings }
 task-decimated = 三角面由 { $before } 减为 { $now }; 新相交: { $crossings }
+task-followed = 期间的笔画已保留；数字为之前的值。
 task-layers-baked = 烘焙到新表面的图层: { $count }
 task-sets-made = 已创建面组
 task-mask-measured = 已遮罩：{ $count } 个顶点

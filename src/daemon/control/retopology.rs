@@ -23,7 +23,8 @@ pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, R
     let begun = clock.now_us();
     let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
     let (layers_baked, sets_dropped) = (layers::count(host), face_sets::count(host));
-    let made = host.operate(&place.job, |now| remeshed(now, &wanted, &place.job))?.made;
+    let done = host.operate(&place.job, |now| remeshed(now, &wanted, &place.job))?;
+    let (note, made) = (done.note(), done.made);
     Ok(RemeshReply {
         layers_baked,
         sets_dropped,
@@ -34,7 +35,7 @@ pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, R
         volume: made.volume[1],
         self_intersections: made.crossings as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
-        warnings: made.lost.iter().map(lost_parts).collect(),
+        warnings: made.lost.iter().map(lost_parts).chain(note).collect(),
     })
 }
 
@@ -78,7 +79,8 @@ pub(super) fn remesh_quads(
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let layers_baked = layers::count(host);
-    let made = host.operate(&place.job, |now| quads(now, &wanted, &place.job))?.made;
+    let done = host.operate(&place.job, |now| quads(now, &wanted, &place.job))?;
+    let (note, made) = (done.note(), done.made);
     Ok(asked::RemeshQuadsReply {
         quads: made.quads as u64,
         other_faces: made.other_faces as u64,
@@ -90,7 +92,7 @@ pub(super) fn remesh_quads(
         without_detail: made.without_detail as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
         layers_baked,
-        warnings: made.warnings,
+        warnings: made.warnings.into_iter().chain(note).collect(),
     })
 }
 
@@ -107,7 +109,8 @@ pub(super) fn decimate(
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let layers_baked = layers::count(host);
-    let made = host.operate(&place.job, |now| decimated(now, &wanted, &place.job))?.made;
+    let done = host.operate(&place.job, |now| decimated(now, &wanted, &place.job))?;
+    let (note, made) = (done.note(), done.made);
     Ok(asked::DecimateReply {
         vertices: made.vertices as u64,
         triangles: made.triangles as u64,
@@ -118,5 +121,6 @@ pub(super) fn decimate(
         repeated: made.repeated as u64,
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
         layers_baked,
+        warnings: note.into_iter().collect(),
     })
 }

@@ -53,6 +53,15 @@ pub struct Installed<T> {
     pub rounds: usize,
 }
 
+impl<T> Installed<T> {
+    /// What people must know of the figures: the strokes that the result followed are not in them.
+    pub fn note(&self) -> Option<String> {
+        let text = "strokes made while it was computed were carried over; the figures are those \
+                    from before them";
+        (self.rounds > 0).then(|| text.to_owned())
+    }
+}
+
 /// The loop, as operations see it.
 #[derive(Debug, Clone, Copy)]
 pub struct Target<'a> {

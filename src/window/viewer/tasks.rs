@@ -263,7 +263,11 @@ impl Tasks {
     ) {
         self.report(name, move || {
             let to = Target { published: &shown, commands: &commands };
-            operations::carry_out(to, &job, |now| compute(now, &job)).map(done)
+            let installed = operations::carry_out(to, &job, |now| compute(now, &job))?;
+            let follows = installed.rounds > 0;
+            let text = done(installed);
+            let told = follows && !text.is_empty();
+            Ok(if told { format!("{text}\n{}", tr!("task-followed")) } else { text })
         });
     }
 

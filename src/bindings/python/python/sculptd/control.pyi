@@ -192,6 +192,8 @@ class DecimateReply(TypedDict):
     volume: float
     # The volume before.
     volume_before: float
+    # What must be known of the figures, one sentence each.
+    warnings: NotRequired[Sequence[str]]
 
 # The name of an event, as subscribe lists it.
 type EventName = Literal['work', 'history', 'brush', 'losses', 'journal']
