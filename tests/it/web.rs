@@ -149,6 +149,12 @@ fn a_guest_sculpts_in_an_own_view_and_a_viewer_does_not() {
         let list = served.daemon.ctl("guests.list", None).expect("an answer");
         list["guests"].as_array().is_some_and(|g| g.len() == 1)
     });
+    // Its last dabs come with its end.
+    until("the stroke has ended", || {
+        let now = hash(&served.daemon);
+        pause(100);
+        hash(&served.daemon) == now
+    });
     let sculpted = hash(&served.daemon);
     served.daemon.ctl("undo", None);
     assert_eq!(hash(&served.daemon), sculpted);
