@@ -2,7 +2,7 @@
 //! thread of whoever asks; the loop installs the result where the objects are still as they were,
 //! and whoever asked hears what the world did. Window, control socket and hands use this alone.
 //!
-//! If somebody sculpts on meanwhile, the result follows: see [`rebase`]. Since a pen that does not
+//! If somebody sculpts on meanwhile, the result follows: see `rebase`. Since a pen that does not
 //! rest is always a little ahead, the loop's input is held for a moment at the end, see
 //! [`crate::input_hold`]. A result that cannot follow is computed again, [`TRIES`] times at most,
 //! then refused with the reason. It never overwrites a newer stroke, and it is never dropped
