@@ -302,7 +302,12 @@ impl Stage {
         if let Some(folder) = std::env::var_os("SCULPTD_SHOTS") {
             let _ = std::fs::copy(&path, PathBuf::from(folder).join(format!("{name}.png")));
         }
-        image::open(&path).expect("a PNG").to_rgba8()
+        let mut picture = image::open(&path).expect("a PNG").to_rgba8();
+        // The figures of the status bar change while nothing else does.
+        let bar = picture.height() - STATUS as u32;
+        let below = picture.enumerate_rows_mut().filter(|(y, _)| *y >= bar);
+        below.flat_map(|(_, row)| row).for_each(|(_, _, p)| *p = image::Rgba([0, 0, 0, 255]));
+        picture
     }
 
     /// The next picture, once it is another than the last one: what was asked for is on the screen,

@@ -22,7 +22,8 @@ pub fn pressed(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState) -> 
         }
         return Vec::new();
     }
-    let typing = ctx.text_edit_focused();
+    // The field of the search has the keyboard from the frame after it was opened.
+    let typing = ctx.text_edit_focused() || ui_state.search.is_some();
     let heard = presses.iter().filter(|p| !typing || p.modifiers.command || p.modifiers.ctrl);
     heard.filter_map(|p| view.keys.pressed(p)).filter(|a| !typing || *a != Action::Redo).collect()
 }

@@ -213,6 +213,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
         |s| key(s, "n"),
         |s| differs(&was, &s.look("course-newcomer-panels-again")) < 1.0,
     );
+    assert_eq!(hash(&c.s), work, "nothing has changed the clay since");
     let session =
         crate::sessions::kept(&c.s).pop().expect("a session is always on").display().to_string();
     c.step(
