@@ -172,7 +172,7 @@ fn a_newcomer_s_hour_with_a_mouse() {
     );
     c.step(
         "half of it is hidden",
-        |s| s.drag((0, -260), (220, 260)),
+        |s| s.drag((0, -220), (220, 260)),
         |s| differs(&all, &s.look("course-newcomer-half")) > 1.0,
     );
     c.step(
