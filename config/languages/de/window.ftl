@@ -934,8 +934,8 @@ status-devices = { $count ->
     [one] { $count } Gerät
    *[other] { $count } Geräte
 }
-status-not-kept = nicht gespeichert
-    .tip = Keine Sitzung bewahrt diese Skulptur: exportieren Sie sie, bevor Sie das Fenster schließen
+status-not-kept = hier nicht gespeichert
+    .tip = Keine Sitzung auf diesem Rechner bewahrt diese Skulptur: exportieren Sie sie, bevor Sie das Fenster schließen
 status-fault = die Sitzung nimmt nichts auf
 status-lost = der Sitzung fehlen { $ticks } Takte
 

@@ -936,8 +936,8 @@ status-devices = { $count ->
     [one] { $count } device
    *[other] { $count } devices
 }
-status-not-kept = not saved
-    .tip = No session keeps this sculpture: export it before you close the window
+status-not-kept = not saved here
+    .tip = No session on this computer keeps this sculpture: export it before you close the window
 status-fault = the session takes nothing
 status-lost = the session lacks { $ticks } ticks
 

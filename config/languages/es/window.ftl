@@ -934,8 +934,8 @@ status-devices = { $count ->
     [one] { $count } dispositivo
    *[other] { $count } dispositivos
 }
-status-not-kept = sin guardar
-    .tip = Ninguna sesión guarda esta escultura: expórtela antes de cerrar la ventana
+status-not-kept = sin guardar aquí
+    .tip = Ninguna sesión de este equipo guarda esta escultura: expórtela antes de cerrar la ventana
 status-fault = la sesión no admite nada
 status-lost = a la sesión le faltan { $ticks } ciclos
 

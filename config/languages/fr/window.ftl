@@ -934,8 +934,8 @@ status-devices = { $count ->
     [one] { $count } appareil
    *[other] { $count } appareils
 }
-status-not-kept = non enregistré
-    .tip = Aucune session ne garde cette sculpture : exportez-la avant de fermer la fenêtre
+status-not-kept = non enregistré ici
+    .tip = Aucune session de cet ordinateur ne garde cette sculpture : exportez-la avant de fermer la fenêtre
 status-fault = la session ne prend plus rien
 status-lost = il manque { $ticks } cycles à la session
 

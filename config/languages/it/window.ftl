@@ -934,8 +934,8 @@ status-devices = { $count ->
     [one] { $count } dispositivo
    *[other] { $count } dispositivi
 }
-status-not-kept = non salvato
-    .tip = Nessuna sessione conserva questa scultura: esportala prima di chiudere la finestra
+status-not-kept = non salvato qui
+    .tip = Nessuna sessione su questo computer conserva questa scultura: esportala prima di chiudere la finestra
 status-fault = la sessione non accetta nulla
 status-lost = alla sessione mancano { $ticks } cicli
 

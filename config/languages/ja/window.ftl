@@ -929,8 +929,8 @@ status-smooths = { $brush }：Shift を押している間は滑らかにしま�
 status-carves = { $brush }：彫ります
 status-times = 周期 { $tick } ms、描画 { $frame } ms
 status-devices = 機器 { $count } 台
-status-not-kept = 保存されていません
-    .tip = この作品を保存するセッションがありません。ウィンドウを閉じる前に書き出してください
+status-not-kept = ここには保存されていません
+    .tip = このコンピューターには作品を保存するセッションがありません。ウィンドウを閉じる前に書き出してください
 status-fault = セッションに書き込めません
 status-lost = セッションに { $ticks } 周期が欠けています
 

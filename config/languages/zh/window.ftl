@@ -929,8 +929,8 @@ status-smooths = { $brush }：按住 Shift 时平滑
 status-carves = { $brush }：雕刻
 status-times = 周期 { $tick } 毫秒，画面 { $frame } 毫秒
 status-devices = { $count } 个设备
-status-not-kept = 未保存
-    .tip = 没有会话保存此作品：请在关闭窗口前导出
+status-not-kept = 未在此保存
+    .tip = 此电脑上没有会话保存此作品：请在关闭窗口前导出
 status-fault = 会话无法写入
 status-lost = 会话缺少 { $ticks } 个周期
 

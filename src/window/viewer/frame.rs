@@ -1,7 +1,5 @@
 //! One frame of the window: the clay, what lies over it, the panels, and what they ask for.
 
-use std::sync::atomic::Ordering::Relaxed;
-
 use super::pointer::Drag;
 use super::renderer::Renderer;
 use super::state::WindowState;
@@ -10,7 +8,6 @@ use crate::panels;
 use crate::panels::state::{KeyMap, SessionView, TabletKeys, UiRequest, View};
 use sculptd_daemon::Published;
 use sculptd_daemon::present_latency::PresentedFrame;
-use sculptd_daemon::session::Health;
 use sculptd_daemon::window_link::WindowStanding;
 use sculptd_engine::camera::Camera;
 
@@ -135,10 +132,9 @@ impl WindowState {
                 .kiosk
                 .is_none()
                 .then(|| TabletKeys { own: wiring.controls.own(), last: wiring.controls.last() }),
-            session: wiring.session.as_deref().map(|path| SessionView {
-                path,
-                fault: wiring.journal.as_ref().and_then(Health::trouble),
-                lost: wiring.journal.as_ref().map_or(0, |health| health.lost.load(Relaxed)),
+            session: wiring.session.as_deref().map(|path| {
+                let (fault, lost) = wiring.session_state();
+                SessionView { path, fault, lost }
             }),
             uploaded: self.uploaded,
             adapter: &self.adapter,

@@ -67,7 +67,10 @@ impl WindowState {
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
             let mut devices = (wiring.devices)();
             devices.extend(self.tablet_lines());
+            // The status bar counts them on every page.
+            changed |= devices.len() != self.devices.len();
             changed |= self.ui_state.tab == Tab::Devices && devices != self.devices;
+            changed |= self.follow_session(wiring);
             changed |= self.ui_state.tab == Tab::Loop && !self.ui_state.hidden;
             (self.devices, self.listed_us) = (devices, now);
             let (own, pictures) = (wiring.presets.own(), wiring.presets.pictures());
@@ -121,6 +124,15 @@ impl WindowState {
         };
         self.ui_state.say(text, true);
         true
+    }
+
+    /// Takes the state of the session's file, so that the status bar never tells an older one while
+    /// nothing else changes.
+    fn follow_session(&mut self, wiring: &Wiring) -> bool {
+        let state = wiring.session_state();
+        let changed = state != self.shown_session;
+        self.shown_session = state;
+        changed
     }
 
     /// The pictures of earlier sculptures, read once.

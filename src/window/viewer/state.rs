@@ -135,6 +135,8 @@ pub(super) struct WindowState {
     pub(super) step_pictures: StepPictures,
     pub(super) version_pictures: VersionPictures,
     pub(super) earlier_pictures: Option<EarlierPictures>,
+    /// State of the session's file that was last seen, see [`Wiring::session_state`].
+    pub(super) shown_session: (Option<String>, u64),
     pub(super) overlay_mesh: Triangles,
     pub(super) overlay_key: OverlayKey,
     /// A turntable under way.
@@ -306,6 +308,7 @@ impl WindowState {
             step_pictures: Default::default(),
             version_pictures: Default::default(),
             earlier_pictures: None,
+            shown_session: (None, 0),
             overlay_mesh: Triangles::default(),
             overlay_key: Default::default(),
             turning: None,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex};
 
 use crate::language::Translations;
@@ -72,6 +73,13 @@ pub struct Wiring {
     pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
     /// Link by which guests join in a browser; `None` if no page is served.
     pub invitation: Option<sculptd_daemon::qr_code::Invitation>,
+}
+
+impl Wiring {
+    /// Returns why the session's file takes nothing now, and the number of ticks that it has lost.
+    pub(super) fn session_state(&self) -> (Option<String>, u64) {
+        self.journal.as_ref().map_or((None, 0), |h| (h.trouble(), h.lost.load(Relaxed)))
+    }
 }
 
 impl std::fmt::Debug for Wiring {
