@@ -44,3 +44,22 @@ pub fn warn_of_fault(fault: Option<String>) {
         eprintln!("sculptd: warning: {fault}");
     }
 }
+
+/// Restarts the program with the arguments of this run. It returns only on failure.
+pub fn begin_again() -> Fail {
+    let failed = |e: std::io::Error| Fail::Check(format!("the program cannot begin anew: {e}"));
+    let program = match std::env::current_exe() {
+        Ok(program) => program,
+        Err(e) => return failed(e),
+    };
+    let mut next = std::process::Command::new(program);
+    next.args(std::env::args_os().skip(1));
+    #[cfg(unix)]
+    return failed(std::os::unix::process::CommandExt::exec(&mut next));
+    // Whoever watches over the installation starts it again where this cannot be done in place.
+    #[cfg(not(unix))]
+    match next.spawn() {
+        Ok(_) => Fail::Check("the program goes on in another process".into()),
+        Err(e) => failed(e),
+    }
+}

@@ -1,8 +1,6 @@
 //! The part of an installation in a fleet, as its settings say (feature `network`).
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use super::Fail;
 use super::log_ring::KeptLines;
@@ -79,8 +77,8 @@ pub fn unix_s() -> u64 {
     now.map_or(0, |d| d.as_secs())
 }
 
-/// Starts the part of a run that has begun. `again` is raised where a new run is to follow it.
-pub fn attend(part: FleetPart, run: &LiveRun, again: &Arc<AtomicBool>) -> Result<(), Fail> {
+/// Starts the part of a run that has begun.
+pub fn attend(part: FleetPart, run: &LiveRun) -> Result<(), Fail> {
     let Some(screen) = &run.kiosk else { return Ok(()) };
     let sight = RunInSight {
         published: run.live.published.clone(),
@@ -88,26 +86,6 @@ pub fn attend(part: FleetPart, run: &LiveRun, again: &Arc<AtomicBool>) -> Result
         adaptors: run.adaptors.clone(),
         window: run.window.clone(),
         stop: run.stop.clone(),
-        again: again.clone(),
     };
     start(part, sight).map(drop).map_err(|e| Fail::Config(format!("the fleet: {e}")))
-}
-
-/// Restarts the program with the arguments of this run. It returns only on failure.
-pub fn begin_again() -> Fail {
-    let failed = |e: std::io::Error| Fail::Check(format!("the program cannot begin anew: {e}"));
-    let program = match std::env::current_exe() {
-        Ok(program) => program,
-        Err(e) => return failed(e),
-    };
-    let mut next = std::process::Command::new(program);
-    next.args(std::env::args_os().skip(1));
-    #[cfg(unix)]
-    return failed(std::os::unix::process::CommandExt::exec(&mut next));
-    // Whoever watches over the installation starts it again where this cannot be done in place.
-    #[cfg(not(unix))]
-    match next.spawn() {
-        Ok(_) => Fail::Check("the program goes on in another process".into()),
-        Err(e) => failed(e),
-    }
 }

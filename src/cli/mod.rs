@@ -30,6 +30,8 @@ pub mod fleet;
 pub mod fleet_part;
 #[cfg(feature = "network")]
 pub mod invite;
+mod kiosk;
+mod kiosk_settings;
 pub mod library;
 mod live;
 #[cfg(feature = "network")]
@@ -48,8 +50,8 @@ pub mod shared;
 pub mod telemetry;
 mod thickness_presets;
 #[cfg(unix)]
-#[cfg(unix)]
 pub mod web_page;
+#[cfg(unix)]
 pub mod window;
 mod window_guard;
 
@@ -101,6 +103,11 @@ pub enum Command {
     Camera {
         #[command(subcommand)]
         command: camera::CameraCommand,
+    },
+    /// Exhibits of an installation: make one, try it, score a work.
+    Kiosk {
+        #[command(subcommand)]
+        command: kiosk::KioskCommand,
     },
     /// A picture of a mesh, without a window.
     #[cfg(feature = "viewer")]
@@ -215,6 +222,7 @@ pub fn run() -> u8 {
         Some(Command::Subdivide(args)) => subdivide::run(&args, cli.json),
         Some(Command::Decimate(args)) => decimate::run(&args, cli.json),
         Some(Command::Camera { command }) => camera::run(&command, cli.json),
+        Some(Command::Kiosk { command }) => kiosk::run(&command, cli.json),
         Some(Command::Devices { command }) => devices::run(&command, cli.json),
         Some(Command::Distance(args)) => distance::run(&args, cli.json),
         Some(Command::Project(args)) => project::run(&args, cli.json),

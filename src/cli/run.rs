@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 
 use super::display::{self, Shown};
 use super::ending::{close_journal, export};
-use super::library;
-use super::live;
 use super::{Fail, Outcome, answer};
+use super::{kiosk_settings, library, live};
 use crate::settings::LANGUAGES;
 use sculptd_camera::camera_thread::CameraChoice;
 use sculptd_clay::brush::BrushKind;
@@ -17,7 +16,7 @@ use sculptd_daemon::Summary;
 use sculptd_daemon::brush_folder::{self, BrushFolder};
 use sculptd_daemon::camera_hands::{self, CameraFeed, CameraStartError};
 use sculptd_daemon::config::{Config, ConfigError, Resolved};
-use sculptd_daemon::kiosk::KioskConfig;
+use sculptd_daemon::kiosk::desk::KioskDesk;
 use sculptd_daemon::live_run::{LiveOptions, LiveRun};
 use sculptd_daemon::simulated_loop::{Feed, Pace, SimulatedLoop, SimulatedOptions, summary};
 use sculptd_daemon::startup;
@@ -30,8 +29,6 @@ use sculptd_devices::recording::{Player, RecordingError};
 use sculptd_devices::{Clock, DeviceId, queue};
 use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
-#[cfg(feature = "network")]
-use sculptd_network::fleet::installation_thread::FleetPart;
 
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct RunArgs {
@@ -61,6 +58,10 @@ pub struct RunArgs {
     /// Settings of the installation, instead of the built-in config/kiosk.toml.
     #[arg(long, value_name = "FILE", requires = "kiosk")]
     pub kiosk_config: Option<PathBuf>,
+    /// An exhibit for visitors, a folder or a .zip file, beside those of the settings. May be
+    /// repeated.
+    #[arg(long, value_name = "PACK", requires = "kiosk")]
+    pub exhibit: Vec<PathBuf>,
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
@@ -181,9 +182,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     let players = open_players(args, &config, &catalogue)?;
     #[cfg(not(feature = "network"))]
-    let kiosk = kiosk(args)?;
+    let kiosk = kiosk_settings::read(args)?;
     #[cfg(feature = "network")]
-    let (kiosk, fleet) = kiosk(args)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
+    let (kiosk, fleet) =
+        kiosk_settings::read(args)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
     #[cfg(unix)]
     let web = args.web.options(kiosk.as_ref()).map_err(Fail::Config)?;
     #[cfg(unix)]
@@ -271,22 +273,24 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             open_next: open_next.clone(),
         };
         let (link, args) = (options.window.clone(), args.clone());
-        #[cfg(feature = "network")]
-        let again = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-        #[cfg(feature = "network")]
-        let (begun_run, begins_again) = {
-            let raised = again.clone();
-            let attend = move |run: &LiveRun| {
-                fleet.map_or(Ok(()), |part| super::fleet_part::attend(part, run, &raised))
-            };
-            (attend, again)
+        let desk = std::sync::Arc::new(std::sync::OnceLock::new());
+        let begun_run = {
+            let desk = desk.clone();
+            move |run: &LiveRun| {
+                if let Some(screen) = &run.kiosk {
+                    desk.get_or_init(|| screen.desk.clone());
+                }
+                #[cfg(feature = "network")]
+                if let Some(part) = fleet {
+                    return super::fleet_part::attend(part, run);
+                }
+                Ok(())
+            }
         };
-        #[cfg(not(feature = "network"))]
-        let begun_run = |_: &LiveRun| Ok(());
         let then = move |summary: Summary| {
-            #[cfg(feature = "network")]
-            if begins_again.load(std::sync::atomic::Ordering::Relaxed) {
-                return Err(super::fleet_part::begin_again());
+            let desk: Option<&std::sync::Arc<KioskDesk>> = desk.get();
+            if desk.is_some_and(|desk| desk.again.load(std::sync::atomic::Ordering::Relaxed)) {
+                return Err(super::ending::begin_again());
             }
             #[cfg(unix)]
             if let Some((screen, session)) = link.wanted().zip(link.session()) {
@@ -385,46 +389,6 @@ fn next_arguments(session: &Path, args: &RunArgs, json: bool) -> Vec<OsString> {
         all.push(format!("--telemetry={url}").into());
     }
     all
-}
-
-/// The installation's settings, if it is one; what cannot be shown to visitors is said before any
-/// come.
-#[cfg(not(feature = "network"))]
-fn kiosk(args: &RunArgs) -> Result<Option<KioskConfig>, Fail> {
-    if !args.kiosk {
-        return Ok(None);
-    }
-    let config = match &args.kiosk_config {
-        Some(path) => KioskConfig::load(path).map_err(Fail::Config)?,
-        None => KioskConfig::default(),
-    };
-    if !config.fleet.name.is_empty() {
-        let text = "[fleet]: this program was built without the feature `network`";
-        return Err(Fail::Config(text.into()));
-    }
-    can_be_shown(&config)?;
-    Ok(Some(config))
-}
-
-/// The same, with its part in a fleet.
-#[cfg(feature = "network")]
-fn kiosk(args: &RunArgs) -> Result<Option<(KioskConfig, Option<FleetPart>)>, Fail> {
-    let both = match (&args.kiosk_config, args.kiosk) {
-        (_, false) => return Ok(None),
-        (None, true) => (KioskConfig::default(), None),
-        (Some(path), true) => {
-            let (config, files, trial) = super::fleet_part::settings(path)?;
-            let part = super::fleet_part::part(&config, (files, trial))?;
-            (config, part)
-        }
-    };
-    can_be_shown(&both.0)?;
-    Ok(Some(both))
-}
-
-fn can_be_shown(config: &KioskConfig) -> Result<(), Fail> {
-    config.words(LANGUAGES).map_err(Fail::Config)?;
-    display::check_screen(&config.screen).map_err(Fail::Config)
 }
 
 pub fn load_config(extra: Option<&Path>) -> Result<Config, Fail> {

@@ -31,6 +31,7 @@ pub mod kiosk;
 pub mod live;
 pub mod live_booleans;
 pub mod live_run;
+pub mod local_time;
 pub mod mask_jobs;
 #[cfg(unix)]
 pub mod metric_table;

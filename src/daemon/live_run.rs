@@ -15,9 +15,11 @@ use crate::brush_folder::BrushFolder;
 use crate::camera_hands::{self, CameraStartError};
 use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
+use crate::kiosk::desk::Screen;
 use crate::kiosk::settings::LanguageTexts;
+use crate::kiosk::start::{Start, StartForm};
 use crate::kiosk::unrecorded::WithoutFilms;
-use crate::kiosk::{KioskConfig, keeper, recovery};
+use crate::kiosk::{KioskConfig, exhibit, keeper, recovery};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
 #[cfg(unix)]
@@ -44,6 +46,7 @@ use sculptd_devices::recording::Player;
 use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
+use sculptd_geometry::job::Job;
 
 /// Options of a live run.
 #[derive(Debug, Default)]
@@ -120,7 +123,7 @@ pub struct LiveRun {
     /// State of the session's file, if one is kept.
     pub health: Option<Health>,
     /// The screen of an installation, which replaces the panels.
-    pub kiosk: Option<keeper::Screen>,
+    pub kiosk: Option<Screen>,
     /// The user's bindings of tablet controls.
     pub controls: TabletControls,
     /// The page by which guests join; `None` if it is not served.
@@ -191,16 +194,9 @@ impl LiveRun {
         let models = ModelTables::new(&catalogue, &config.devices);
         let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
         let mut notices = Vec::new();
-        // Every visitor finds what the first one found.
-        let plain = || begun.started_with.clone().unwrap_or_else(|| begun.world.mesh().to_tri());
-        let mut first = options.kiosk.is_some().then(|| keeper::Start {
-            plain: Arc::new(plain()),
-            camera: config.camera.camera(),
-            brush: first_brush(&options, *begun.world.brush()),
-            film: Arc::default(),
-            interrupted: false,
-            put_away: None,
-        });
+        let first =
+            options.kiosk.as_ref().map(|kiosk| first_state(kiosk, &options, config, &begun));
+        let mut first = first.transpose().map_err(LiveRunError::Kiosk)?;
         let (begun, visits) = match (&options.visits, &mut first) {
             (Some(folder), Some(first)) => {
                 recovery::begin(folder, first, begun, config, &mut notices)
@@ -512,21 +508,56 @@ fn serve_page(
 /// Starts the keeper of an installation.
 fn screen(
     (kiosk, languages): (KioskConfig, LanguageTexts<'_>),
-    first: keeper::Start,
+    first: Start,
     live: &Live,
     factory: &SenderFactory,
     clock: &Clock,
     stop: &Arc<AtomicBool>,
-) -> Result<(Option<keeper::Screen>, Option<JoinHandle<()>>), LiveRunError> {
+) -> Result<(Option<Screen>, Option<JoinHandle<()>>), LiveRunError> {
     let words = kiosk.every_language(languages).map_err(LiveRunError::Kiosk)?;
     let (staff, show) = (!kiosk.staff_pin.is_empty(), kiosk.screen.clone());
     let (published, commands) = (live.published.clone(), live.commands.clone());
     let (clock, stop) = (clock.clone(), stop.clone());
+    let dim = kiosk.hours.dim;
+    let exhibits = first.forms.iter().filter_map(|form| form.exhibit.clone()).collect();
     let settings = (kiosk, &words[0]);
     let keeper = keeper::start(settings, first, published, commands, factory, clock, stop)
         .map_err(LiveRunError::Kiosk)?;
-    let screen = keeper::Screen { desk: keeper.desk, words, staff, show, watch: None };
+    let desk = keeper.desk;
+    let screen = Screen { desk, words, staff, show, watch: None, exhibits, dim };
     Ok((Some(screen), Some(keeper.thread)))
+}
+
+/// Returns the initial state for visitors: the forms of the exhibits, or what the first visitor
+/// found.
+fn first_state(
+    kiosk: &KioskConfig,
+    options: &LiveOptions,
+    config: &Config,
+    begun: &Begun,
+) -> Result<Start, String> {
+    let brush = first_brush(options, *begun.world.brush());
+    let camera = config.camera.camera();
+    let plain = || begun.started_with.clone().unwrap_or_else(|| begun.world.mesh().to_tri());
+    if kiosk.exhibits.is_empty() {
+        return Ok(Start::free(Arc::new(plain()), camera, brush));
+    }
+    let mut forms = Vec::new();
+    for place in &kiosk.exhibits {
+        let exhibit = exhibit::pack::open(place, &Job::default())?;
+        let (found, most) = (exhibit.start.triangles.len(), kiosk.max_triangles);
+        if found > most {
+            let place = place.display();
+            return Err(format!("{place}: {found} triangles, at most {most} (max_triangles)"));
+        }
+        forms.push(StartForm {
+            plain: exhibit.start.clone(),
+            brush: exhibit.first_brush(&options.presets, &brush),
+            exhibit: Some(Arc::new(exhibit)),
+        });
+    }
+    let (plain, free) = (forms[0].plain.clone(), forms[0].brush);
+    Ok(Start { forms, ..Start::free(plain, camera, free) })
 }
 
 /// Returns the brush that visitors start with: that of the installation's settings, or the world's.

@@ -18,6 +18,7 @@
 //! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
 //! | quads that follow the shape | [`quads`] |
 //! | a thicker, thinner or hollow solid | [`offset`] |
+//! | the surface of a function of space | [`implicit`] |
 //! | rays and nearest points | [`bvh`] |
 //!
 //! ```
@@ -53,6 +54,7 @@ mod fans;
 pub mod flat;
 pub mod flat_region;
 pub mod grid;
+pub mod implicit;
 pub mod io;
 pub mod job;
 pub mod march;

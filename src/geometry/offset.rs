@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use super::bvh::nearest_on_triangle;
 use super::distance::DistanceSolid;
 use super::grid::DistanceGrid;
+use super::implicit::onto_zero;
 use super::remesh::dual::extract;
-use super::remesh::{LostParts, MARGIN, RemeshError, layout, lost_parts};
+use super::remesh::{LostParts, MARGIN, RemeshError, layout, lost_parts, middle};
 use super::unfold::{even, settle_all};
 use crate::TriMesh;
 use crate::disjoint_sets::DisjointSets;
@@ -17,10 +18,6 @@ use crate::job::Job;
 
 /// Newton steps that put a vertex at its distance from the old surface.
 const STEPS: usize = 4;
-
-fn middle(points: &[DVec3]) -> DVec3 {
-    points.iter().sum::<DVec3>() / points.len() as f64
-}
 
 /// A vertex settles within this share of the spacing. Along a ridge the way to the wanted distance
 /// leads across it, and what went further would fold over its neighbours; left where it is, the
@@ -373,19 +370,7 @@ pub fn smooth_union(
     if triangles.is_empty() {
         return Err(RemeshError::Empty);
     }
-    // Onto the field's zero, along its slope.
-    positions.par_iter_mut().try_for_each(|p| {
-        job.check()?;
-        let q = p.as_dvec3();
-        let e = h * 0.05;
-        let slope =
-            DVec3::from_array(DVec3::AXES.map(|x| field(q + x * e) - field(q - x * e))) / (2.0 * e);
-        let steep = slope.length_squared();
-        if steep > 0.25 {
-            *p = (q - (slope * (field(q) / steep)).clamp_length_max(h * 0.5)).as_vec3();
-        }
-        Ok::<_, RemeshError>(())
-    })?;
+    onto_zero(&mut positions, &field, h, job)?;
     job.progress(1.0);
     Ok(TriMesh { positions, triangles, colours: None })
 }

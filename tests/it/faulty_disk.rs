@@ -214,7 +214,15 @@ fn gallery_day() {
             }
             Err(e) => println!("refused {n}: {e}"),
         }
-        let line = VisitLine { visit: 1, seconds: 2, dabs: 3, kept: true, interrupted: false };
+        let line = VisitLine {
+            visit: 1,
+            seconds: 2,
+            dabs: 3,
+            kept: true,
+            interrupted: false,
+            exhibit: None,
+            percent: None,
+        };
         if let Err(e) = gallery::audit(&folder.join("works/audit.jsonl"), &line) {
             println!("no audit: {e}");
         }

@@ -3,6 +3,8 @@
 use glam::Vec2;
 use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::{LoopConfig, Resolved};
+use sculptd_daemon::kiosk::staff::StaffRequest;
+use sculptd_daemon::kiosk::start::Start;
 use sculptd_daemon::kiosk::unrecorded::WithoutFilms;
 use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
 use sculptd_daemon::live::Live;
@@ -22,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use crate::allocations::{live_bytes, passed_alone};
-use crate::waiting::until;
+use crate::waiting::{pause, until};
 
 /// One visit of strokes, brushes, views, undo and a thing in the hands, different for each visitor.
 fn visit(world: &mut World, visitor: u64, tick: &mut u64) {
@@ -186,14 +188,7 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let world = startup::world(mesh, &config);
     let clean = world.hash();
     let camera = config.camera.camera();
-    let start = keeper::Start {
-        plain,
-        camera,
-        brush: config.brush,
-        film: Arc::default(),
-        interrupted: false,
-        put_away: None,
-    };
+    let start = Start::free(plain, camera, config.brush);
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
     let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)
@@ -274,8 +269,19 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
         until("a code that leads nowhere any more is gone", || link().is_none());
         assert!(clock.now_us() >= shown.until_us);
     }
+    let staff = || keeper.desk.view.lock().expect("a view").is_some_and(|v| v.staff);
+    keeper.desk.ask(StaffRequest::End);
+    pause(300);
+    assert!(!stop.load(Relaxed), "nobody typed the PIN");
     *keeper.desk.typed.lock().expect("a desk") = Some("4711".into());
+    until("the staff page opens", staff);
+    until("it shows the visit", || {
+        let facts = keeper.desk.staff.lock().expect("a desk").clone();
+        (facts.visits_today, facts.kept_today, facts.visits) == (1, 1, 1)
+    });
+    keeper.desk.ask(StaffRequest::End);
     until("staff is let out", || stop.load(Relaxed));
+    assert!(!keeper.desk.again.load(Relaxed));
     keeper.thread.join().expect("the keeper ends");
     live.stop().expect("ends").world.verify_invariants().expect("sound");
 }

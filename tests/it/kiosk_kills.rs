@@ -141,3 +141,42 @@ fn each_visit_has_a_file_of_its_own_and_the_one_that_was_interrupted_goes_on() {
     let left = std::fs::read_dir(home.path().join("sculptd/kiosk")).expect("a folder").count();
     assert_eq!(left, 0, "files of visits");
 }
+
+/// Exhibits take turns in the attract loop, so each visit begins with another clay than the one
+/// that its file was prepared for.
+#[test]
+fn a_visit_to_any_exhibit_goes_on_after_a_kill() {
+    let lines = "exhibits = [\"relief\", \"pot\"]";
+    let short = format!("idle_s = 2\ncountdown_s = 1\n{lines}");
+    let mut home = tempfile::tempdir().expect("a folder");
+    for round in 1..=2 {
+        let daemon = installation(home, &short);
+        for n in 1..=2 {
+            let before = audit(daemon.home.path()).len();
+            visit(&daemon);
+            until("the visit is over", || audit(daemon.home.path()).len() > before);
+            let line = audit(daemon.home.path()).pop().expect("a line");
+            let expected = ["relief", "pot"][n - 1];
+            assert_eq!(line["exhibit"], expected, "round {round}: {line}");
+            assert!(line["percent"].as_u64().is_some_and(|p| p < 100), "{line}");
+        }
+        let daemon =
+            installation(ended(daemon, rustix::process::Signal::TERM), &format!("{LONG}\n{lines}"));
+        // The second exhibit's film comes after the first one's.
+        if round == 2 {
+            until("the next film", || {
+                daemon.told.lock().expect("no panic").iter().any(|l| l.contains("shows pot"))
+            });
+        }
+        visit(&daemon);
+        let before = hash(&daemon);
+        let daemon =
+            installation(ended(daemon, rustix::process::Signal::KILL), &format!("{LONG}\n{lines}"));
+        until("it says so", || daemon.has_told("the last visit was interrupted"));
+        assert_eq!(hash(&daemon), before, "round {round}");
+        home = ended(daemon, rustix::process::Signal::TERM);
+        let line = audit(home.path()).pop().expect("a line");
+        assert_eq!(line["interrupted"], json!(true), "{line}");
+        assert_eq!(line["exhibit"], ["relief", "pot"][round - 1], "{line}");
+    }
+}

@@ -12,6 +12,7 @@ mod clay;
 mod control;
 #[cfg(unix)]
 mod daemon_process;
+mod exhibits;
 #[cfg(target_os = "linux")]
 mod faulty_disk;
 mod field;

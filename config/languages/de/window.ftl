@@ -1227,3 +1227,30 @@ people-invite-about = Mit Telefon oder Tablet in diesem Netz scannen oder den Li
 people-invite-copy = Link kopieren
 undo-in-the-way = Nicht zurückgenommen: { $name } hat dieselbe Stelle seither verändert. Nimmt { $name } das zurück, geht es.
 redo-in-the-way = Nicht wiederholt: { $name } hat dieselbe Stelle seither verändert. Nimmt { $name } das zurück, geht es.
+
+## The staff page of an installation
+
+staff-heading = Personal
+staff-visits-today = Besuche heute
+staff-kept-today = Heute behaltene Arbeiten
+staff-visits = Besuche seit dem Start
+staff-mean = Mittlere Dauer eines Besuchs
+staff-up = Läuft seit
+staff-speed = Tempo
+staff-times = Takt { $tick } ms (99 %), Bild { $frame } ms
+staff-disk = Frei auf der Platte der Galerie
+staff-gigabytes = { $value } GB
+staff-heat = Temperatur
+staff-devices = Geräte
+staff-no-devices = Keines ist angeschlossen.
+staff-errors = Neueste Fehler
+staff-exhibit = Ausstellungsstück: ein Druck beendet den Besuch und zeigt es
+staff-back = Zurück zum Besuch
+staff-clean = Zum Reinigen schließen
+staff-open = Wieder öffnen
+staff-export = Arbeiten von heute packen
+staff-exported = Gepackt: { $file }
+staff-not-exported = Nicht gepackt: { $why }
+staff-restart = Neu starten
+staff-end = Ganz beenden
+staff-end-sure = Zum Beenden nochmals drücken

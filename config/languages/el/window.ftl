@@ -1227,3 +1227,30 @@ people-invite-about = Σαρώστε τον με τηλέφωνο ή ταμπλ�
 people-invite-copy = Αντιγραφή συνδέσμου
 undo-in-the-way = Δεν αναιρέθηκε: { $name } άλλαξε έκτοτε το ίδιο σημείο. Όταν { $name } το αναιρέσει, θα γίνεται.
 redo-in-the-way = Δεν επαναλήφθηκε: { $name } άλλαξε έκτοτε το ίδιο σημείο. Όταν { $name } το αναιρέσει, θα γίνεται.
+
+## The staff page of an installation
+
+staff-heading = Προσωπικό
+staff-visits-today = Επισκέψεις σήμερα
+staff-kept-today = Έργα που κρατήθηκαν σήμερα
+staff-visits = Επισκέψεις από την εκκίνηση
+staff-mean = Μέση διάρκεια επίσκεψης
+staff-up = Λειτουργεί επί
+staff-speed = Ταχύτητα
+staff-times = βήμα { $tick } ms (99 %), καρέ { $frame } ms
+staff-disk = Ελεύθερος χώρος στον δίσκο της γκαλερί
+staff-gigabytes = { $value } GB
+staff-heat = Θερμοκρασία
+staff-devices = Συσκευές
+staff-no-devices = Καμία δεν είναι συνδεδεμένη.
+staff-errors = Πιο πρόσφατα σφάλματα
+staff-exhibit = Έκθεμα: το πάτημα τερματίζει την επίσκεψη και το δείχνει
+staff-back = Πίσω στην επίσκεψη
+staff-clean = Κλείσιμο για καθαρισμό
+staff-open = Άνοιγμα ξανά
+staff-export = Συσκευασία των σημερινών έργων
+staff-exported = Συσκευάστηκαν: { $file }
+staff-not-exported = Δεν συσκευάστηκαν: { $why }
+staff-restart = Επανεκκίνηση
+staff-end = Οριστικό τέλος
+staff-end-sure = Πάτησε ξανά για τέλος

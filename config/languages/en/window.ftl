@@ -1229,3 +1229,30 @@ people-invite-about = Scan this code with a phone or tablet in your network, or 
 people-invite-copy = Copy the link
 undo-in-the-way = Undo refused: { $name } has changed the same place since. { $name } has to undo that first.
 redo-in-the-way = Not done again: { $name } has changed the same place since. Once { $name } has taken that back, it can be.
+
+## The staff page of an installation
+
+staff-heading = Staff
+staff-visits-today = Visits today
+staff-kept-today = Works kept today
+staff-visits = Visits since the start
+staff-mean = Mean length of a visit
+staff-up = Running for
+staff-speed = Speed
+staff-times = tick { $tick } ms (99 %), frame { $frame } ms
+staff-disk = Free on the gallery's disk
+staff-gigabytes = { $value } GB
+staff-heat = Temperature
+staff-devices = Devices
+staff-no-devices = None is connected.
+staff-errors = Newest errors
+staff-exhibit = Exhibit: a press ends the visit and shows it
+staff-back = Back to the visit
+staff-clean = Close for cleaning
+staff-open = Open again
+staff-export = Pack today's works
+staff-exported = Packed: { $file }
+staff-not-exported = Not packed: { $why }
+staff-restart = Restart
+staff-end = End for good
+staff-end-sure = Press again to end

@@ -1227,3 +1227,30 @@ people-invite-about = Escanéalo con un teléfono o una tableta de esta red, o a
 people-invite-copy = Copiar el enlace
 undo-in-the-way = No se deshizo: { $name } ha cambiado después el mismo lugar. Cuando { $name } lo deshaga, se podrá.
 redo-in-the-way = No se rehízo: { $name } ha cambiado después el mismo lugar. Cuando { $name } lo deshaga, se podrá.
+
+## The staff page of an installation
+
+staff-heading = Personal
+staff-visits-today = Visitas hoy
+staff-kept-today = Obras guardadas hoy
+staff-visits = Visitas desde el inicio
+staff-mean = Duración media de una visita
+staff-up = En marcha desde hace
+staff-speed = Velocidad
+staff-times = paso { $tick } ms (99 %), imagen { $frame } ms
+staff-disk = Libre en el disco de la galería
+staff-gigabytes = { $value } GB
+staff-heat = Temperatura
+staff-devices = Dispositivos
+staff-no-devices = No hay ninguno conectado.
+staff-errors = Errores más recientes
+staff-exhibit = Exposición: al pulsar, la visita termina y se muestra
+staff-back = Volver a la visita
+staff-clean = Cerrar para limpiar
+staff-open = Abrir de nuevo
+staff-export = Empaquetar las obras de hoy
+staff-exported = Empaquetado: { $file }
+staff-not-exported = No empaquetado: { $why }
+staff-restart = Reiniciar
+staff-end = Terminar del todo
+staff-end-sure = Pulsa otra vez para terminar

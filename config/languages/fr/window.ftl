@@ -1227,3 +1227,30 @@ people-invite-about = Scannez-le avec un téléphone ou une tablette de ce rése
 people-invite-copy = Copier le lien
 undo-in-the-way = Non annulé : { $name } a modifié le même endroit depuis. Ce sera possible quand { $name } l'aura annulé.
 redo-in-the-way = Non rétabli : { $name } a modifié le même endroit depuis. Ce sera possible quand { $name } l'aura annulé.
+
+## The staff page of an installation
+
+staff-heading = Personnel
+staff-visits-today = Visites aujourd'hui
+staff-kept-today = Œuvres gardées aujourd'hui
+staff-visits = Visites depuis le démarrage
+staff-mean = Durée moyenne d'une visite
+staff-up = En marche depuis
+staff-speed = Vitesse
+staff-times = pas { $tick } ms (99 %), image { $frame } ms
+staff-disk = Libre sur le disque de la galerie
+staff-gigabytes = { $value } GB
+staff-heat = Température
+staff-devices = Appareils
+staff-no-devices = Aucun n'est branché.
+staff-errors = Erreurs les plus récentes
+staff-exhibit = Pièce : un appui termine la visite et la montre
+staff-back = Retour à la visite
+staff-clean = Fermer pour nettoyer
+staff-open = Rouvrir
+staff-export = Regrouper les œuvres du jour
+staff-exported = Regroupées : { $file }
+staff-not-exported = Non regroupées : { $why }
+staff-restart = Redémarrer
+staff-end = Arrêter pour de bon
+staff-end-sure = Appuyer encore pour arrêter

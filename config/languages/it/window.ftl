@@ -1227,3 +1227,30 @@ people-invite-about = Scansionalo con un telefono o tablet di questa rete, o apr
 people-invite-copy = Copia il link
 undo-in-the-way = Non annullato: { $name } ha poi cambiato lo stesso punto. Si potrà quando { $name } lo avrà annullato.
 redo-in-the-way = Non ripetuto: { $name } ha poi cambiato lo stesso punto. Si potrà quando { $name } lo avrà annullato.
+
+## The staff page of an installation
+
+staff-heading = Personale
+staff-visits-today = Visite di oggi
+staff-kept-today = Opere conservate oggi
+staff-visits = Visite dall'avvio
+staff-mean = Durata media di una visita
+staff-up = In funzione da
+staff-speed = Velocità
+staff-times = passo { $tick } ms (99 %), immagine { $frame } ms
+staff-disk = Libero sul disco della galleria
+staff-gigabytes = { $value } GB
+staff-heat = Temperatura
+staff-devices = Dispositivi
+staff-no-devices = Nessuno è collegato.
+staff-errors = Errori più recenti
+staff-exhibit = Pezzo esposto: una pressione termina la visita e lo mostra
+staff-back = Torna alla visita
+staff-clean = Chiudi per la pulizia
+staff-open = Riapri
+staff-export = Raccogli le opere di oggi
+staff-exported = Raccolte: { $file }
+staff-not-exported = Non raccolte: { $why }
+staff-restart = Riavvia
+staff-end = Termina del tutto
+staff-end-sure = Premi di nuovo per terminare

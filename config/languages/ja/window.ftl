@@ -1220,3 +1220,30 @@ people-invite-about = このネットワークの電話やタブレットで読�
 people-invite-copy = リンクをコピー
 undo-in-the-way = 元に戻せません: その後 { $name } が同じ場所を変更しました。{ $name } がそれを元に戻せばできます。
 redo-in-the-way = やり直せません: その後 { $name } が同じ場所を変更しました。{ $name } がそれを元に戻せばできます。
+
+## The staff page of an installation
+
+staff-heading = スタッフ
+staff-visits-today = 本日の来場
+staff-kept-today = 本日保存した作品
+staff-visits = 起動後の来場
+staff-mean = 平均の滞在時間
+staff-up = 稼働時間
+staff-speed = 速度
+staff-times = ティック { $tick } ms（99 %）、フレーム { $frame } ms
+staff-disk = ギャラリーの空き容量
+staff-gigabytes = { $value } GB
+staff-heat = 温度
+staff-devices = デバイス
+staff-no-devices = 接続されていません。
+staff-errors = 最新のエラー
+staff-exhibit = 展示：押すと来場を終えて表示します
+staff-back = 来場に戻る
+staff-clean = 清掃のため閉じる
+staff-open = 再開する
+staff-export = 本日の作品をまとめる
+staff-exported = まとめました：{ $file }
+staff-not-exported = まとめられません：{ $why }
+staff-restart = 再起動
+staff-end = 完全に終了
+staff-end-sure = もう一度押すと終了

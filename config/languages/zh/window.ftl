@@ -1220,3 +1220,30 @@ people-invite-about = 用本网络中的手机或平板扫描，或打开链接�
 people-invite-copy = 复制链接
 undo-in-the-way = 无法撤销:此后 { $name } 更改了同一处。{ $name } 撤销该更改后即可。
 redo-in-the-way = 无法重做:此后 { $name } 更改了同一处。{ $name } 撤销该更改后即可。
+
+## The staff page of an installation
+
+staff-heading = 工作人员
+staff-visits-today = 今天的访问
+staff-kept-today = 今天保存的作品
+staff-visits = 启动以来的访问
+staff-mean = 平均访问时长
+staff-up = 已运行
+staff-speed = 速度
+staff-times = 步 { $tick } ms（99 %），帧 { $frame } ms
+staff-disk = 作品库磁盘剩余
+staff-gigabytes = { $value } GB
+staff-heat = 温度
+staff-devices = 设备
+staff-no-devices = 没有连接。
+staff-errors = 最新错误
+staff-exhibit = 展品：按下即结束访问并显示
+staff-back = 返回访问
+staff-clean = 关闭以清洁
+staff-open = 重新开放
+staff-export = 打包今天的作品
+staff-exported = 已打包：{ $file }
+staff-not-exported = 未打包：{ $why }
+staff-restart = 重新启动
+staff-end = 彻底结束
+staff-end-sure = 再按一次结束

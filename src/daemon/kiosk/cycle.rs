@@ -4,14 +4,21 @@
 const TRIES: u32 = 3;
 /// Duration of the lock after that, in seconds.
 const LOCKED_S: f64 = 60.0;
+/// Time without a touch after which the staff page closes by itself, in seconds.
+const STAFF_S: f64 = 180.0;
+/// Time that a visit in progress has after closing time, in seconds.
+const GRACE_S: f64 = 300.0;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stage {
     /// No visitor: recordings play.
+    #[default]
     Attract,
     Working,
     /// Nobody has touched anything for a while; any touch goes back to `Working`.
     Countdown,
+    /// No visitor may come: outside the opening hours, or during cleaning.
+    Closed,
 }
 
 /// Action that the cycle requests.
@@ -21,22 +28,32 @@ pub enum KioskAct {
     Begin,
     /// The visitor left: keep the sculpture if configured, then reset everything.
     End { seconds: u64 },
-    /// Staff entered the correct PIN.
-    Quit,
 }
 
 /// For a screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct View {
     pub stage: Stage,
     /// Whole seconds left of the countdown, rounded up; 0 otherwise.
     pub seconds_left: u64,
+    /// Whole seconds left of a visit with a limit, rounded up.
+    pub visit_left_s: Option<u64>,
     /// Visits that have ended.
     pub visits: u64,
     /// The keypad takes no number now.
     pub locked: bool,
     /// Wrong numbers that were typed so far.
     pub wrong: u64,
+    /// Index of the exhibit that is shown; `None`: free sculpting.
+    pub exhibit: Option<usize>,
+    /// Index of the exhibit's step.
+    pub step: usize,
+    /// The staff page is open. The visit's clocks stand still.
+    pub staff: bool,
+    /// It is closed for cleaning, and not outside the opening hours.
+    pub cleaning: bool,
+    /// The next opening time as a minute of the day; `None`: more than a day away.
+    pub opens_at: Option<u32>,
 }
 
 #[derive(Debug)]
@@ -49,6 +66,12 @@ pub struct Cycle {
     begun: u64,
     touched: u64,
     visits: u64,
+    /// Tick at which the visit ends at the latest.
+    ends: Option<u64>,
+    /// No visitor may come.
+    closed: bool,
+    /// The tick of the staff's last touch while their page is open.
+    staff: Option<u64>,
     /// Wrong numbers in a row, and all of them.
     wrong: u32,
     all_wrong: u64,
@@ -68,6 +91,9 @@ impl Cycle {
             begun: 0,
             touched: 0,
             visits: 0,
+            ends: None,
+            closed: false,
+            staff: None,
             wrong: 0,
             all_wrong: 0,
             locked_until: 0,
@@ -81,13 +107,46 @@ impl Cycle {
 
     /// Ends a visit that is in progress.
     pub fn interrupt(&mut self) -> Option<KioskAct> {
-        (self.stage != Stage::Attract).then(|| self.end())
+        self.is_visited().then(|| self.end())
+    }
+
+    /// Returns true if a visit is in progress.
+    fn is_visited(&self) -> bool {
+        matches!(self.stage, Stage::Working | Stage::Countdown)
+    }
+
+    /// Limits the visit that has just begun to `minutes` from now; 0: no limit.
+    pub fn limit(&mut self, minutes: f64) {
+        let ticks = (minutes * 60.0 * self.rate_hz).ceil() as u64;
+        self.ends = (ticks > 0).then(|| self.now + ticks);
+    }
+
+    /// Closes or opens the installation. A visit in progress goes on for [`GRACE_S`] at most.
+    pub fn set_closed(&mut self, closed: bool) {
+        if closed && !self.closed && self.is_visited() {
+            let latest = self.now + (GRACE_S * self.rate_hz) as u64;
+            self.ends = Some(self.ends.map_or(latest, |ends| ends.min(latest)));
+        }
+        self.closed = closed;
+        if !self.is_visited() {
+            self.stage = if closed { Stage::Closed } else { Stage::Attract };
+        }
     }
 
     /// One tick. `touched`: a visitor's pen or hand was felt in it. `done`: the visitor pressed
     /// "finished".
     pub fn step(&mut self, touched: bool, done: bool) -> Option<KioskAct> {
         self.now += 1;
+        if let Some(last) = &mut self.staff {
+            *last = if touched { self.now } else { *last };
+            if self.now - *last >= (STAFF_S * self.rate_hz) as u64 {
+                self.staff = None;
+            }
+            // The visitor's time stands still.
+            (self.begun, self.touched) = (self.begun + 1, self.touched + 1);
+            self.ends = self.ends.map(|ends| ends + 1);
+            return None;
+        }
         if touched {
             self.touched = self.now;
         }
@@ -97,8 +156,8 @@ impl Cycle {
                 self.begun = self.now;
                 return Some(KioskAct::Begin);
             }
-            Stage::Attract => {}
-            _ if done => return Some(self.end()),
+            Stage::Attract | Stage::Closed => {}
+            _ if done || self.ends.is_some_and(|ends| self.now >= ends) => return Some(self.end()),
             Stage::Working if self.now - self.touched >= self.idle => self.stage = Stage::Countdown,
             Stage::Countdown if touched => self.stage = Stage::Working,
             Stage::Countdown if self.now - self.touched >= self.idle + self.countdown => {
@@ -110,20 +169,22 @@ impl Cycle {
     }
 
     fn end(&mut self) -> KioskAct {
-        self.stage = Stage::Attract;
+        self.stage = if self.closed { Stage::Closed } else { Stage::Attract };
         self.visits += 1;
+        self.ends = None;
         KioskAct::End { seconds: ((self.touched - self.begun) as f64 / self.rate_hz) as u64 }
     }
 
-    /// Staff typed `number`. An empty `pin` lets nobody out; after some wrong ones nothing is taken
-    /// for a while.
-    pub fn staff(&mut self, number: &str, pin: &str) -> Option<KioskAct> {
+    /// Staff typed `number`: the right one opens their page. An empty `pin` lets nobody in; after
+    /// some wrong ones nothing is taken for a while.
+    pub fn type_pin(&mut self, number: &str, pin: &str) {
         if pin.is_empty() || self.now < self.locked_until {
-            return None;
+            return;
         }
         if number == pin {
             self.wrong = 0;
-            return Some(KioskAct::Quit);
+            self.staff = Some(self.now);
+            return;
         }
         self.wrong += 1;
         self.all_wrong += 1;
@@ -131,21 +192,26 @@ impl Cycle {
             self.wrong = 0;
             self.locked_until = self.now + (LOCKED_S * self.rate_hz) as u64;
         }
-        None
+    }
+
+    /// Closes the staff page.
+    pub fn leave_staff(&mut self) {
+        self.staff = None;
     }
 
     pub fn view(&self) -> View {
+        let seconds = |ticks: u64| (ticks as f64 / self.rate_hz).ceil() as u64;
         let left = (self.touched + self.idle + self.countdown).saturating_sub(self.now);
+        let visit_left = self.ends.filter(|_| self.is_visited());
         View {
             stage: self.stage,
-            seconds_left: if self.stage == Stage::Countdown {
-                (left as f64 / self.rate_hz).ceil() as u64
-            } else {
-                0
-            },
+            seconds_left: if self.stage == Stage::Countdown { seconds(left) } else { 0 },
+            visit_left_s: visit_left.map(|ends| seconds(ends.saturating_sub(self.now))),
             visits: self.visits,
             locked: self.now < self.locked_until,
             wrong: self.all_wrong,
+            staff: self.staff.is_some(),
+            ..View::default()
         }
     }
 }
@@ -175,16 +241,57 @@ mod tests {
     }
 
     #[test]
-    fn the_staff_s_number_lets_out_and_guessing_is_slow() {
+    fn the_staff_s_number_opens_their_page_and_guessing_is_slow() {
         let mut c = Cycle::new(10.0, 2.0, 1.0);
-        assert_eq!(c.staff("", ""), None);
-        assert_eq!(c.staff("1234", "1234"), Some(KioskAct::Quit));
+        c.type_pin("", "");
+        assert!(!c.view().staff, "no PIN lets nobody in");
+        c.type_pin("1234", "1234");
+        assert!(c.view().staff);
+        c.leave_staff();
         for n in ["0000", "0001", "0002"] {
-            assert_eq!(c.staff(n, "1234"), None);
+            c.type_pin(n, "1234");
         }
         assert!(c.view().locked && c.view().wrong == 3);
-        assert_eq!(c.staff("1234", "1234"), None);
+        c.type_pin("1234", "1234");
+        assert!(!c.view().staff);
         idle(&mut c, 600);
-        assert_eq!(c.staff("1234", "1234"), Some(KioskAct::Quit));
+        c.type_pin("1234", "1234");
+        assert!(c.view().staff);
+    }
+
+    #[test]
+    fn a_visit_waits_while_the_staff_page_is_open() {
+        let mut c = Cycle::new(10.0, 2.0, 1.0);
+        c.step(true, false);
+        c.limit(1.0);
+        c.type_pin("1234", "1234");
+        // Their touches neither end the visit nor begin one, and its clocks stand still.
+        assert_eq!((0..500).find_map(|i| c.step(i % 10 == 0, false)), None);
+        assert_eq!((c.view().stage, c.view().visit_left_s), (Stage::Working, Some(60)));
+        c.leave_staff();
+        assert_eq!(idle(&mut c, 19), None);
+        assert_eq!(c.view().stage, Stage::Working);
+        // It closes by itself.
+        c.type_pin("1234", "1234");
+        idle(&mut c, (STAFF_S * 10.0) as u64);
+        assert!(!c.view().staff);
+    }
+
+    #[test]
+    fn a_visit_ends_at_its_limit_and_nobody_comes_while_it_is_closed() {
+        let mut c = Cycle::new(10.0, 1000.0, 1.0);
+        c.step(true, false);
+        c.limit(0.1);
+        assert_eq!(idle(&mut c, 59), None);
+        assert_eq!(c.step(true, false), Some(KioskAct::End { seconds: 6 }));
+        c.set_closed(true);
+        assert_eq!((c.step(true, false), c.view().stage), (None, Stage::Closed));
+        c.set_closed(false);
+        assert_eq!(c.step(true, false), Some(KioskAct::Begin));
+        // Closing time: the visit has some minutes more, without a limit of its own too.
+        c.set_closed(true);
+        assert_eq!((c.view().stage, c.view().visit_left_s), (Stage::Working, Some(300)));
+        let end = (0..3000).find_map(|_| c.step(true, false));
+        assert_eq!((end.is_some(), c.view().stage), (true, Stage::Closed));
     }
 }

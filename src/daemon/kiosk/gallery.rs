@@ -8,9 +8,9 @@ use serde::Serialize;
 
 pub use super::names::works;
 use super::names::{number, sent};
-use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{write_beside, write_mesh};
-use sculptd_geometry::picture::{self, Camera};
+use sculptd_geometry::picture::{self, Camera, Picture};
+use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// Size of a picture, pixels.
 const WIDTH: usize = 640;
@@ -60,17 +60,21 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     Ok(path)
 }
 
-/// Draws a work from its front, a little from the side and from above.
-fn draw(file: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
-    let (plain, _) = mesh.triangulate();
+/// Draws a form from its front, a little from the side and from above.
+pub fn portrait(mesh: &TriMesh, width: usize, height: usize) -> Picture {
     let from = Vec3::new(0.35, 0.3, 1.0);
     let camera =
-        Camera { up: Vec3::Y, ..Camera::from_side(&plain, from, WIDTH as f32 / HEIGHT as f32) };
-    let colours: Vec<[u8; 3]> = match &plain.colours {
+        Camera { up: Vec3::Y, ..Camera::from_side(mesh, from, width as f32 / height as f32) };
+    let colours: Vec<[u8; 3]> = match &mesh.colours {
         Some(all) => all.iter().map(|c| [c[0], c[1], c[2]]).collect(),
-        None => vec![CLAY; plain.positions.len()],
+        None => vec![CLAY; mesh.positions.len()],
     };
-    let picture = picture::draw(&plain, Some(&colours), &camera, WIDTH, HEIGHT);
+    picture::draw(mesh, Some(&colours), &camera, width, height)
+}
+
+/// Writes the picture of a work.
+fn draw(file: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
+    let picture = portrait(&mesh.triangulate().0, WIDTH, HEIGHT);
     let png = picture.png().map_err(std::io::Error::other)?;
     write_beside(file, |out| out.write_all(&png))
 }
@@ -95,8 +99,8 @@ pub fn page(folder: &Path) -> std::io::Result<()> {
     })
 }
 
-/// One visit, as the audit file has it: numbers only, nothing of the person.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// One visit, as the audit file has it: nothing of the person.
+#[derive(Debug, Clone, Serialize)]
 pub struct VisitLine {
     /// Number of the visit since the program started.
     pub visit: u64,
@@ -108,6 +112,12 @@ pub struct VisitLine {
     /// start.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub interrupted: bool,
+    /// The exhibit's name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exhibit: Option<String>,
+    /// Score of the work against the exhibit's goal, in whole percent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub percent: Option<u32>,
 }
 
 /// Appends a line for a visit.

@@ -1,100 +1,45 @@
 //! The cycle at work: a thread looks at what the loop publishes, plays the attract recordings, and
 //! sends what the cycle asks for.
 
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
+use super::desk::{KioskDesk, VisitResult};
+use super::exhibit::score::Goal;
+use super::exhibit::{Exhibit, ExhibitStep, score_thread};
 use super::film::AttractRecording;
 use super::gallery::{self, VisitLine};
+use super::hours::Hours;
 #[cfg(unix)]
 use super::share;
 use super::speech::Speech;
 use super::spool::Spool;
-use super::visit_journal::PutAway;
-use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, ScreenSettings, Stage, View};
+use super::staff::{StaffRequest, VisitFigures, export, hottest_celsius};
+use super::start::{BuiltForms, Start};
+use super::visit_journal::{PutAway, VisitNews};
+use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, Stage};
 use crate::Published;
 use crate::adaptors::ATTRACT_IDS;
-use crate::command_queue::{CommandSender, QueuedCommand};
-use crate::qr_code::Invitation;
-use sculptd_clay::Clay;
-use sculptd_clay::brush::BrushSettings;
+use crate::command_queue::CommandSender;
+use crate::disk_space::free_bytes;
+use crate::local_time::{LocalClock, LocalTime};
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{Sender, SenderFactory};
 use sculptd_devices::{Clock, DeviceId};
-use sculptd_engine::camera::Camera;
-use sculptd_engine::command::{Beginning, Command, NewClay};
-use sculptd_engine::payload::Payload;
-use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
 /// Id of the hands in the list of touching pens.
 const HAND: u16 = u16::MAX;
-
-/// Initial state for every visitor.
-#[derive(Debug, Clone)]
-pub struct Start {
-    pub plain: Arc<TriMesh>,
-    pub camera: Camera,
-    pub brush: BrushSettings,
-    /// Set while a reset begins an attract film, which no session records; cleared for a visit.
-    pub film: Arc<AtomicBool>,
-    /// A visit that the last run did not end; its work is in the world.
-    pub interrupted: bool,
-    /// See [`VisitRecording::put_away`]; `None`: visits are not recorded one by one.
-    ///
-    /// [`VisitRecording::put_away`]: super::visit_journal::VisitRecording::put_away
-    pub put_away: Option<cc::Sender<PutAway>>,
-}
-
-impl Start {
-    /// Returns the command that resets everything, with a copy of the clay that was built from
-    /// `plain`: a reset costs by the number of pages, so a visitor's first stroke is not lost.
-    fn command(&self, built: &Clay) -> QueuedCommand {
-        let clay = NewClay::new(self.plain.clone(), false);
-        let beginning = Beginning { clay, camera: self.camera, brush: self.brush };
-        let command = Command::Begin(Box::new(beginning));
-        let copy = built.duplicate(built.object_id());
-        QueuedCommand::with_payload(command, Payload::Clay(Box::new(copy)))
-    }
-}
-
-/// State exchanged with the screen.
-#[derive(Debug, Default)]
-pub struct KioskDesk {
-    pub view: Mutex<Option<View>>,
-    /// True if something on the screen itself was pressed.
-    pub touched: AtomicBool,
-    /// The visitor pressed "finished".
-    pub finished: AtomicBool,
-    /// Input typed by staff.
-    pub typed: Mutex<Option<String>>,
-    /// Message from the fleet's staff to those on site, until dismissed.
-    pub message: Mutex<Option<String>>,
-    /// Link to the last visitor's sculpture, until another visitor comes.
-    #[cfg(unix)]
-    pub link: Mutex<Option<share::Link>>,
-}
-
-/// Content of an installation's window.
-#[derive(Debug, Clone)]
-pub struct Screen {
-    pub desk: Arc<KioskDesk>,
-    /// Never empty; the first is shown to each new visitor.
-    pub words: Vec<Language>,
-    /// True if staff can exit with a PIN.
-    pub staff: bool,
-    /// Display settings of the screen.
-    pub show: ScreenSettings,
-    /// The page on which visitors watch.
-    pub watch: Option<Invitation>,
-}
+/// Interval at which the calendar and the staff page are looked at, microseconds.
+const SLOW_US: u64 = 1_000_000;
 
 /// A running keeper; it ends once `stop` is set.
 #[derive(Debug)]
@@ -103,11 +48,27 @@ pub struct KioskKeeper {
     pub thread: JoinHandle<()>,
 }
 
+/// The file of an export, or why there is none.
+type Exported = Result<PathBuf, String>;
+
 struct KioskThread {
     config: KioskConfig,
     start: Start,
-    /// Built from the start, never changed.
-    built: Clay,
+    built: BuiltForms,
+    /// Index of the form in the world; `None`: that of an interrupted visit, which is gone.
+    form: Option<usize>,
+    /// Index of the exhibit's step.
+    step: usize,
+    hours: Hours,
+    calendar: Option<LocalClock>,
+    wall: Option<LocalTime>,
+    cleaning: bool,
+    looked_us: u64,
+    figures: VisitFigures,
+    /// Takes the goal that the newest clay is scored against; `None`: no exhibit has a goal.
+    goals: Option<cc::Sender<Option<Arc<Goal>>>>,
+    /// Results of exports.
+    exported: (cc::Sender<Exported>, cc::Receiver<Exported>),
     published: Arc<ArcSwap<Published>>,
     commands: CommandSender,
     sender: Sender,
@@ -118,6 +79,10 @@ struct KioskThread {
     films: Vec<AttractRecording>,
     film: usize,
     playing: bool,
+    /// Index of the form that the next film shows; `None`: the one after the form in the world.
+    next_form: Option<usize>,
+    /// The clay was reset for the time in which the installation is closed.
+    rests: bool,
     began_us: u64,
     dabs_before: u64,
     spool: Option<Spool>,
@@ -165,12 +130,31 @@ pub fn start(
     };
     let countdown = format!("{} {}", words.countdown, words.go_on);
     let speech = Speech::new(&config.speak, &words.welcome, &countdown);
-    let built = Clay::build(&start.plain, &Job::default()).map_err(|e| e.to_string())?;
+    let built = BuiltForms::build(&start).map_err(|e| e.to_string())?;
     let desk = Arc::new(KioskDesk::default());
+    let exhibits = start.forms.iter().filter_map(|form| form.exhibit.as_ref());
+    let has_goal = exhibits.flat_map(|exhibit| &exhibit.steps).any(|step| step.goal.is_some());
+    let goals = has_goal.then(|| score_thread::start(published.clone(), desk.score.clone()));
+    let goals = goals.transpose().map_err(|e| e.to_string())?;
+    let hours = Hours::parse(&config.hours.open)?;
+    let calendar = LocalClock::new().inspect_err(|e| {
+        tracing::error!("kiosk: no calendar, so there are no opening hours: {e}");
+    });
+    let form = start.interrupted.map_or(Some(0), |visit| visit.form);
     let mut keeping = KioskThread {
         config,
         start,
         built,
+        form,
+        step: 0,
+        hours,
+        calendar: calendar.ok(),
+        wall: None,
+        cleaning: false,
+        looked_us: 0,
+        figures: VisitFigures::default(),
+        goals,
+        exported: cc::unbounded(),
         published,
         commands,
         sender: factory.sender(),
@@ -180,6 +164,8 @@ pub fn start(
         films,
         film: 0,
         playing: false,
+        next_form: form.or(Some(0)),
+        rests: false,
         began_us: 0,
         dabs_before: 0,
         spool,
@@ -198,11 +184,14 @@ pub fn start(
 impl KioskThread {
     fn run(&mut self) {
         let mut cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
-        if self.start.interrupted {
+        self.look(&mut cycle);
+        if self.start.interrupted.is_some() {
             cycle = cycle.resumed();
+            cycle.limit(self.minutes());
+            self.send_goal();
             if self.config.interrupted == Interrupted::Gallery {
                 let act = cycle.interrupt();
-                self.carry_out(act, &cycle);
+                self.carry_out(act, &mut cycle);
             }
         }
         let mut felt = None;
@@ -219,88 +208,230 @@ impl KioskThread {
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
             let act = cycle.step(touched, done);
-            self.carry_out(act, &cycle);
+            self.carry_out(act, &mut cycle);
+            if self.desk.next_step.swap(false, Relaxed) {
+                self.next_step(&mut cycle);
+            }
             let typed = self.desk.typed.lock().ok().and_then(|mut t| t.take());
             if let Some(number) = typed {
-                let act = cycle.staff(&number, &self.config.staff_pin);
-                self.carry_out(act, &cycle);
+                cycle.type_pin(&number, &self.config.staff_pin);
             }
-            if cycle.view().stage == Stage::Attract {
-                self.attract();
-                #[cfg(unix)]
-                self.drop_expired();
+            self.staff(&mut cycle);
+            if self.clock.now_us().saturating_sub(self.looked_us) >= SLOW_US {
+                self.look(&mut cycle);
+            }
+            match cycle.view().stage {
+                Stage::Attract if !cycle.view().staff => {
+                    self.attract();
+                    #[cfg(unix)]
+                    self.drop_expired();
+                }
+                Stage::Closed => self.rest(),
+                _ => {}
             }
             self.speech.say(&cycle.view());
-            if let Ok(mut view) = self.desk.view.lock() {
-                *view = Some(cycle.view());
-            }
+            self.show(&cycle);
             let _ = quiet.recv_timeout(Duration::from_secs_f64(1.0 / RATE_HZ));
         }
         // The program ends, the visitor's work is put away.
         let act = cycle.interrupt();
-        self.carry_out(act, &cycle);
+        self.carry_out(act, &mut cycle);
     }
 
-    fn carry_out(&mut self, act: Option<KioskAct>, cycle: &Cycle) {
-        match act {
-            None => {}
-            Some(KioskAct::Quit) => self.stop.store(true, Relaxed),
-            Some(KioskAct::Begin) => {
-                tracing::info!("kiosk: a visit begins");
-                if std::mem::take(&mut self.playing) {
-                    self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
-                }
-                #[cfg(unix)]
-                self.show_link(None);
-                self.dabs_before = self.published.load().figures.dabs;
-                self.put_back(false);
-            }
-            Some(KioskAct::End { seconds }) => {
-                let state = self.published.load_full();
-                let interrupted = std::mem::take(&mut self.start.interrupted);
-                let dabs = state.figures.dabs.saturating_sub(self.dabs_before);
-                let mut kept = false;
-                let keeps = !self.config.gallery.as_os_str().is_empty();
-                let keeps = keeps && (dabs > 0 || interrupted);
-                if keeps {
-                    let mesh = state.mesh.to_tri().to_poly();
-                    match gallery::keep(&self.config.gallery, &mesh) {
-                        Ok(path) => {
-                            kept = true;
-                            self.pass_on(&path);
-                        }
-                        Err(e) => tracing::error!("{}: {e}", self.config.gallery.display()),
-                    }
-                }
-                let file = &self.config.audit;
-                let visit = cycle.view().visits;
-                let line = VisitLine { visit, seconds, dabs, kept, interrupted };
-                if !file.as_os_str().is_empty()
-                    && let Err(e) = gallery::audit(file, &line)
-                {
-                    tracing::error!("{}: {e}", file.display());
-                }
-                // The attract film that follows begins with a reset.
-                if let Some(put_away) = &self.start.put_away {
-                    let refused = keeps && !kept;
-                    let _ = put_away.send(if refused { PutAway::Refused } else { PutAway::Done });
-                }
+    /// Shows the state to the screen.
+    fn show(&self, cycle: &Cycle) {
+        let mut now = cycle.view();
+        now.exhibit = self.exhibit().and(self.form);
+        now.step = self.step;
+        now.cleaning = self.cleaning;
+        now.opens_at = self.wall.and_then(|wall| self.hours.opens_next(wall));
+        if let Ok(mut view) = self.desk.view.lock() {
+            *view = Some(now);
+        }
+    }
+
+    /// The exhibit in the world.
+    fn exhibit(&self) -> Option<&Arc<Exhibit>> {
+        self.built.get(self.form?).exhibit.as_ref()
+    }
+
+    fn exhibit_step(&self) -> Option<&ExhibitStep> {
+        self.exhibit()?.steps.get(self.step)
+    }
+
+    /// Longest time for a visit, minutes; 0: no limit.
+    fn minutes(&self) -> f64 {
+        self.exhibit().map_or(0.0, |exhibit| exhibit.manifest.minutes)
+    }
+
+    /// Has the newest clay scored against the goal of the step, from now on.
+    fn send_goal(&self) {
+        let goal = self.exhibit_step().and_then(|step| step.goal.clone());
+        if let Some(goals) = &self.goals {
+            // The thread ends after this one.
+            let _ = goals.send(goal);
+        }
+    }
+
+    fn next_step(&mut self, cycle: &mut Cycle) {
+        let steps = self.exhibit().map_or(0, |exhibit| exhibit.steps.len());
+        if cycle.view().stage == Stage::Working && self.step + 1 < steps {
+            self.step += 1;
+            self.send_goal();
+        }
+    }
+
+    /// Looks at the calendar, and refreshes the staff page if it is open.
+    fn look(&mut self, cycle: &mut Cycle) {
+        self.looked_us = self.clock.now_us();
+        self.wall = self.calendar.as_ref().and_then(LocalClock::now);
+        let open = self.wall.is_none_or(|wall| self.hours.is_open(wall));
+        cycle.set_closed(self.cleaning || !open);
+        if !cycle.view().staff {
+            return;
+        }
+        if let Ok(mut facts) = self.desk.staff.lock() {
+            let day = self.wall.map(|wall| wall.day);
+            self.figures.show(day, &mut facts);
+            facts.up_s = self.clock.now_us() / 1_000_000;
+            let gallery = &self.config.gallery;
+            facts.free_bytes =
+                if gallery.as_os_str().is_empty() { None } else { free_bytes(gallery) };
+            facts.celsius = hottest_celsius();
+            facts.cleaning = self.cleaning;
+            if let Ok(result) = self.exported.1.try_recv() {
+                facts.exported = Some(result);
             }
         }
     }
 
+    /// Carries out the requests of the staff page. They count only while it is open.
+    fn staff(&mut self, cycle: &mut Cycle) {
+        let requests = self.desk.requests.lock().map(|mut all| std::mem::take(&mut *all));
+        for request in requests.unwrap_or_default() {
+            if !cycle.view().staff {
+                continue;
+            }
+            tracing::info!("kiosk: staff: {request:?}");
+            match request {
+                StaffRequest::Leave => cycle.leave_staff(),
+                StaffRequest::Cleaning(cleaning) => self.cleaning = cleaning,
+                StaffRequest::Exhibit(index) if index < self.built.len() => {
+                    let act = cycle.interrupt();
+                    self.carry_out(act, cycle);
+                    self.next_form = Some(index);
+                    self.stop_film();
+                    cycle.leave_staff();
+                }
+                StaffRequest::Exhibit(_) => {}
+                StaffRequest::Export => self.export(),
+                StaffRequest::Restart => {
+                    self.desk.again.store(true, Relaxed);
+                    self.stop.store(true, Relaxed);
+                }
+                StaffRequest::End => self.stop.store(true, Relaxed),
+            }
+            self.look(cycle);
+        }
+    }
+
+    /// Packs the works of today, on a thread of its own: a day's works take a while to copy.
+    fn export(&self) {
+        let (gallery, done) = (self.config.gallery.clone(), self.exported.0.clone());
+        let since = self.calendar.as_ref().map_or(0, LocalClock::midnight);
+        let pack = move || {
+            let packed = export(&gallery, since);
+            let _ = done.send(packed.map_err(|e| format!("{}: {e}", gallery.display())));
+        };
+        if let Err(e) = std::thread::Builder::new().name("sculptd-export".into()).spawn(pack) {
+            let _ = self.exported.0.send(Err(e.to_string()));
+        }
+    }
+
+    fn carry_out(&mut self, act: Option<KioskAct>, cycle: &mut Cycle) {
+        match act {
+            None => {}
+            Some(KioskAct::Begin) => {
+                tracing::info!("kiosk: a visit begins");
+                self.stop_film();
+                #[cfg(unix)]
+                self.show_link(None);
+                self.show_result(None);
+                self.dabs_before = self.published.load().figures.dabs;
+                let chosen = self.desk.take_choice().filter(|&index| index < self.built.len());
+                let form = chosen.or(self.form).unwrap_or(0);
+                self.put_back(form, false);
+                cycle.limit(self.minutes());
+                self.send_goal();
+            }
+            Some(KioskAct::End { seconds }) => self.end_visit(seconds, cycle.view().visits),
+        }
+    }
+
+    /// Puts a visitor's work away.
+    fn end_visit(&mut self, seconds: u64, visit: u64) {
+        let state = self.published.load_full();
+        let interrupted = self.start.interrupted.take().is_some();
+        let dabs = state.figures.dabs.saturating_sub(self.dabs_before);
+        let mut kept = false;
+        let keeps = !self.config.gallery.as_os_str().is_empty();
+        let keeps = keeps && (dabs > 0 || interrupted);
+        if keeps {
+            let mesh = state.mesh.to_tri().to_poly();
+            match gallery::keep(&self.config.gallery, &mesh) {
+                Ok(path) => {
+                    kept = true;
+                    self.pass_on(&path);
+                }
+                Err(e) => self.figures.error(format!("{}: {e}", self.config.gallery.display())),
+            }
+        }
+        // The score of the work as it is put away, not of one that is a moment older.
+        let goal = self.exhibit_step().and_then(|step| step.goal.clone());
+        let goal = goal.filter(|_| dabs > 0 || interrupted);
+        let score = goal.and_then(|goal| goal.score(&state.mesh.to_tri(), &Job::default()).ok());
+        self.show_result(
+            self.form.zip(score).map(|(exhibit, score)| VisitResult { exhibit, score }),
+        );
+        if let Some(goals) = &self.goals {
+            let _ = goals.send(None);
+        }
+        let exhibit = self.exhibit().map(|exhibit| exhibit.name.clone());
+        let percent = score.map(|score| score.percent());
+        let line = VisitLine { visit, seconds, dabs, kept, interrupted, exhibit, percent };
+        let file = &self.config.audit;
+        if !file.as_os_str().is_empty()
+            && let Err(e) = gallery::audit(file, &line)
+        {
+            self.figures.error(format!("{}: {e}", file.display()));
+        }
+        self.figures.ended(self.wall.map(|wall| wall.day), seconds, kept);
+        // The attract film that follows begins with a reset.
+        if let Some(news) = &self.start.news {
+            let refused = keeps && !kept;
+            let work = if refused { PutAway::Refused } else { PutAway::Done };
+            let _ = news.send(VisitNews::PutAway(work));
+        }
+    }
+
+    fn show_result(&self, result: Option<VisitResult>) {
+        if let Ok(mut shown) = self.desk.result.lock() {
+            *shown = result;
+        }
+    }
+
     /// The work is in the gallery: on to where it is kept for good, and to the visitor.
-    fn pass_on(&self, path: &std::path::Path) {
+    fn pass_on(&mut self, path: &std::path::Path) {
         if let (Some(spool), Some(name)) = (&self.spool, path.file_name().and_then(|n| n.to_str()))
             && let Err(e) = spool.offer(name)
         {
-            tracing::error!("{}: {e}", path.display());
+            self.figures.error(format!("{}: {e}", path.display()));
         }
         #[cfg(unix)]
         if let Some(share) = &self.share {
             match share.link(path) {
                 Ok(link) => self.show_link(Some(link)),
-                Err(e) => tracing::error!("{}: {e}", path.display()),
+                Err(e) => self.figures.error(format!("{}: {e}", path.display())),
             }
         }
     }
@@ -322,20 +453,32 @@ impl KioskThread {
         }
     }
 
-    /// Resets everything, for a film or for a visit.
-    fn put_back(&self, film: bool) {
+    /// Resets everything to a form, for a film or for a visit.
+    fn put_back(&mut self, form: usize, film: bool) {
+        (self.form, self.step) = (Some(form), 0);
+        self.rests = self.rests && film;
         self.start.film.store(film, Relaxed);
-        let command = self.start.command(&self.built);
+        let command = self.built.reset(form);
         // The loop takes 64 commands a tick: it has room again before long.
         if self.commands.send_timeout(command, Duration::from_secs(2)).is_err() {
-            tracing::error!("kiosk: the reset was not carried out; the loop takes no commands");
+            let text = "the reset was not carried out; the loop takes no commands";
+            return self.figures.error(text.into());
+        }
+        if let Some(news) = self.start.news.as_ref().filter(|_| !film) {
+            let _ = news.send(VisitNews::Begins(self.built.get(form).plain.clone()));
         }
     }
 
     fn attract(&mut self) {
         if !self.playing {
-            // Each film begins on clean clay.
-            self.put_back(true);
+            // Each film begins on clean clay, and shows the next exhibit.
+            let after = self.form.map_or(0, |form| (form + 1) % self.built.len());
+            let next = self.next_form.take().unwrap_or(after);
+            self.rests = false;
+            self.put_back(next, true);
+            if let Some(exhibit) = self.exhibit() {
+                tracing::info!("kiosk: the film shows {}", exhibit.name);
+            }
             self.films[self.film].rewind();
             (self.playing, self.began_us) = (true, self.clock.now_us());
         }
@@ -343,6 +486,21 @@ impl KioskThread {
         if !self.films[self.film].play(self.began_us, now, &mut self.sender) {
             self.film = (self.film + 1) % self.films.len();
             self.playing = false;
+        }
+    }
+
+    /// Stops the film, if one is played.
+    fn stop_film(&mut self) {
+        if std::mem::take(&mut self.playing) {
+            self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
+        }
+    }
+
+    /// While it is closed nothing moves, on clean clay.
+    fn rest(&mut self) {
+        if !std::mem::replace(&mut self.rests, true) {
+            self.stop_film();
+            self.put_back(self.form.unwrap_or(0), true);
         }
     }
 }

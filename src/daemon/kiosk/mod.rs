@@ -12,8 +12,11 @@
 #[cfg(feature = "s3")]
 pub mod bucket;
 pub mod cycle;
+pub mod desk;
+pub mod exhibit;
 pub mod film;
 pub mod gallery;
+pub mod hours;
 pub mod keeper;
 pub mod names;
 pub mod recovery;
@@ -22,6 +25,8 @@ pub mod settings;
 pub mod share;
 mod speech;
 pub mod spool;
+pub mod staff;
+pub mod start;
 pub mod unrecorded;
 pub mod visit_journal;
 

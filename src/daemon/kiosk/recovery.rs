@@ -1,16 +1,14 @@
 //! The start of an installation: a visit that the last run did not end is opened to go on.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use super::keeper::Start;
+use super::start::{InterruptedVisit, Start, StartForm};
 use super::visit_journal::{VISIT_FILE, VisitRecording, VisitStart, set_aside, start};
 use crate::config::Config;
 use crate::session::format::Settings;
 use crate::session::{self, CreateError, catalog};
 use crate::startup::{self, BeginError, Begun, session_settings};
 use sculptd_clay::Clay;
-use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 
 /// Opens the visit in `folder` that the last run did not end, in place of `fresh`, and starts to
@@ -22,9 +20,9 @@ pub fn begin(
     config: &Config,
     notices: &mut Vec<String>,
 ) -> (Begun, Option<VisitRecording>) {
-    let (mut begun, recorded) = match recover(folder, &first.plain, config, notices) {
-        Ok(Some(visit)) => {
-            first.interrupted = true;
+    let (mut begun, recorded) = match recover(folder, &first.forms, config, notices) {
+        Ok(Some((visit, interrupted))) => {
+            first.interrupted = Some(interrupted);
             notices.push("the last visit was interrupted: its work is here again".into());
             (visit, true)
         }
@@ -37,12 +35,13 @@ pub fn begin(
     if !recorded {
         return (begun, None);
     }
-    let settings =
-        Settings { camera: first.camera, brush: first.brush, ..session_settings(config) };
-    let (plain, film) = (first.plain.clone(), first.film.clone());
+    // The first visitor probably begins with the first form.
+    let StartForm { plain, brush, .. } = first.forms[0].clone();
+    let settings = Settings { camera: first.camera, brush, ..session_settings(config) };
+    let film = first.film.clone();
     match start(folder, VisitStart { plain, settings, film }, begun.journal.take()) {
         Ok(recording) => {
-            first.put_away = Some(recording.put_away.clone());
+            first.news = Some(recording.news.clone());
             (begun, Some(recording))
         }
         Err(e) => {
@@ -56,10 +55,10 @@ pub fn begin(
 /// which somebody sculpted.
 fn recover(
     folder: &Path,
-    plain: &Arc<TriMesh>,
+    forms: &[StartForm],
     config: &Config,
     notices: &mut Vec<String>,
-) -> Result<Option<Begun>, String> {
+) -> Result<Option<(Begun, InterruptedVisit)>, String> {
     let file = folder.join(VISIT_FILE);
     let failed = |e: std::io::Error| format!("{}: {e}", file.display());
     std::fs::create_dir_all(folder).map_err(failed)?;
@@ -88,12 +87,20 @@ fn recover(
         // Opening saved what is readable into another file.
         set_aside(&file, "visit-damaged").map_err(failed)?;
     }
-    let start = Clay::build(plain, &job).map(|mut clay| clay.snapshot().hash());
-    if start.is_ok_and(|start| start == begun.world.snapshot().hash()) {
+    let began_with = begun.started_with.as_ref();
+    let form = forms.iter().position(|form| match form.exhibit {
+        Some(_) => Some(&*form.plain) == began_with,
+        None => true,
+    });
+    let plain = form.map(|form| &forms[form].plain);
+    let start = plain.and_then(|plain| Clay::build(plain, &job).ok());
+    let start = start.map(|mut clay| clay.snapshot().hash());
+    if start == Some(begun.world.snapshot().hash()) {
         drop(writer);
         thread.finish();
         catalog::remove(&path).map_err(failed)?;
         return Ok(None);
     }
-    Ok(Some(Begun { journal: Some((writer, thread)), ..begun }))
+    let begun = Begun { journal: Some((writer, thread)), ..begun };
+    Ok(Some((begun, InterruptedVisit { form })))
 }

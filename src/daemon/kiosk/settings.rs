@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::hours::Hours;
 use sculptd_clay::brush::BrushKind;
 use serde::{Deserialize, Serialize};
 
@@ -39,8 +40,21 @@ pub struct KioskConfig {
     pub screen: ScreenSettings,
     /// A program and its arguments that speaks the screen's text, given as its last argument.
     pub speak: Vec<String>,
+    /// Packs of exhibits, or names of those that come with the program; empty: free sculpting.
+    pub exhibits: Vec<PathBuf>,
+    pub hours: HoursSettings,
     /// The fleet that manages this installation remotely.
     pub fleet: FleetSettings,
+}
+
+/// When visitors may come, and the screen meanwhile.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct HoursSettings {
+    /// See [`Hours::parse`]; empty: always.
+    pub open: Vec<String>,
+    /// How dark the screen is while the installation is closed, from 0 (as usual) to 1 (black).
+    pub dim: f32,
 }
 
 /// What becomes of a visit that a kill or a power cut interrupted.
@@ -125,6 +139,8 @@ impl Default for KioskConfig {
             radius: 0.0,
             screen: ScreenSettings::default(),
             speak: vec![],
+            exhibits: vec![],
+            hours: HoursSettings::default(),
             fleet: FleetSettings::default(),
         }
     }
@@ -191,6 +207,11 @@ impl KioskConfig {
         if !(0.0..=2.0).contains(&self.radius) {
             return Err(format!("radius = {}: expected a number from 0 to 2", self.radius));
         }
+        if !(0.0..=1.0).contains(&self.hours.dim) {
+            let dim = self.hours.dim;
+            return Err(format!("hours.dim = {dim}: expected a number from 0 to 1"));
+        }
+        Hours::parse(&self.hours.open).map_err(|e| format!("hours.open: {e}"))?;
         if !self.fleet.name.is_empty() && self.fleet.key.as_os_str().is_empty() {
             return Err("fleet.name needs fleet.key: `sculptd fleet key` makes one".into());
         }
@@ -221,16 +242,19 @@ impl KioskConfig {
         name.map(|name| name.parse().map_err(|e| format!("brush: {e}"))).transpose()
     }
 
-    /// Returns the texts to show: from the files in `languages`, or from the built-in ones.
+    /// Returns the texts to show: from the files in `languages`, or from the built-in ones. A text
+    /// that a file lacks is shown in English.
     ///
     /// # Errors
-    /// Returns a message if the language is unknown or its file is incomplete.
+    /// Returns a message if the language is unknown or its file is wrong.
     pub fn words(&self, built_in: LanguageTexts<'_>) -> Result<Language, String> {
+        let english = built_in.iter().find(|(code, _)| *code == "en").map_or("", |(_, text)| text);
         for path in &self.languages {
             let name = path.display();
-            if path.file_stem().is_some_and(|s| s.to_string_lossy() == self.language) {
+            if code_of(path) == self.language {
                 let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
-                return toml::from_str(&text).map_err(|e| format!("{name}: {e}"));
+                let words = Language::parse(&self.language, &text, english);
+                return words.map_err(|e| format!("{name}: {e}"));
             }
         }
         let known = built_in.iter().find(|(n, _)| *n == self.language);
@@ -239,24 +263,17 @@ impl KioskConfig {
             let (language, codes) = (&self.language, codes.join(", "));
             format!("language = \"{language}\": expected {codes}, or one of `languages`")
         })?;
-        toml::from_str(text).map_err(|e| format!("{name}: {e}"))
+        Language::parse(name, text, english).map_err(|e| format!("{name}: {e}"))
     }
-}
 
-impl KioskConfig {
-    /// Every language that can be chosen on the screen, the one of the settings first.
+    /// Returns every language that can be chosen on the screen, the one of the settings first.
     ///
     /// # Errors
     /// As [`KioskConfig::words`].
     pub fn every_language(&self, built_in: LanguageTexts<'_>) -> Result<Vec<Language>, String> {
         let mut all = vec![self.words(built_in)?];
-        for (name, _) in built_in {
-            let language = (*name).to_owned();
-            all.push(KioskConfig { language, ..self.clone() }.words(built_in)?);
-        }
-        for path in &self.languages {
-            let language =
-                path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let own = self.languages.iter().map(|path| code_of(path));
+        for language in built_in.iter().map(|(name, _)| (*name).to_owned()).chain(own) {
             all.push(KioskConfig { language, ..self.clone() }.words(built_in)?);
         }
         let mut seen: Vec<String> = Vec::new();
@@ -269,10 +286,18 @@ impl KioskConfig {
     }
 }
 
-/// Texts of a screen; `{seconds}` is replaced by a number.
+/// The code of the language in a file: its name.
+fn code_of(path: &Path) -> String {
+    path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Texts of a screen; `{seconds}`, `{percent}`, `{length}` and `{time}` are replaced by numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Language {
+    /// Its code, `en`: the name of its file.
+    #[serde(default)]
+    pub code: String,
     pub name: String,
     pub welcome: String,
     pub countdown: String,
@@ -280,8 +305,7 @@ pub struct Language {
     pub finish: String,
     pub kept: String,
     pub fetch: String,
-    /// What the code of the page does; empty: the text of `fetch`.
-    #[serde(default)]
+    /// Label of the code that leads to the page for watching.
     pub watch: String,
     pub too_large: String,
     pub draw: String,
@@ -294,23 +318,70 @@ pub struct Language {
     pub wrong_pin: String,
     /// Too many wrong PINs were entered.
     pub locked: String,
+    /// Invitation to choose an exhibit.
+    pub choose: String,
+    /// Shows the goal of an exhibit through the clay.
+    pub goal: String,
+    /// Shows where there is too much and too little clay.
+    pub compare: String,
+    /// Goes on to the next step of an exhibit.
+    pub next: String,
+    /// The share of the work that is right.
+    pub near: String,
+    pub too_much: String,
+    pub too_little: String,
+    /// Time left of a visit.
+    pub time_left: String,
+    /// The score of a finished work.
+    pub result: String,
+    /// Outside the opening hours.
+    pub closed: String,
+    /// The time at which the installation opens again.
+    pub opens: String,
+    /// During cleaning.
+    pub cleaning: String,
 }
 
 impl Language {
+    /// Reads the text of a language's file. `english`: the file that has every text.
+    ///
+    /// # Errors
+    /// Returns what is wrong with the file.
+    pub fn parse(code: &str, text: &str, english: &str) -> Result<Language, String> {
+        let mut texts: toml::Table = toml::from_str(text).map_err(|e| e.to_string())?;
+        let fallback: toml::Table = toml::from_str(english).map_err(|e| e.to_string())?;
+        for (key, value) in fallback {
+            // Each language names itself.
+            if key != "name" {
+                texts.entry(key).or_insert(value);
+            }
+        }
+        texts.insert("code".into(), code.into());
+        texts.try_into().map_err(|e| e.to_string())
+    }
+
     /// Returns every text, for choosing a font that can draw them.
     pub fn all(&self) -> String {
-        let Language { name, welcome, countdown, go_on, finish, kept, fetch, .. } = self;
-        let Language { too_large, draw, carve, smooth, undo, staff, turn, .. } = self;
-        let said =
-            [name, welcome, countdown, go_on, finish, kept, fetch, &self.watch, too_large, turn];
-        let pressed = [draw, carve, smooth, undo, staff, &self.wrong_pin, &self.locked];
-        said.into_iter().chain(pressed).map(String::as_str).collect()
+        let texts = toml::Table::try_from(self).unwrap_or_default();
+        texts.values().filter_map(|text| text.as_str()).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_language_file_without_a_text_has_it_in_english() {
+        let english = include_str!("../../../config/languages/en.toml");
+        let words =
+            Language::parse("xx", "name = \"Own\"\nundo = \"Back\"", english).expect("read");
+        assert_eq!((words.code.as_str(), words.name.as_str()), ("xx", "Own"));
+        assert_eq!((words.undo.as_str(), words.finish.as_str()), ("Back", "Finished"));
+        assert!(Language::parse("xx", "undo = \"Back\"", english).is_err(), "it has no name");
+        assert!(Language::parse("xx", "name = \"Own\"\nundoo = \"\"", english).is_err());
+        assert!(words.all().contains("Back"));
+    }
 
     #[test]
     fn an_unknown_language_is_refused_with_the_known_ones() {

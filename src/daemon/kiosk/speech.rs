@@ -36,7 +36,7 @@ impl Speech {
         self.said = Some(now.stage);
         match now.stage {
             Stage::Attract => Some(self.welcome.clone()),
-            Stage::Working => None,
+            Stage::Working | Stage::Closed => None,
             Stage::Countdown => {
                 Some(self.countdown.replace("{seconds}", &now.seconds_left.to_string()))
             }
@@ -81,8 +81,7 @@ mod tests {
     #[test]
     fn each_stage_is_said_once_when_it_begins() {
         let mut speech = Speech::new(&[], "Touch", "Back in {seconds}");
-        let view =
-            |stage, seconds_left| View { stage, seconds_left, visits: 0, locked: false, wrong: 0 };
+        let view = |stage, seconds_left| View { stage, seconds_left, ..View::default() };
         let stages = [
             (Stage::Attract, 0, Some("Touch")),
             (Stage::Attract, 0, None),
@@ -105,8 +104,7 @@ mod tests {
         let script = format!("printf %s \"$0\" > {}", told.display());
         let program = ["sh", "-c", &script].map(String::from);
         let mut speech = Speech::new(&program, "Touch to sculpt", "");
-        let now =
-            View { stage: Stage::Attract, seconds_left: 0, visits: 0, locked: false, wrong: 0 };
+        let now = View::default();
         speech.say(&now);
         let child = speech.saying.as_mut().expect("it speaks");
         assert!(child.wait().expect("it ends").success());

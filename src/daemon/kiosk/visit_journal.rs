@@ -1,9 +1,10 @@
 //! The input of a visit in a session file of its own, from the visitor's first touch until the work
 //! is put away: a program that is killed in between goes on with the visit.
 //!
-//! A visit begins with a reset to the start clay, so its file holds that clay once and the visit's
-//! input alone. Of everything before the visit only the layout of the desktop outlives the reset;
-//! the file begins with it. Attract films are not recorded.
+//! A visit begins with a reset to a start clay, so its file holds that clay once and the visit's
+//! input alone. The file is made before the visit; where the visitor begins with the clay of another
+//! exhibit, it is made anew, and the input waits. Of everything before the visit only the layout of
+//! the desktop outlives the reset; the file begins with it. Attract films are not recorded.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -35,10 +36,20 @@ pub struct VisitJournal {
     visiting: bool,
     /// The visit's input for as long as its file is still being made.
     early: Option<EarlyInput>,
-    prepared: cc::Receiver<SessionWriter>,
-    /// Takes the file of each visit that ended; `None` if the visit was not recorded.
+    /// The clay that the visit began with.
+    begins_with: Option<Arc<TriMesh>>,
+    prepared: cc::Receiver<PreparedFile>,
+    /// Takes the file of each visit that ended, `None` if the visit was not recorded; and files that
+    /// begin with another clay than the visit.
     ended: cc::Sender<Option<SessionWriter>>,
     desktop: Option<Command>,
+}
+
+/// A file for the next visit.
+#[derive(Debug)]
+struct PreparedFile {
+    writer: SessionWriter,
+    plain: Arc<TriMesh>,
 }
 
 /// Encoded input of a visit that began before its file was made.
@@ -72,9 +83,10 @@ impl VisitJournal {
         }
     }
 
-    /// Begins a visit with the commands that follow the reset.
-    fn begin(&mut self, tick: u64, samples: &[Sample], after: &[Command]) {
+    /// Begins a visit to the clay `plain` with the commands that follow the reset.
+    fn begin(&mut self, tick: u64, samples: &[Sample], (plain, after): (Arc<TriMesh>, &[Command])) {
         self.visiting = true;
+        self.begins_with = Some(plain);
         let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
         let mut early = EarlyInput::new(tick);
         early.add(tick, samples, &first);
@@ -82,13 +94,20 @@ impl VisitJournal {
         self.take_file();
     }
 
-    /// Hands over to the visit's file, if it has been made, what came before it.
+    /// Hands over to the visit's file, if it has been made, what came before it. A file that begins
+    /// with another clay goes back.
     fn take_file(&mut self) {
-        if self.early.is_some()
+        while self.early.is_some()
             && let Ok(next) = self.prepared.try_recv()
-            && let Some(early) = self.early.take()
         {
-            self.now = Some(next.after((early.first, early.last), early.encoded));
+            if !self.begins_with.as_ref().is_some_and(|plain| Arc::ptr_eq(plain, &next.plain)) {
+                // One file at a time is prepared, so there is room.
+                let _ = self.ended.try_send(Some(next.writer));
+                continue;
+            }
+            if let Some(early) = self.early.take() {
+                self.now = Some(next.writer.after((early.first, early.last), early.encoded));
+            }
         }
     }
 }
@@ -97,7 +116,10 @@ impl Journal for VisitJournal {
     fn tick(&mut self, tick: u64, samples: &[Sample], commands: &[Command], world: &mut World) {
         self.take_file();
         let layout = commands.iter().rfind(|c| matches!(c, Command::DesktopLayout(_)));
-        let reset = commands.iter().rposition(|c| matches!(c, Command::Begin(_)));
+        let reset = commands.iter().enumerate().rev().find_map(|(at, command)| match command {
+            Command::Begin(begin) => Some((at, &begin.clay.plain)),
+            _ => None,
+        });
         match (reset, &mut self.now, &mut self.early) {
             (None, Some(now), _) => now.tick(tick, samples, commands, world),
             (None, None, Some(early)) => {
@@ -108,10 +130,10 @@ impl Journal for VisitJournal {
                 }
             }
             (None, None, None) => {}
-            (Some(at), ..) => {
+            (Some((at, plain)), ..) => {
                 self.end();
                 if !self.film.load(Relaxed) {
-                    self.begin(tick, samples, &commands[at + 1..]);
+                    self.begin(tick, samples, (plain.clone(), &commands[at + 1..]));
                 }
             }
         }
@@ -128,12 +150,21 @@ impl Journal for VisitJournal {
 /// Start of every visit's file.
 #[derive(Debug, Clone)]
 pub struct VisitStart {
-    /// The start clay.
+    /// The clay that the next visit probably begins with.
     pub plain: Arc<TriMesh>,
     /// The camera and the brush are those of a reset.
     pub settings: Settings,
-    /// See [`super::keeper::Start::film`].
+    /// See [`super::start::Start::film`].
     pub film: Arc<AtomicBool>,
+}
+
+/// News of a visit, for the thread that makes the files.
+#[derive(Debug)]
+pub enum VisitNews {
+    /// A visit begins with this clay.
+    Begins(Arc<TriMesh>),
+    /// A visit has ended.
+    PutAway(PutAway),
 }
 
 /// What became of a visit's work.
@@ -150,13 +181,14 @@ pub enum PutAway {
 pub struct VisitRecording {
     /// The tick thread's end.
     pub journal: VisitJournal,
-    /// Takes a message after each visit; then the next visit's file is made.
-    pub put_away: cc::Sender<PutAway>,
+    /// Takes a message with each visit's reset, and one after each visit; then the next visit's
+    /// file is made.
+    pub news: cc::Sender<VisitNews>,
     /// The state of the file of the visit in progress.
     pub health: Health,
     /// The history of a resumed visit, for undo beyond the resumption.
     pub history: Option<Handle>,
-    /// Ends after the loop and every sender of `put_away` have gone.
+    /// Ends after the loop and every sender of `news` have gone.
     pub thread: JoinHandle<()>,
 }
 
@@ -171,7 +203,7 @@ pub fn start(
 ) -> std::io::Result<VisitRecording> {
     let (prepare, prepared) = cc::bounded(1);
     let (end, ended) = cc::bounded(2);
-    let (put_away, calls) = cc::unbounded();
+    let (news, calls) = cc::unbounded();
     let (now, open) = resumed.unzip();
     let history = open.as_ref().and_then(|t| Some(t.history.as_ref()?.handle.clone()));
     let health = open.as_ref().map(|t| t.health.clone()).unwrap_or_default();
@@ -182,8 +214,17 @@ pub fn start(
     let thread = std::thread::Builder::new()
         .name("sculptd-visits".into())
         .spawn(move || files.run(&calls))?;
-    let journal = VisitJournal { film, now, visiting, early: None, prepared, ended: end, desktop };
-    Ok(VisitRecording { journal, put_away, health, history, thread })
+    let journal = VisitJournal {
+        film,
+        now,
+        visiting,
+        early: None,
+        begins_with: None,
+        prepared,
+        ended: end,
+        desktop,
+    };
+    Ok(VisitRecording { journal, news, health, history, thread })
 }
 
 /// Renames a visit's file to `NAME-1.sculpt` or the next free number, and returns its new path.
@@ -203,18 +244,31 @@ struct VisitFolder {
     start: VisitStart,
     health: Health,
     /// `None` once the loop has ended. A channel keeps what nobody took for as long as this lives.
-    prepare: Option<cc::Sender<SessionWriter>>,
+    prepare: Option<cc::Sender<PreparedFile>>,
     ended: cc::Receiver<Option<SessionWriter>>,
     /// The file of the visit in progress or of the next one.
     open: Option<WriterThread>,
 }
 
 impl VisitFolder {
-    fn run(&mut self, calls: &cc::Receiver<PutAway>) {
+    fn run(&mut self, calls: &cc::Receiver<VisitNews>) {
         if self.open.is_none() {
             self.make();
         }
-        while let Ok(work) = calls.recv() {
+        while let Ok(news) = calls.recv() {
+            let work = match news {
+                VisitNews::PutAway(work) => work,
+                VisitNews::Begins(plain) if Arc::ptr_eq(&plain, &self.start.plain) => continue,
+                VisitNews::Begins(plain) => {
+                    self.start.plain = plain;
+                    if self.open.is_some() && self.ended.recv().is_err() {
+                        break;
+                    }
+                    self.close(Some(PutAway::Done));
+                    self.make();
+                    continue;
+                }
+            };
             // The tick thread hands the file over with the reset that follows the visit. It is
             // dropped here: its threads end only then.
             let recorded = self.ended.recv().map(|writer| writer.is_some());
@@ -242,8 +296,9 @@ impl VisitFolder {
         match session::create_with(&self.path, &*start.plain, &start.settings, health) {
             Ok((writer, thread)) => {
                 // The tick thread takes one at a time, so there is room.
+                let plain = start.plain.clone();
                 if let Some(prepare) = &self.prepare {
-                    let _ = prepare.try_send(writer);
+                    let _ = prepare.try_send(PreparedFile { writer, plain });
                 }
                 self.open = Some(thread);
                 self.show(None);

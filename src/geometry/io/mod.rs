@@ -77,10 +77,7 @@ pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh
         _ => ReadError::Io { path: path.into(), source },
     })?;
     job.progress(0.1);
-    parse(&bytes, path, job).map_err(|stop| match stop {
-        ParseError::Problem(problem) => ReadError::Format { path: path.into(), problem },
-        ParseError::Cancelled => ReadError::Cancelled { path: path.into() },
-    })
+    parse(&bytes, path, job).map_err(|stop| stop.of_file(path))
 }
 
 /// The mesh in `bytes`; `name` gives the extension.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +55,16 @@ pub enum ParseError {
     Problem(FileProblem),
     /// The job was cancelled.
     Cancelled,
+}
+
+impl ParseError {
+    /// Returns the same error with the name of the file.
+    pub fn of_file(self, path: &Path) -> ReadError {
+        match self {
+            ParseError::Problem(problem) => ReadError::Format { path: path.into(), problem },
+            ParseError::Cancelled => ReadError::Cancelled { path: path.into() },
+        }
+    }
 }
 
 impl From<FileProblem> for ParseError {

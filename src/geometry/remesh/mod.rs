@@ -144,7 +144,8 @@ pub fn remesh(
     Ok(Remade { mesh: TriMesh { positions, triangles, colours }, crossings, lost })
 }
 
-fn middle(points: &[DVec3]) -> DVec3 {
+/// Returns the middle of some points.
+pub(super) fn middle(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len() as f64
 }
 

@@ -27,7 +27,7 @@ use sculptd_daemon::Published;
 use sculptd_daemon::adaptors::{Adaptors, DeviceStanding, StandingKind};
 use sculptd_daemon::disk_space::free_bytes;
 use sculptd_daemon::kiosk::Stage;
-use sculptd_daemon::kiosk::keeper::KioskDesk;
+use sculptd_daemon::kiosk::desk::KioskDesk;
 use sculptd_daemon::window_link::WindowLink;
 use sculptd_devices::Clock;
 
@@ -97,8 +97,6 @@ pub struct RunInSight {
     pub window: WindowLink,
     /// Ends the run.
     pub stop: Arc<AtomicBool>,
-    /// Raised before `stop` where a new run is to begin.
-    pub again: Arc<AtomicBool>,
 }
 
 /// Starts the thread; it ends with the run.
@@ -150,7 +148,7 @@ fn look_after(
         }
         if installation.restarts() {
             tracing::info!("the fleet's staff begin a new run with other settings");
-            port.run.again.store(true, Relaxed);
+            port.run.desk.again.store(true, Relaxed);
             port.run.stop.store(true, Relaxed);
         }
     }
@@ -172,7 +170,7 @@ impl DaemonPort {
         let view = self.run.desk.view.lock().unwrap_or_else(PoisonError::into_inner);
         let visit = view.map_or_else(VisitState::default, |v| VisitState {
             stage: match v.stage {
-                Stage::Attract => VisitStage::Attract,
+                Stage::Attract | Stage::Closed => VisitStage::Attract,
                 Stage::Working => VisitStage::Working,
                 Stage::Countdown => VisitStage::Countdown,
             },
@@ -240,7 +238,7 @@ impl InstallationPort for DaemonPort {
 
     fn restart_visit(&mut self) -> Result<String, String> {
         let view = self.run.desk.view.lock().unwrap_or_else(PoisonError::into_inner);
-        if view.is_none_or(|v| v.stage == Stage::Attract) {
+        if view.is_none_or(|v| matches!(v.stage, Stage::Attract | Stage::Closed)) {
             return Ok("nobody was there".into());
         }
         drop(view);

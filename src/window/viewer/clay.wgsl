@@ -146,6 +146,24 @@ fn overlay_vertex(
     return corner(place, normal, colour, value);
 }
 
+// A form that the clay hides: its outline, and hardly its middle.
+@vertex
+fn ghost_vertex(
+    @location(0) place: vec3<f32>,
+    @location(1) normal: vec4<f32>,
+    @location(2) colour: vec4<f32>,
+    @location(3) value: f32,
+) -> Corner {
+    return corner(place, normal, colour, value);
+}
+
+@fragment
+fn ghost_fragment(in: Corner) -> @location(0) vec4<f32> {
+    let n = normalize(in.normal);
+    let edge = pow(1.0 - clamp(dot(n, frame.back.xyz), 0.0, 1.0), 3.0);
+    return vec4<f32>(in.colour.rgb, in.colour.a * (0.12 + 0.88 * edge));
+}
+
 fn corner(place: vec3<f32>, normal: vec4<f32>, colour: vec4<f32>, value: f32) -> Corner {
     var out: Corner;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);

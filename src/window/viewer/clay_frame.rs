@@ -103,7 +103,7 @@ impl WindowState {
             lines,
             led: over.led,
             preview: preview.cloned(),
-            overlay: self.overlay_mesh.stamp,
+            overlay: (self.overlay_mesh.stamp, self.ghost.triangles.stamp),
             values: self.map_changes,
             size,
         };
@@ -123,6 +123,7 @@ impl WindowState {
             beside: Beside {
                 preview,
                 overlay: Some(&self.overlay_mesh),
+                ghost: self.ghost.shown(),
                 stance: Stance::of(state),
                 others: &others,
                 led: Some(&key.led),

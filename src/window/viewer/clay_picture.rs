@@ -27,8 +27,8 @@ pub(super) struct ClayPictureKey {
     pub(super) led: ProvisionalDabs,
     /// The mesh shown instead of the clay, kept so that no other gets its address.
     pub(super) preview: Option<Arc<Preview>>,
-    /// Counts the changes of the mesh over the clay.
-    pub(super) overlay: u64,
+    /// Count the changes of the mesh over the clay, and of the form that shows through it.
+    pub(super) overlay: (u64, u64),
     /// Counts the changes of the values of a map.
     pub(super) values: u64,
     /// Pixels.

@@ -12,6 +12,7 @@ use crate::panels::state::{DistanceSummary, Measured};
 use sculptd_clay::Snapshot;
 use sculptd_engine::hand::{HeldObject, Similarity};
 use sculptd_engine::scene::ObjectTransform;
+use sculptd_geometry::TriMesh;
 use sculptd_geometry::distance::{DistanceSolid, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
@@ -22,6 +23,8 @@ use sculptd_geometry::projection::{ProjectionPlane, area, outline};
 pub enum DistanceReference {
     Before(Snapshot),
     HeldObject(HeldObject),
+    /// The goal of an exhibit, in the world.
+    Goal(Arc<TriMesh>),
 }
 
 impl DistanceReference {
@@ -34,13 +37,14 @@ impl DistanceReference {
             (DistanceReference::HeldObject(a), DistanceReference::HeldObject(b)) => {
                 Arc::ptr_eq(&a.plain, &b.plain)
             }
+            (DistanceReference::Goal(a), DistanceReference::Goal(b)) => Arc::ptr_eq(a, b),
             _ => false,
         }
     }
 
     fn place(&self) -> Similarity {
         match self {
-            DistanceReference::Before(_) => Similarity::NONE,
+            DistanceReference::Before(_) | DistanceReference::Goal(_) => Similarity::NONE,
             DistanceReference::HeldObject(thing) => thing.place,
         }
     }
@@ -91,6 +95,7 @@ impl DistanceField {
             let plain = match &to {
                 DistanceReference::Before(before) => Arc::new(before.to_tri()),
                 DistanceReference::HeldObject(thing) => thing.plain.clone(),
+                DistanceReference::Goal(plain) => plain.clone(),
             };
             let solid = DistanceSolid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
@@ -100,10 +105,12 @@ impl DistanceField {
             self.pages.clear();
             self.place = Some((place, transform));
         }
-        // The earlier object is in the clay's frame, the held object in the world.
+        // The earlier object is in the clay's frame, a held object and a goal in the world.
         let (stand, unit) = match to {
             DistanceReference::Before(_) => (ObjectTransform::NONE, transform.scale),
-            DistanceReference::HeldObject(_) => (transform, f64::from(place.scale)),
+            DistanceReference::HeldObject(_) | DistanceReference::Goal(_) => {
+                (transform, f64::from(place.scale))
+            }
         };
         match &self.mesh {
             Some(old) if self.pages.len() == mesh.page_count() => {

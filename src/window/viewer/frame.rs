@@ -49,6 +49,7 @@ impl WindowState {
             self.forget_clay();
         }
         self.update_overlay_mesh(&state);
+        self.show_goal(wiring);
         self.shots(&state);
         let over = self.over_view(&state, wiring);
         let view = texture.texture.create_view(&Default::default());

@@ -16,6 +16,7 @@ pub mod distance_field;
 mod earlier_pictures;
 pub mod environment;
 mod event_times;
+mod exhibit_goal;
 mod fingers;
 mod folder_listing;
 mod folder_tasks;

@@ -1,11 +1,12 @@
 //! Triangles beside the clay: what a Boolean would make, a held object, the items of the hands'
-//! menu.
+//! menu, the goal of an exhibit.
 
 use glam::Vec3;
 
 use super::gpu::Gpu;
 use super::pages::Vertex;
-use sculptd_engine::hand::HeldObject;
+use sculptd_engine::hand::{HeldObject, Similarity};
+use sculptd_geometry::TriMesh;
 
 /// Triangles in the world, with a normal and a colour a vertex.
 #[derive(Debug, Clone, Default)]
@@ -51,18 +52,22 @@ impl Triangles {
         if thing.plain.triangles.len() > MOST {
             return;
         }
+        self.form(&thing.plain, &thing.place, colour);
+    }
+
+    /// A form at a place.
+    pub fn form(&mut self, plain: &TriMesh, place: &Similarity, colour: [u8; 4]) {
         let first = self.vertices.len() as u32;
         self.stamp += 1;
-        let places: Vec<Vec3> =
-            thing.plain.positions.iter().map(|p| thing.place.apply(*p)).collect();
+        let places: Vec<Vec3> = plain.positions.iter().map(|p| place.apply(*p)).collect();
         let mut normals = vec![Vec3::ZERO; places.len()];
-        for t in &thing.plain.triangles {
+        for t in &plain.triangles {
             let [a, b, c] = t.map(|v| places[v as usize]);
             t.iter().for_each(|&v| normals[v as usize] += (b - a).cross(c - a));
         }
         let vertex = |(p, n): (&Vec3, &Vec3)| Vertex::new(*p, n.normalize_or_zero(), 0.0, colour);
         self.vertices.extend(places.iter().zip(&normals).map(vertex));
-        self.triangles.extend(thing.plain.triangles.iter().map(|t| t.map(|v| v + first)));
+        self.triangles.extend(plain.triangles.iter().map(|t| t.map(|v| v + first)));
     }
 }
 

@@ -87,8 +87,9 @@ impl WindowState {
         match &wiring.kiosk {
             Some(screen) => {
                 let view = screen.desk.view.lock().ok().and_then(|v| *v);
-                changed |= view != self.drawn_kiosk;
-                self.drawn_kiosk = view;
+                let score = screen.desk.score.lock().ok().and_then(|score| *score);
+                changed |= view != self.drawn_kiosk || score != self.drawn_score;
+                (self.drawn_kiosk, self.drawn_score) = (view, score);
             }
             None => {
                 changed |= self.poll_history(&state, now, wiring);
@@ -258,19 +259,23 @@ impl WindowState {
         if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
             self.values = None;
         }
-        let scale = match (
-            self.ui_state.look.map,
-            &self.ui_state.walls.found,
-            self.ui_state.sizes.distances,
-        ) {
-            (Map::Thickness, Some(found), _) => (found.min, found.high),
-            // Both ends as far from nothing; an object that did not change is pale all over.
-            (Map::Distance, _, Some(d)) => {
-                let most = d.max.max(-d.min).max(state.extent * 1e-5);
-                (-most, most)
-            }
-            _ => (0.0, 1.0),
-        };
+        let goal_scale =
+            self.goal_scale(wiring).filter(|_| self.ui_state.look.map == Map::Distance);
+        let scale = goal_scale.unwrap_or(
+            match (
+                self.ui_state.look.map,
+                &self.ui_state.walls.found,
+                self.ui_state.sizes.distances,
+            ) {
+                (Map::Thickness, Some(found), _) => (found.min, found.high),
+                // Both ends as far from nothing; an object that did not change is pale all over.
+                (Map::Distance, _, Some(d)) => {
+                    let most = d.max.max(-d.min).max(state.extent * 1e-5);
+                    (-most, most)
+                }
+                _ => (0.0, 1.0),
+            },
+        );
         changed |= self.ui_state.look.scale != scale;
         self.ui_state.look.scale = scale;
         if self.ui_state.look.map == Map::Thickness {

@@ -60,6 +60,8 @@ pub struct Beside<'a> {
     pub preview: Option<&'a Arc<Preview>>,
     /// Over the clay, seen through.
     pub overlay: Option<&'a Triangles>,
+    /// A form that shows through the clay.
+    pub ghost: Option<&'a Triangles>,
     /// Transform of the object to which the clay belongs.
     pub stance: Stance,
     /// The other objects.
@@ -85,6 +87,8 @@ pub struct Renderer {
     behind: wgpu::RenderPipeline,
     edge: wgpu::RenderPipeline,
     overlay: wgpu::RenderPipeline,
+    /// The parts of a form that the clay hides.
+    ghost: wgpu::RenderPipeline,
     line_ends: wgpu::Buffer,
     pages: Option<Pages>,
     objects: ObjectBuffers,
@@ -99,6 +103,7 @@ pub struct Renderer {
     previewed: Option<Arc<Preview>>,
     preview: OverlayMesh,
     overlay_mesh: OverlayMesh,
+    ghost_mesh: OverlayMesh,
     /// True if the depth can be read here.
     shades: bool,
     /// Made when it is first asked for.
@@ -174,7 +179,8 @@ impl Renderer {
                         buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
                         lines: bool,
                         depth: bool| {
-            let overlay = name == "overlay";
+            let ghost = name == "ghost";
+            let overlay = name == "overlay" || ghost;
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(name),
                 layout: Some(&pipeline_layout),
@@ -198,7 +204,7 @@ impl Renderer {
                     format: DEPTH,
                     depth_write_enabled: Some(depth && !lines && !overlay),
                     depth_compare: Some(match depth {
-                        _ if name == "behind" => wgpu::CompareFunction::Greater,
+                        _ if name == "behind" || ghost => wgpu::CompareFunction::Greater,
                         true => wgpu::CompareFunction::LessEqual,
                         false => wgpu::CompareFunction::Always,
                     }),
@@ -227,6 +233,7 @@ impl Renderer {
             behind: pipeline("behind", &[Some(line_layout)], true, true),
             edge: pipeline("edge", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], true, true),
             overlay: pipeline("overlay", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
+            ghost: pipeline("ghost", &[Some(VERTEX_LAYOUT), Some(VALUE_LAYOUT)], false, true),
             shader,
             frame,
             group,
@@ -241,6 +248,7 @@ impl Renderer {
             previewed: None,
             preview: OverlayMesh::default(),
             overlay_mesh: OverlayMesh::default(),
+            ghost_mesh: OverlayMesh::default(),
             // OpenGL draws nothing at all with a depth of several samples that is to be read.
             shades: samples == 1 || gpu.adapter.get_info().backend != wgpu::Backend::Gl,
             shade: None,
@@ -476,6 +484,9 @@ impl Renderer {
         if let Some(overlay) = scene.beside.overlay {
             self.overlay_mesh.keep(gpu, overlay);
         }
+        if let Some(ghost) = scene.beside.ghost {
+            self.ghost_mesh.keep(gpu, ghost);
+        }
         let preview = scene.beside.preview.filter(|p| p.pages == scene.mesh.page_count());
         if let Some(new) = preview
             && !self.previewed.as_ref().is_some_and(|old| Arc::ptr_eq(old, new))
@@ -496,6 +507,12 @@ impl Renderer {
         if scene.beside.overlay.is_some() {
             pass.set_pipeline(&self.overlay);
             self.overlay_mesh.draw(pass);
+        }
+        if scene.beside.ghost.is_some() {
+            pass.set_pipeline(&self.ghost);
+            self.ghost_mesh.draw(pass);
+            pass.set_pipeline(&self.overlay);
+            self.ghost_mesh.draw(pass);
         }
         if ends > 0 {
             pass.set_pipeline(&self.line);

@@ -11,6 +11,7 @@ use super::camera_animation::CameraAnimation;
 use super::check_task::CheckKey;
 use super::clay_picture::ClayPicture;
 use super::earlier_pictures::EarlierPictures;
+use super::exhibit_goal::Ghost;
 use super::fingers::Fingers;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
@@ -39,6 +40,7 @@ use sculptd_camera::camera_thread::CameraPreview;
 use sculptd_clay::Snapshot;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::View as KioskView;
+use sculptd_daemon::kiosk::exhibit::score::{Goal, Score};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::{MenuItem, Similarity};
@@ -139,6 +141,10 @@ pub(super) struct WindowState {
     pub(super) shown_session: (Option<String>, u64),
     pub(super) overlay_mesh: Triangles,
     pub(super) overlay_key: OverlayKey,
+    pub(super) ghost: Ghost,
+    /// The goal that the distance map was last asked for.
+    pub(super) goal_address: Option<*const Goal>,
+    pub(super) drawn_score: Option<Score>,
     /// A turntable under way.
     pub(super) turning: Option<Turntable>,
     pub(super) screenshot: bool,
@@ -311,6 +317,9 @@ impl WindowState {
             shown_session: (None, 0),
             overlay_mesh: Triangles::default(),
             overlay_key: Default::default(),
+            ghost: Ghost::default(),
+            goal_address: None,
+            drawn_score: None,
             turning: None,
             screenshot: false,
             pacing,

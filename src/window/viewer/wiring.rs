@@ -70,7 +70,7 @@ pub struct Wiring {
     /// State that the run keeps in case this window is lost.
     pub link: WindowLink,
     /// The screen of an installation, which replaces the panels.
-    pub kiosk: Option<sculptd_daemon::kiosk::keeper::Screen>,
+    pub kiosk: Option<sculptd_daemon::kiosk::desk::Screen>,
     /// Link by which guests join in a browser; `None` if no page is served.
     pub invitation: Option<sculptd_daemon::qr_code::Invitation>,
 }

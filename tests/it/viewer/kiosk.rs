@@ -1,15 +1,20 @@
 //! The screen of an installation: every word in every language, every target large, nothing of one
 //! visitor for the next.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sculptd_clay::brush::BrushKind;
-use sculptd_daemon::kiosk::keeper::{KioskDesk, Screen};
+use sculptd_daemon::kiosk::desk::{KioskDesk, Screen, VisitResult};
+use sculptd_daemon::kiosk::exhibit::score::Score;
+use sculptd_daemon::kiosk::exhibit::{Exhibit, forms, pack};
+use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
+use sculptd_geometry::job::Job;
 use sculptd_window::panels::state::FrameFigures;
 use sculptd_window::panels::{Tab, UiRequest, kiosk};
 
@@ -25,11 +30,13 @@ fn screen() -> Screen {
         staff: true,
         show: Default::default(),
         watch: None,
+        exhibits: vec![],
+        dim: 0.0,
     }
 }
 
 fn at(screen: &Screen, stage: Stage, visits: u64) {
-    let view = View { stage, seconds_left: 7, visits, locked: false, wrong: 0 };
+    let view = View { stage, seconds_left: 7, visits, ..View::default() };
     *screen.desk.view.lock().expect("a ui_state") = Some(view);
 }
 
@@ -155,7 +162,7 @@ fn staff_types_a_number_that_is_not_shown() {
     assert_eq!(screen.desk.typed.lock().expect("a ui_state").as_deref(), Some("4711"));
     // The number was wrong: the keypad says so and takes another one, until it is locked.
     let view = |wrong, locked| {
-        let view = View { stage: Stage::Attract, seconds_left: 0, visits: 0, locked, wrong };
+        let view = View { locked, wrong, ..View::default() };
         *screen.desk.view.lock().expect("a ui_state") = Some(view);
     };
     view(1, false);
@@ -253,4 +260,190 @@ fn one_switch_presses_what_is_lit_and_all_lies_within_reach() {
         h.step();
     }
     assert!(h.state().asked.is_empty() && !finished());
+}
+
+fn exhibits() -> Vec<Arc<Exhibit>> {
+    let open = |name: &&str| Arc::new(pack::open(Path::new(name), &Job::default()).expect("known"));
+    forms::NAMES.iter().map(open).collect()
+}
+
+/// Everything on the screen lies within it, and apart from everything else.
+fn apart(h: &Harness<'_, State>, size: [f32; 2], texts: &[String], what: &str) {
+    let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+    let rects: Vec<egui::Rect> = texts.iter().map(|t| h.get_by_label(t).rect()).collect();
+    for (i, rect) in rects.iter().enumerate() {
+        assert!(inside.contains_rect(*rect), "{what}: {} is cut: {rect:?}", texts[i]);
+        for (other, text) in rects[..i].iter().zip(texts) {
+            let meets = rect.shrink(1.0).intersects(*other);
+            assert!(!meets, "{what}: {} {rect:?} lies over {text} {other:?}", texts[i]);
+        }
+    }
+}
+
+#[test]
+fn an_exhibit_in_every_language_without_overlaps() {
+    let mut screen = screen();
+    screen.exhibits = exhibits();
+    let score = Score { near: 0.876, too_much: 12.34, too_little: 3.21 };
+    for size in [[1280.0, 720.0], [1920.0, 1080.0], [1080.0, 1920.0]] {
+        at(&screen, Stage::Attract, 0);
+        let mut h = harness(&screen, size);
+        for i in 0..screen.words.len() {
+            let set = |stage, step: usize, exhibit| {
+                let view = View {
+                    stage,
+                    exhibit: Some(exhibit),
+                    step,
+                    visit_left_s: Some(125),
+                    ..View::default()
+                };
+                *screen.desk.view.lock().expect("a desk") = Some(view);
+            };
+            set(Stage::Attract, 0, 0);
+            *screen.desk.score.lock().expect("a desk") = None;
+            h.state_mut().ui_state.pad.language = i;
+            h.run_steps(3);
+            let language = &screen.words[i];
+            let drawn = h.query_by_label(&language.choose).map_or(&screen.words[0], |_| language);
+            let mut texts: Vec<String> = screen.words.iter().map(|l| l.name.clone()).collect();
+            texts.retain(|name| h.query_by_label(name).is_some());
+            texts.push(drawn.staff.clone());
+            let names = texts.clone();
+            texts.push(drawn.choose.clone());
+            texts.extend(screen.exhibits.iter().map(|e| e.manifest.title.get(&drawn.code).into()));
+            apart(&h, size, &texts, &format!("{} {size:?} choice", drawn.name));
+            // A visit to each.
+            *screen.desk.score.lock().expect("a desk") = Some(score);
+            for (e, exhibit) in screen.exhibits.iter().enumerate() {
+                set(Stage::Working, 0, e);
+                h.run_steps(3);
+                let mut texts = names.clone();
+                texts.push(exhibit.manifest.title.get(&drawn.code).into());
+                texts.push(exhibit.steps[0].text.get(&drawn.code).into());
+                texts.push(drawn.near.replace("{percent}", "87"));
+                texts.push(drawn.too_much.replace("{length}", "12.3"));
+                texts.push(drawn.too_little.replace("{length}", "3.2"));
+                texts.push(drawn.time_left.replace("{time}", "2:05"));
+                texts.extend(
+                    [&drawn.goal, &drawn.compare, &drawn.finish, &drawn.undo].map(Clone::clone),
+                );
+                apart(&h, size, &texts, &format!("{} {size:?} {}", drawn.name, exhibit.name));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_visitor_chooses_an_exhibit_hides_the_goal_and_compares() {
+    let mut screen = screen();
+    screen.exhibits = exhibits();
+    at(&screen, Stage::Attract, 0);
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    h.get_by_label("A pot on the wheel").click();
+    h.run_steps(3);
+    assert!(screen.desk.touched.swap(false, Relaxed), "that begins the visit");
+    let working = |exhibit| {
+        let view = View { stage: Stage::Working, exhibit: Some(exhibit), ..View::default() };
+        *screen.desk.view.lock().expect("a desk") = Some(view);
+    };
+    working(1);
+    h.run_steps(3);
+    // The pot has tools of its own.
+    for tool in ["Grab", "Add", "Carve", "Smooth"] {
+        h.get_by_label(tool);
+    }
+    h.get_by_label("Grab").click();
+    h.run_steps(3);
+    let grabs = |a: &UiRequest| matches!(a, UiRequest::World(Command::Brush(b)) if b.kind == BrushKind::Grab);
+    assert!(h.state().asked.iter().any(grabs));
+    assert!(h.query_by_label("Next step").is_none(), "it has one step");
+    h.get_by_label("Show the goal").click();
+    h.run_steps(3);
+    assert_eq!(h.state().ui_state.pad.ghost, Some(false));
+    h.get_by_label("Show the difference").click();
+    h.run_steps(3);
+    assert!(h.state().ui_state.pad.compares);
+    // The next visitor finds neither.
+    at(&screen, Stage::Working, 1);
+    h.run_steps(3);
+    assert_eq!((h.state().ui_state.pad.ghost, h.state().ui_state.pad.compares), (None, false));
+    // The result of the last visit.
+    let score = Score { near: 0.9361, too_much: 1.0, too_little: 2.0 };
+    *screen.desk.result.lock().expect("a desk") = Some(VisitResult { exhibit: 1, score });
+    at(&screen, Stage::Attract, 1);
+    h.run_steps(3);
+    h.get_by_label("Your work: 93 % right");
+}
+
+#[test]
+fn the_staff_page_shows_figures_and_asks_twice_before_the_end() {
+    let mut screen = screen();
+    screen.exhibits = exhibits();
+    *screen.desk.staff.lock().expect("a desk") = StaffFacts {
+        visits_today: 12,
+        visits: 34,
+        kept_today: 7,
+        mean_s: 83,
+        up_s: 7260,
+        errors: vec!["gallery: no space left".into()],
+        free_bytes: Some(12_345_678_901),
+        celsius: Some(61.0),
+        cleaning: false,
+        exported: None,
+    };
+    let view = View { staff: true, exhibit: Some(0), ..View::default() };
+    *screen.desk.view.lock().expect("a desk") = Some(view);
+    for size in [[1280.0, 720.0], [1080.0, 1920.0]] {
+        let mut h = harness(&screen, size);
+        for text in ["12", "34", "7", "1:23", "2:01", "12.3 GB", "61 °C", "gallery: no space left"]
+        {
+            h.get_by_label(text);
+        }
+        assert!(h.query_by_label("Staff").is_some() && h.query_by_label("Finished").is_none());
+        let asked = || std::mem::take(&mut *screen.desk.requests.lock().expect("a desk"));
+        for (name, request) in [
+            ("Close for cleaning", StaffRequest::Cleaning(true)),
+            ("Pack today's works", StaffRequest::Export),
+            ("The broken relief", StaffRequest::Exhibit(2)),
+            ("Restart", StaffRequest::Restart),
+            ("Back to the visit", StaffRequest::Leave),
+        ] {
+            h.get_by_label(name).click();
+            h.run_steps(3);
+            assert_eq!(asked(), [request], "{name}");
+        }
+        h.get_by_label("End for good").click();
+        h.run_steps(3);
+        assert_eq!(asked(), [], "once is not enough");
+        h.get_by_label("Press again to end").click();
+        h.run_steps(3);
+        assert_eq!(asked(), [StaffRequest::End]);
+    }
+}
+
+#[test]
+fn a_closed_installation_says_when_it_opens_and_has_no_tools() {
+    let mut screen = screen();
+    screen.dim = 0.6;
+    let closed = |cleaning| {
+        let opens_at = Some(9 * 60 + 5);
+        let view = View { stage: Stage::Closed, cleaning, opens_at, ..View::default() };
+        *screen.desk.view.lock().expect("a desk") = Some(view);
+    };
+    closed(false);
+    for size in [[1280.0, 720.0], [1080.0, 1920.0]] {
+        let mut h = harness(&screen, size);
+        for (i, language) in screen.words.iter().enumerate() {
+            h.state_mut().ui_state.pad.language = i;
+            h.run_steps(3);
+            let drawn = h.query_by_label(&language.closed).map_or(&screen.words[0], |_| language);
+            let opens = drawn.opens.replace("{time}", "9:05");
+            apart(&h, size, &[drawn.closed.clone(), opens, drawn.staff.clone()], &drawn.name);
+            assert!(h.query_by_label(&drawn.finish).is_none());
+        }
+    }
+    closed(true);
+    let h = harness(&screen, [1280.0, 720.0]);
+    h.get_by_label("A short break. We will be back soon.");
+    assert!(h.query_by_label("We open at 9:05").is_none());
 }

@@ -3,20 +3,27 @@
 
 use std::sync::atomic::Ordering::Relaxed;
 
-use egui::{Align2, Area, Button, Id, RichText, vec2};
+mod closed;
+mod exhibit;
+mod parts;
+mod staff;
 
+use egui::{Align2, RichText};
+
+use super::state::action::brush_title;
 use super::state::{KioskPad, UiRequest, UiState, View};
 use super::{fonts, qr_code, theme};
 use crate::language::ENGLISH;
+use parts::{Scan, large, place, text_size};
 use sculptd_clay::brush::BrushKind;
-use sculptd_daemon::kiosk::keeper::Screen;
+use sculptd_daemon::kiosk::desk::Screen;
+use sculptd_daemon::kiosk::exhibit::ExhibitTool;
 use sculptd_daemon::kiosk::{Language, Stage, View as KioskView};
 use sculptd_daemon::qr_code::Invitation;
 use sculptd_engine::command::Command;
 
-/// Smallest side of anything that is pressed, points: a fingertip on a 24-inch screen covers about
-/// half of it.
-pub const TARGET: f32 = 64.0;
+pub use parts::TARGET;
+
 /// Digits that are taken at most.
 const DIGITS: usize = 12;
 
@@ -60,23 +67,35 @@ pub fn ui(
         // The lower half can be reached from a chair.
         free.min.y = free.center().y;
     }
-    languages(&ctx, free, screen, pad, &mut scan);
+    if now.staff {
+        pad.typed = None;
+        staff::ui(&ctx, whole, (screen, view), pad, &now, &mut scan);
+        ui_state.pad.targets = scan.count;
+        return;
+    }
+    pad.ends = false;
+    if now.stage == Stage::Closed {
+        closed::ui(&ctx, whole, words, screen, &now);
+    } else {
+        languages(&ctx, free, screen, pad, &mut scan);
+    }
     if screen.staff {
         door(&ctx, free, words, &now, screen, pad, &mut scan);
     }
     told_staff(&ctx, free, screen, &mut scan);
     match now.stage {
+        Stage::Closed => {}
         Stage::Attract => {
-            said(&ctx, free, &words.welcome, &words.turn);
-            #[cfg(unix)]
-            if let Some(link) = screen.desk.link.lock().ok().and_then(|l| l.clone()) {
-                kept(&ctx, whole, words, &link);
-            }
+            attract(&ctx, (whole, free), words, &now, screen, &mut scan);
             if let Some(page) = &screen.watch {
                 watch(&ctx, whole, words, page);
             }
         }
-        Stage::Working => tools(&ctx, free, view, words, screen, out, &mut scan),
+        Stage::Working => {
+            exhibit::figures(&ctx, whole, words, screen, &now);
+            let shown = (words, screen, &now);
+            tools(&ctx, free, view, shown, pad, (out, &mut scan));
+        }
         Stage::Countdown => {
             let text = words.countdown.replace("{seconds}", &now.seconds_left.to_string());
             countdown(&ctx, free, &text, words, screen, &mut scan);
@@ -96,102 +115,54 @@ fn shown_words<'a>(
     chosen.chain(&screen.words).find(|words| fonts::can_draw(ctx, &words.all()))
 }
 
-/// The buttons of one frame, each lit in turn for people who press one switch.
-struct Scan {
-    /// Index of the highlighted button among those of the last frame; `None`: none is highlighted.
-    lit: Option<usize>,
-    /// The switch was pressed in this frame.
-    pressed: bool,
-    count: usize,
-}
-
-impl Scan {
-    fn begin(ctx: &egui::Context, screen: &Screen, pad: &KioskPad) -> Scan {
-        let each = screen.show.scan_s;
-        if each <= 0.0 || pad.targets == 0 {
-            return Scan { lit: None, pressed: false, count: 0 };
-        }
-        let (turns, pressed) = ctx.input(|i| {
-            let down = |e: &egui::Event| {
-                matches!(e, egui::Event::Key { pressed: true, repeat: false, .. })
-            };
-            (i.time / each, i.events.iter().any(down))
-        });
-        let next = (1.0 - turns.fract()) * each;
-        ctx.request_repaint_after(std::time::Duration::from_secs_f64(next.max(0.01)));
-        Scan { lit: Some(turns as usize % pad.targets), pressed, count: 0 }
-    }
-
-    /// Adds a button; whether it was pressed, by the switch too while it is lit.
-    fn button(&mut self, ui: &mut egui::Ui, enabled: bool, button: Button<'_>) -> bool {
-        let response = ui.add_enabled(enabled, button);
-        if !enabled {
-            return false;
-        }
-        let lit = self.lit == Some(self.count);
-        self.count += 1;
-        if lit {
-            let stroke = egui::Stroke::new(5.0, theme::accent(ui));
-            let around = response.rect.expand(3.0);
-            ui.painter().rect_stroke(around, 12, stroke, egui::StrokeKind::Outside);
-        }
-        response.clicked() || lit && self.pressed
-    }
-}
-
-fn large(text: &str, size: f32, width: f32) -> Button<'static> {
-    Button::new(RichText::new(text.to_owned()).size(size))
-        .min_size(vec2(width, TARGET + 8.0))
-        .corner_radius(10)
-}
-
-/// Puts something at an edge or in the middle of the screen.
-fn place(
+/// Invites visitors: to sculpt, to an exhibit, or to choose one; and shows the last work.
+fn attract(
     ctx: &egui::Context,
-    name: &str,
-    free: egui::Rect,
-    align: Align2,
-    what: impl FnOnce(&mut egui::Ui),
+    (whole, free): (egui::Rect, egui::Rect),
+    words: &Language,
+    now: &KioskView,
+    screen: &Screen,
+    scan: &mut Scan,
 ) {
-    let inner = free.shrink(24.0);
-    let at = align.pos_in_rect(&inner);
-    let area = Area::new(Id::unique(name)).fixed_pos(at).pivot(align).constrain_to(free);
-    area.show(ctx, |ui| {
-        egui::Frame::popup(ui.style()).inner_margin(14.0).corner_radius(14).show(ui, what);
+    match screen.exhibits.as_slice() {
+        [] => said(ctx, free, &words.welcome, &words.turn),
+        [one] => said(ctx, free, one.manifest.title.get(&words.code), &words.welcome),
+        _ => exhibit::choice(ctx, free, words, now, screen, scan),
+    }
+    let result = screen.desk.result.lock().ok().and_then(|result| *result);
+    #[cfg(unix)]
+    let link = screen.desk.link.lock().ok().and_then(|link| link.clone());
+    #[cfg(not(unix))]
+    let link: Option<Invitation> = None;
+    if result.is_none() && link.is_none() {
+        return;
+    }
+    place(ctx, "kept", whole, Align2::RIGHT_CENTER, |ui| {
+        ui.vertical_centered(|ui| {
+            if let Some(result) = result {
+                exhibit::result(ui, words, &result);
+            }
+            if let Some(link) = &link {
+                ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
+                ui.add_space(10.0);
+                // Beside a score there is less room.
+                let side = if result.is_some() { 240.0 } else { 360.0 };
+                qr_code::ui(ui, &link.code, side);
+                ui.add_space(10.0);
+                ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
+                ui.label(RichText::new(&link.url).size(13.0).monospace());
+            }
+        });
     });
 }
 
 fn said(ctx: &egui::Context, free: egui::Rect, text: &str, below: &str) {
     place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
-        let size = |text: &str, size: f32| {
-            let font = egui::FontId::proportional(size);
-            ui.painter().layout_no_wrap(text.into(), font, egui::Color32::PLACEHOLDER).size().x
-        };
-        let widest = size(text, 44.0).max(size(below, 20.0));
+        let widest = text_size(ui, text, 44.0).x.max(text_size(ui, below, 20.0).x);
         ui.set_width(widest.ceil().min(free.width() - 80.0));
         ui.vertical_centered(|ui| {
             ui.label(RichText::new(text).size(44.0));
             ui.label(RichText::new(below).size(20.0));
-        });
-    });
-}
-
-/// The last visitor's sculpture: where it is, and the code that leads to it.
-#[cfg(unix)]
-fn kept(
-    ctx: &egui::Context,
-    free: egui::Rect,
-    words: &Language,
-    link: &sculptd_daemon::kiosk::share::Link,
-) {
-    place(ctx, "kept", free, Align2::RIGHT_CENTER, |ui| {
-        ui.vertical_centered(|ui| {
-            ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
-            ui.add_space(10.0);
-            qr_code::ui(ui, &link.code, 360.0);
-            ui.add_space(10.0);
-            ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
-            ui.label(RichText::new(&link.url).size(13.0).monospace());
         });
     });
 }
@@ -252,33 +223,34 @@ fn languages(
     });
 }
 
-/// Brushes, one step back, and the end of the visit.
+/// Tools, one step back, and the end of the visit; over them the choices of an exhibit.
 fn tools(
     ctx: &egui::Context,
     free: egui::Rect,
     view: &View<'_>,
-    words: &Language,
-    screen: &Screen,
-    out: &mut Vec<UiRequest>,
-    scan: &mut Scan,
+    (words, screen, shown): (&Language, &Screen, &KioskView),
+    pad: &mut KioskPad,
+    (out, scan): (&mut Vec<UiRequest>, &mut Scan),
 ) {
     let now = view.state.brush;
+    let step = exhibit::step_of(screen, shown);
+    let tools = step.map_or(&ExhibitTool::USUAL[..], |step| &step.tools);
     place(ctx, "tools", free, Align2::CENTER_BOTTOM, |ui| {
         ui.set_max_width(free.width() - 80.0);
+        exhibit::choices(ui, words, (screen, shown), pad, scan);
         ui.horizontal_wrapped(|ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            for (name, kind, negative) in [
-                (&words.draw, BrushKind::Clay, false),
-                (&words.carve, BrushKind::Clay, true),
-                (&words.smooth, BrushKind::Smooth, false),
-            ] {
-                // Whatever adds or carves is one of two to a visitor.
-                let smooths = kind == BrushKind::Smooth;
-                let alike = smooths == (now.kind == BrushKind::Smooth);
-                let chosen = alike && (smooths || now.negative == negative);
-                if scan.button(ui, true, large(name, 24.0, 160.0).selected(chosen)) {
-                    let mut brush = if alike { now } else { view.presets.switched(&now, kind) };
-                    brush.negative = negative;
+            for tool in tools {
+                let alike = tool.kind == now.kind || adds(tool.kind) && adds(now.kind);
+                let signed = tools.iter().filter(|other| other.kind == tool.kind).count() > 1;
+                let chosen = alike && (!signed || now.negative == tool.negative);
+                let name = tool_name(words, *tool);
+                if scan.button(ui, true, large(&name, 24.0, 160.0).selected(chosen)) {
+                    let mut brush = match alike {
+                        true => now,
+                        false => view.presets.switched(&now, tool.kind),
+                    };
+                    brush.negative = tool.negative;
                     out.push(UiRequest::World(Command::Brush(brush)));
                     screen.desk.touched.store(true, Relaxed);
                 }
@@ -294,6 +266,22 @@ fn tools(
             }
         });
     });
+}
+
+/// Whatever adds or carves is one of two to a visitor, if the installation begins with a brush of
+/// its own.
+fn adds(kind: BrushKind) -> bool {
+    !matches!(kind, BrushKind::Smooth | BrushKind::Grab)
+}
+
+/// The name of a tool in the visitor's language.
+fn tool_name(words: &Language, tool: ExhibitTool) -> String {
+    match tool {
+        ExhibitTool::ADD => words.draw.clone(),
+        ExhibitTool::CARVE => words.carve.clone(),
+        ExhibitTool::SMOOTH => words.smooth.clone(),
+        other => brush_title(other.kind),
+    }
 }
 
 fn countdown(

@@ -1,0 +1,115 @@
+//! State exchanged between the keeper of an installation and its screen.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+use super::exhibit::Exhibit;
+use super::exhibit::score::Score;
+use super::exhibit::score_thread::SharedScore;
+#[cfg(unix)]
+use super::share;
+use super::staff::{StaffFacts, StaffRequest};
+use super::{Language, ScreenSettings, View};
+use crate::qr_code::Invitation;
+
+/// No exhibit was chosen.
+const NONE: usize = usize::MAX;
+
+/// State exchanged with the screen.
+#[derive(Debug)]
+pub struct KioskDesk {
+    pub view: Mutex<Option<View>>,
+    /// True if something on the screen itself was pressed.
+    pub touched: AtomicBool,
+    /// The visitor pressed "finished".
+    pub finished: AtomicBool,
+    /// The visitor goes on to the exhibit's next step.
+    pub next_step: AtomicBool,
+    /// Index of the exhibit that the next visit begins with, if the visitor chose one.
+    chosen: AtomicUsize,
+    /// Score of the newest clay, during a visit to an exhibit with a goal.
+    pub score: SharedScore,
+    /// Result of the last visit to an exhibit with a goal, until the next visit.
+    pub result: Mutex<Option<VisitResult>>,
+    /// Input typed by staff.
+    pub typed: Mutex<Option<String>>,
+    /// Requests of the staff page, in order.
+    pub requests: Mutex<Vec<StaffRequest>>,
+    /// Content of the staff page, as long as it is open.
+    pub staff: Mutex<StaffFacts>,
+    /// Set before the end of the run if a new one is to follow it.
+    pub again: AtomicBool,
+    /// Message from the fleet's staff to those on site, until dismissed.
+    pub message: Mutex<Option<String>>,
+    /// Link to the last visitor's sculpture, until another visitor comes.
+    #[cfg(unix)]
+    pub link: Mutex<Option<share::Link>>,
+}
+
+impl Default for KioskDesk {
+    fn default() -> Self {
+        KioskDesk {
+            view: Mutex::default(),
+            touched: AtomicBool::default(),
+            finished: AtomicBool::default(),
+            next_step: AtomicBool::default(),
+            chosen: AtomicUsize::new(NONE),
+            score: SharedScore::default(),
+            result: Mutex::default(),
+            typed: Mutex::default(),
+            requests: Mutex::default(),
+            staff: Mutex::default(),
+            again: AtomicBool::default(),
+            message: Mutex::default(),
+            #[cfg(unix)]
+            link: Mutex::default(),
+        }
+    }
+}
+
+impl KioskDesk {
+    /// A visitor begins with this exhibit.
+    pub fn choose(&self, exhibit: usize) {
+        self.chosen.store(exhibit, Relaxed);
+        self.touched.store(true, Relaxed);
+    }
+
+    /// Returns the exhibit that was chosen, once.
+    pub(super) fn take_choice(&self) -> Option<usize> {
+        Some(self.chosen.swap(NONE, Relaxed)).filter(|&exhibit| exhibit != NONE)
+    }
+
+    /// Adds a request of the staff page.
+    pub fn ask(&self, request: StaffRequest) {
+        if let Ok(mut requests) = self.requests.lock() {
+            requests.push(request);
+        }
+    }
+}
+
+/// Result of a visit to an exhibit with a goal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VisitResult {
+    /// Index of the exhibit.
+    pub exhibit: usize,
+    /// The work that was put away, against the goal of the visit's last step.
+    pub score: Score,
+}
+
+/// Content of an installation's window.
+#[derive(Debug, Clone)]
+pub struct Screen {
+    pub desk: Arc<KioskDesk>,
+    /// Never empty; the first is shown to each new visitor.
+    pub words: Vec<Language>,
+    /// True if staff can exit with a PIN.
+    pub staff: bool,
+    /// Display settings of the screen.
+    pub show: ScreenSettings,
+    /// The page on which visitors watch.
+    pub watch: Option<Invitation>,
+    /// Exhibits to choose from; empty: free sculpting.
+    pub exhibits: Vec<Arc<Exhibit>>,
+    /// How dark the screen is while the installation is closed, from 0 to 1.
+    pub dim: f32,
+}

@@ -1,0 +1,93 @@
+//! What visitors start from.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crossbeam_channel as cc;
+
+use super::exhibit::Exhibit;
+use super::visit_journal::VisitNews;
+use crate::command_queue::QueuedCommand;
+use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::{BuildError, Clay};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::{Beginning, Command, NewClay};
+use sculptd_engine::payload::Payload;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::job::Job;
+
+/// A form that visitors start from.
+#[derive(Debug, Clone)]
+pub struct StartForm {
+    pub plain: Arc<TriMesh>,
+    pub brush: BrushSettings,
+    /// `None`: free sculpting.
+    pub exhibit: Option<Arc<Exhibit>>,
+}
+
+/// Initial state for every visitor.
+#[derive(Debug, Clone)]
+pub struct Start {
+    /// One for each exhibit, or one for free sculpting; never empty.
+    pub forms: Vec<StartForm>,
+    pub camera: Camera,
+    /// Set while a reset begins an attract film, which no session records; cleared for a visit.
+    pub film: Arc<AtomicBool>,
+    /// A visit that the last run did not end; its work is in the world.
+    pub interrupted: Option<InterruptedVisit>,
+    /// See [`VisitRecording::news`]; `None`: visits are not recorded one by one.
+    ///
+    /// [`VisitRecording::news`]: super::visit_journal::VisitRecording::news
+    pub news: Option<cc::Sender<VisitNews>>,
+}
+
+/// A visit that the last run did not end.
+#[derive(Debug, Clone, Copy)]
+pub struct InterruptedVisit {
+    /// Index of the form that it began with; `None`: that form is not there any more.
+    pub form: Option<usize>,
+}
+
+impl Start {
+    /// Returns a start with one form, for free sculpting.
+    pub fn free(plain: Arc<TriMesh>, camera: Camera, brush: BrushSettings) -> Start {
+        let forms = vec![StartForm { plain, brush, exhibit: None }];
+        Start { forms, camera, film: Arc::default(), interrupted: None, news: None }
+    }
+}
+
+/// The forms with their clay, built once.
+#[derive(Debug)]
+pub(super) struct BuiltForms {
+    forms: Vec<(StartForm, Clay)>,
+    camera: Camera,
+}
+
+impl BuiltForms {
+    pub(super) fn build(start: &Start) -> Result<BuiltForms, BuildError> {
+        let build =
+            |form: &StartForm| Ok((form.clone(), Clay::build(&form.plain, &Job::default())?));
+        let forms = start.forms.iter().map(build).collect::<Result<_, BuildError>>()?;
+        Ok(BuiltForms { forms, camera: start.camera })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.forms.len()
+    }
+
+    /// Panics if there is no form of this index.
+    pub(super) fn get(&self, index: usize) -> &StartForm {
+        &self.forms[index].0
+    }
+
+    /// Returns the command that resets everything, with a copy of the form's clay: a reset costs by
+    /// the number of pages, so a visitor's first stroke is not lost.
+    pub(super) fn reset(&self, index: usize) -> QueuedCommand {
+        let (form, built) = &self.forms[index];
+        let clay = NewClay::new(form.plain.clone(), false);
+        let beginning = Beginning { clay, camera: self.camera, brush: form.brush };
+        let command = Command::Begin(Box::new(beginning));
+        let copy = built.duplicate(built.object_id());
+        QueuedCommand::with_payload(command, Payload::Clay(Box::new(copy)))
+    }
+}
