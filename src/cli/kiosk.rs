@@ -131,7 +131,7 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
                 let (percent, much, little) = (score.percent(), score.too_much, score.too_little);
                 writeln!(
                     out,
-                    "{percent} % is right; too much up to {much:.3}, too little up to {little:.3}"
+                    "{percent} % is done; too much up to {much:.3}, too little up to {little:.3}"
                 )
             });
         }
@@ -198,11 +198,11 @@ fn print(facts: &ExhibitAnswer, json: bool) {
                 (step.goal_triangles, step.tolerance, &step.at_start)
             {
                 writeln!(out, "    goal: {triangles} triangles, right within {tolerance}")?;
-                let (percent, much, little) = (score.percent(), score.too_much, score.too_little);
+                let (much, little) = (score.too_much, score.too_little);
                 writeln!(
                     out,
-                    "    at the start {percent} % is right; too much up to {much:.1}, too little \
-                     up to {little:.1}"
+                    "    at the start there is too much up to {much:.1}, too little up to \
+                     {little:.1}"
                 )?;
             }
         }

@@ -275,10 +275,10 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     assert!(!stop.load(Relaxed), "nobody typed the PIN");
     *keeper.desk.typed.lock().expect("a desk") = Some("4711".into());
     until("the staff page opens", staff);
-    until("it shows the visit", || {
-        let facts = keeper.desk.staff.lock().expect("a desk").clone();
-        (facts.visits_today, facts.kept_today, facts.visits) == (1, 1, 1)
-    });
+    let facts = || keeper.desk.staff.lock().expect("a desk").clone();
+    until("it shows figures", || facts().free_bytes.is_some());
+    let shown = facts();
+    assert_eq!((shown.visits_today, shown.kept_today, shown.visits), (1, 1, 1), "{shown:?}");
     keeper.desk.ask(StaffRequest::End);
     until("staff is let out", || stop.load(Relaxed));
     assert!(!keeper.desk.again.load(Relaxed));

@@ -11,8 +11,8 @@ use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
 use super::desk::{KioskDesk, VisitResult};
-use super::exhibit::score::Goal;
-use super::exhibit::{Exhibit, ExhibitStep, score_thread};
+use super::exhibit::score_thread::{self, WantedScore};
+use super::exhibit::{Exhibit, ExhibitStep};
 use super::film::AttractRecording;
 use super::gallery::{self, VisitLine};
 use super::hours::Hours;
@@ -66,7 +66,7 @@ struct KioskThread {
     looked_us: u64,
     figures: VisitFigures,
     /// Takes the goal that the newest clay is scored against; `None`: no exhibit has a goal.
-    goals: Option<cc::Sender<Option<Arc<Goal>>>>,
+    goals: Option<cc::Sender<Option<WantedScore>>>,
     /// Results of exports.
     exported: (cc::Sender<Exported>, cc::Receiver<Exported>),
     published: Arc<ArcSwap<Published>>,
@@ -188,7 +188,7 @@ impl KioskThread {
         if self.start.interrupted.is_some() {
             cycle = cycle.resumed();
             cycle.limit(self.minutes());
-            self.send_goal();
+            self.send_goal(None);
             if self.config.interrupted == Interrupted::Gallery {
                 let act = cycle.interrupt();
                 self.carry_out(act, &mut cycle);
@@ -264,12 +264,13 @@ impl KioskThread {
         self.exhibit().map_or(0.0, |exhibit| exhibit.manifest.minutes)
     }
 
-    /// Has the newest clay scored against the goal of the step, from now on.
-    fn send_goal(&self) {
+    /// Has the newest clay scored against the goal of the step, from now on. `not`: the clay before
+    /// a reset that is on its way.
+    fn send_goal(&self, not: Option<u32>) {
         let goal = self.exhibit_step().and_then(|step| step.goal.clone());
         if let Some(goals) = &self.goals {
             // The thread ends after this one.
-            let _ = goals.send(goal);
+            let _ = goals.send(goal.map(|goal| WantedScore { goal, not }));
         }
     }
 
@@ -277,7 +278,7 @@ impl KioskThread {
         let steps = self.exhibit().map_or(0, |exhibit| exhibit.steps.len());
         if cycle.view().stage == Stage::Working && self.step + 1 < steps {
             self.step += 1;
-            self.send_goal();
+            self.send_goal(None);
         }
     }
 
@@ -360,9 +361,10 @@ impl KioskThread {
                 self.dabs_before = self.published.load().figures.dabs;
                 let chosen = self.desk.take_choice().filter(|&index| index < self.built.len());
                 let form = chosen.or(self.form).unwrap_or(0);
+                let before = self.published.load().mesh.object_id();
                 self.put_back(form, false);
                 cycle.limit(self.minutes());
-                self.send_goal();
+                self.send_goal(Some(before));
             }
             Some(KioskAct::End { seconds }) => self.end_visit(seconds, cycle.view().visits),
         }
@@ -465,7 +467,8 @@ impl KioskThread {
             return self.figures.error(text.into());
         }
         if let Some(news) = self.start.news.as_ref().filter(|_| !film) {
-            let _ = news.send(VisitNews::Begins(self.built.get(form).plain.clone()));
+            let form = self.built.get(form);
+            let _ = news.send(VisitNews::Begins(form.plain.clone(), form.brush));
         }
     }
 

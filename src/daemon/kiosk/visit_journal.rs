@@ -18,6 +18,7 @@ use crate::session::history::Handle;
 use crate::session::writer::{KEPT_BYTES, WriterThread};
 use crate::session::{self, Health, SessionWriter, catalog};
 use crate::tick::Journal;
+use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
@@ -161,8 +162,8 @@ pub struct VisitStart {
 /// News of a visit, for the thread that makes the files.
 #[derive(Debug)]
 pub enum VisitNews {
-    /// A visit begins with this clay.
-    Begins(Arc<TriMesh>),
+    /// A visit begins with this clay and this brush.
+    Begins(Arc<TriMesh>, BrushSettings),
     /// A visit has ended.
     PutAway(PutAway),
 }
@@ -258,9 +259,10 @@ impl VisitFolder {
         while let Ok(news) = calls.recv() {
             let work = match news {
                 VisitNews::PutAway(work) => work,
-                VisitNews::Begins(plain) if Arc::ptr_eq(&plain, &self.start.plain) => continue,
-                VisitNews::Begins(plain) => {
+                VisitNews::Begins(plain, _) if Arc::ptr_eq(&plain, &self.start.plain) => continue,
+                VisitNews::Begins(plain, brush) => {
                     self.start.plain = plain;
+                    self.start.settings.brush = brush;
                     if self.open.is_some() && self.ended.recv().is_err() {
                         break;
                     }

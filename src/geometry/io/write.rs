@@ -51,7 +51,7 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
 /// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.
 pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     let mut out = Vec::new();
-    if mesh.colours.is_some() && matches!(kind, "stl" | "3mf") {
+    if mesh.colours.is_some() && kind == "stl" {
         out.push(format!("the vertices' colours are left out: .{kind} is written without"));
     }
     if mesh.groups.is_some() && kind != "obj" {

@@ -244,26 +244,28 @@ pub(super) struct ThreeMfPart<'a> {
 /// One object, in millimetres, double precision.
 pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     threemf_model(out, |text| {
-        threemf_mesh(1, "", mesh, text)?;
-        writeln!(text, "</resources><build><item objectid=\"1\"/></build></model>")
+        let id = threemf_mesh(1, "", mesh, text)?;
+        writeln!(text, "</resources><build><item objectid=\"{id}\"/></build></model>")
     })
 }
 
 /// One object whose components are the parts, each with its name and its transform.
 pub(super) fn threemf_parts(parts: &[ThreeMfPart<'_>], out: &mut dyn Write) -> io::Result<()> {
     threemf_model(out, |text| {
-        for (i, part) in parts.iter().enumerate() {
+        let mut ids = Vec::new();
+        for part in parts {
             let name = format!(" name=\"{}\"", xml(part.name));
-            threemf_mesh(i + 1, &name, part.mesh, text)?;
+            let first = ids.last().map_or(1, |last| last + 1);
+            ids.push(threemf_mesh(first, &name, part.mesh, text)?);
         }
-        let all = parts.len() + 1;
+        let all = ids.last().map_or(1, |last| last + 1);
         writeln!(text, "<object id=\"{all}\" type=\"model\"><components>")?;
-        for (i, part) in parts.iter().enumerate() {
+        for (part, id) in parts.iter().zip(&ids) {
             // Row vectors: the axes one after the other, then the shift.
             let numbers = part.rows.to_cols_array().into_iter().chain(part.shift.to_array());
             let numbers: Vec<String> = numbers.map(|n| n.to_string()).collect();
             let at = numbers.join(" ");
-            writeln!(text, "<component objectid=\"{}\" transform=\"{at}\"/>", i + 1)?;
+            writeln!(text, "<component objectid=\"{id}\" transform=\"{at}\"/>")?;
         }
         writeln!(
             text,
@@ -306,7 +308,8 @@ fn threemf_model(
     writeln!(
         text,
         "<model unit=\"millimeter\" xml:lang=\"en\" \
-         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
+         xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">"
     )?;
     writeln!(text, "<resources>")?;
     rest(&mut text)?;
@@ -315,14 +318,44 @@ fn threemf_model(
     out.write_all(&zip.finish()?.into_inner())
 }
 
-fn threemf_mesh(id: usize, name: &str, mesh: &PolyMesh, text: &mut dyn Write) -> io::Result<()> {
-    writeln!(text, "<object id=\"{id}\" type=\"model\"{name}><mesh><vertices>")?;
+/// Writes a mesh as an object, after its group of colours if it has any. `id`: the first free
+/// number of a resource. Returns the object's.
+fn threemf_mesh(id: usize, name: &str, mesh: &PolyMesh, text: &mut dyn Write) -> io::Result<usize> {
+    let mut places = Vec::new();
+    if let Some(colours) = &mesh.colours {
+        // Each colour once, in the order in which vertices have them.
+        let mut known = std::collections::BTreeMap::new();
+        writeln!(text, "<m:colorgroup id=\"{id}\">")?;
+        for colour in colours {
+            let next = known.len();
+            let place = *known.entry(*colour).or_insert(next);
+            if place == next {
+                let [r, g, b, a] = *colour;
+                writeln!(text, "<m:color color=\"#{r:02X}{g:02X}{b:02X}{a:02X}\"/>")?;
+            }
+            places.push(place);
+        }
+        writeln!(text, "</m:colorgroup>")?;
+    }
+    let object = if places.is_empty() { id } else { id + 1 };
+    let property = match places.is_empty() {
+        true => String::new(),
+        false => format!(" pid=\"{id}\" pindex=\"0\""),
+    };
+    writeln!(text, "<object id=\"{object}\" type=\"model\"{name}{property}><mesh><vertices>")?;
     for p in &mesh.positions {
         writeln!(text, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z)?;
     }
     writeln!(text, "</vertices><triangles>")?;
-    for [a, b, c] in mesh.triangles().0 {
-        writeln!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>")?;
+    for corners in mesh.triangles().0 {
+        let [a, b, c] = corners;
+        write!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+        if !places.is_empty() {
+            let [p, q, r] = corners.map(|v| places[v as usize]);
+            write!(text, " pid=\"{id}\" p1=\"{p}\" p2=\"{q}\" p3=\"{r}\"")?;
+        }
+        writeln!(text, "/>")?;
     }
-    writeln!(text, "</triangles></mesh></object>")
+    writeln!(text, "</triangles></mesh></object>")?;
+    Ok(object)
 }

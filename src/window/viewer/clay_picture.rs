@@ -94,7 +94,7 @@ mod tests {
             lines: Vec::new(),
             led: ProvisionalDabs::default(),
             preview: None,
-            overlay: 0,
+            overlay: (0, 0),
             values: 0,
             size: (800, 600),
         };

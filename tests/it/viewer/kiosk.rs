@@ -284,7 +284,7 @@ fn apart(h: &Harness<'_, State>, size: [f32; 2], texts: &[String], what: &str) {
 fn an_exhibit_in_every_language_without_overlaps() {
     let mut screen = screen();
     screen.exhibits = exhibits();
-    let score = Score { near: 0.876, too_much: 12.34, too_little: 3.21 };
+    let score = Score { near: 0.9, done: 0.876, too_much: 12.34, too_little: 3.21 };
     for size in [[1280.0, 720.0], [1920.0, 1080.0], [1080.0, 1920.0]] {
         at(&screen, Stage::Attract, 0);
         let mut h = harness(&screen, size);
@@ -368,11 +368,11 @@ fn a_visitor_chooses_an_exhibit_hides_the_goal_and_compares() {
     h.run_steps(3);
     assert_eq!((h.state().ui_state.pad.ghost, h.state().ui_state.pad.compares), (None, false));
     // The result of the last visit.
-    let score = Score { near: 0.9361, too_much: 1.0, too_little: 2.0 };
+    let score = Score { near: 0.95, done: 0.9361, too_much: 1.0, too_little: 2.0 };
     *screen.desk.result.lock().expect("a desk") = Some(VisitResult { exhibit: 1, score });
     at(&screen, Stage::Attract, 1);
     h.run_steps(3);
-    h.get_by_label("Your work: 93 % right");
+    h.get_by_label("Your work: 93 % done");
 }
 
 #[test]

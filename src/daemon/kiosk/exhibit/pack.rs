@@ -73,20 +73,20 @@ fn assemble(
         }
     }
     let mesh = |file: &str| meshes.get(file).cloned().unwrap_or_default();
+    let start = Arc::new(mesh(&manifest.start));
     let mut steps = Vec::new();
     for (i, step) in manifest.step.iter().enumerate() {
         let in_step = |e: String| format!("{MANIFEST}: step {}: {e}", i + 1);
         let goal = match step.goal.is_empty() {
             true => None,
             false => {
-                let goal = Goal::new(mesh(&step.goal), step.tolerance, job);
+                let goal = Goal::new(mesh(&step.goal), &start, step.tolerance, job);
                 Some(Arc::new(goal.map_err(|e| in_step(format!("{}: {e}", step.goal)))?))
             }
         };
         let tools = step.tools().map_err(in_step)?;
         steps.push(ExhibitStep { text: step.text.clone(), tools, goal, ghost: step.ghost });
     }
-    let start = Arc::new(mesh(&manifest.start));
     let goal = steps.iter().rev().find_map(|step| step.goal.as_ref());
     let [width, height] = PICTURE;
     let shown = goal.map_or(&start, |goal| &goal.mesh);

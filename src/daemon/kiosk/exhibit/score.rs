@@ -17,6 +17,8 @@ pub struct Goal {
     pub tolerance: f64,
     solid: DistanceSolid,
     areas: Vec<f64>,
+    /// [`Score::near`] of the form that visitors start from.
+    near_at_start: f64,
 }
 
 /// How near a work is to its goal. Distances are those that `sculptd distance` measures, in the
@@ -27,6 +29,8 @@ pub struct Score {
     /// the goal's, and of the goal's surface that is within the tolerance of the work's. A vertex
     /// stands for a third of the area of its triangles.
     pub near: f64,
+    /// From 0 to 1: the share of the way from the start's [`Score::near`] to 1 that is done.
+    pub done: f64,
     /// Greatest distance of a vertex of the work outside the goal; 0: none is outside.
     pub too_much: f64,
     /// Greatest distance of a vertex of the goal outside the work; 0: none is outside.
@@ -34,24 +38,26 @@ pub struct Score {
 }
 
 impl Score {
-    /// Returns [`Score::near`] in whole percent, rounded down: 100 only if all of it is right.
+    /// Returns [`Score::done`] in whole percent, rounded down: 100 only if all of it is right.
     pub fn percent(&self) -> u32 {
-        (self.near * 100.0 + 1e-9).floor().clamp(0.0, 100.0) as u32
+        (self.done * 100.0 + 1e-9).floor().clamp(0.0, 100.0) as u32
     }
 }
 
 impl Goal {
-    /// Prepares a goal.
+    /// Prepares a goal for works that begin as `start`.
     ///
     /// # Errors
     /// Returns a message if the surface is not closed: it has no inside then.
-    pub fn new(mesh: TriMesh, tolerance: f64, job: &Job) -> Result<Goal, String> {
+    pub fn new(mesh: TriMesh, start: &TriMesh, tolerance: f64, job: &Job) -> Result<Goal, String> {
         let solid = DistanceSolid::build(&mesh, job).map_err(|e| e.to_string())?;
         if mesh.triangles.is_empty() || !solid.topology.closed {
             return Err("expected a closed surface; `sculptd remesh` makes one of any mesh".into());
         }
         let areas = vertex_areas(&mesh);
-        Ok(Goal { mesh: Arc::new(mesh), tolerance, solid, areas })
+        let mut goal = Goal { mesh: Arc::new(mesh), tolerance, solid, areas, near_at_start: 0.0 };
+        goal.near_at_start = goal.score(start, job).map_err(|e| e.to_string())?.near;
+        Ok(goal)
     }
 
     /// Measures a work, on the threads of the current rayon pool.
@@ -63,7 +69,11 @@ impl Goal {
         let (there, too_much) =
             one_way(&self.solid, work, &vertex_areas(work), self.tolerance, job)?;
         let (back, too_little) = one_way(&solid, &self.mesh, &self.areas, self.tolerance, job)?;
-        Ok(Score { near: (there + back) * 0.5, too_much, too_little })
+        let near = (there + back) * 0.5;
+        let way = 1.0 - self.near_at_start;
+        // A start that is right already has no way to go.
+        let done = if way > 0.0 { ((near - self.near_at_start) / way).max(0.0) } else { near };
+        Ok(Score { near, done, too_much, too_little })
     }
 }
 
@@ -107,7 +117,8 @@ mod tests {
     #[test]
     fn a_larger_ball_is_too_much_and_a_smaller_one_too_little_by_their_difference() {
         let job = Job::default();
-        let goal = Goal::new(shapes::icosphere(10.0, 32), 0.5, &job).expect("closed");
+        let start = shapes::icosphere(20.0, 32);
+        let goal = Goal::new(shapes::icosphere(10.0, 32), &start, 0.5, &job).expect("closed");
         let score = |radius: f32| goal.score(&shapes::icosphere(radius, 32), &job).expect("scored");
         let same = score(10.0);
         assert_eq!((same.percent(), same.near), (100, 1.0));
@@ -132,17 +143,19 @@ mod tests {
             let bounds = (DVec3::ZERO, DVec3::new(x, 10.0, 10.0));
             implicit::surface(field, bounds, 100, &job).expect("a cube")
         };
-        let goal = Goal::new(cube(20.0), 0.25, &job).expect("closed");
+        let goal = Goal::new(cube(20.0), &cube(10.0), 0.25, &job).expect("closed");
         let half = goal.score(&cube(10.0), &job).expect("scored");
         // Of the work's 600 all but its new end of 100 is right; of the goal's 1,000, 500.
         let expected = (500.0 / 600.0 + 500.0 / 1000.0) / 2.0;
         assert!((half.near - expected).abs() < 0.03, "{half:?}, expected {expected}");
-        assert!(half.too_much < 0.1 && (half.too_little - 10.0).abs() < 0.2, "{half:?}");
+        assert_eq!(half.percent(), 0, "it is the start");
+        assert!(half.too_much < 0.2 && (half.too_little - 10.0).abs() < 0.2, "{half:?}");
     }
 
     #[test]
     fn an_open_goal_is_refused() {
         let open = shapes::grid(10.0, 10.0, 4, 4).triangulate().0;
-        assert!(Goal::new(open, 1.0, &Job::default()).is_err_and(|e| e.contains("closed")));
+        let ball = shapes::icosphere(10.0, 8);
+        assert!(Goal::new(open, &ball, 1.0, &Job::default()).is_err_and(|e| e.contains("closed")));
     }
 }

@@ -13,6 +13,14 @@ use sculptd_geometry::job::Job;
 /// Time between two looks at the clay.
 const LOOK: Duration = Duration::from_millis(300);
 
+/// A goal that the newest clay is scored against.
+#[derive(Debug)]
+pub struct WantedScore {
+    pub goal: Arc<Goal>,
+    /// Number of a clay that is not scored: it is about to be replaced.
+    pub not: Option<u32>,
+}
+
 /// The newest score.
 pub type SharedScore = Arc<Mutex<Option<Score>>>;
 
@@ -24,7 +32,7 @@ pub type SharedScore = Arc<Mutex<Option<Score>>>;
 pub fn start(
     published: Arc<ArcSwap<Published>>,
     shown: SharedScore,
-) -> std::io::Result<cc::Sender<Option<Arc<Goal>>>> {
+) -> std::io::Result<cc::Sender<Option<WantedScore>>> {
     let (send, goals) = cc::unbounded();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(std::io::Error::other)?;
@@ -34,7 +42,7 @@ pub fn start(
 }
 
 fn follow(
-    goals: &cc::Receiver<Option<Arc<Goal>>>,
+    goals: &cc::Receiver<Option<WantedScore>>,
     published: &ArcSwap<Published>,
     shown: &SharedScore,
 ) {
@@ -44,25 +52,27 @@ fn follow(
         }
     };
     let job = Job::default();
-    let (mut goal, mut scored) = (None, None);
+    let (mut wanted, mut scored): (Option<WantedScore>, _) = (None, None);
     loop {
         // Without a goal the thread sleeps.
-        let next = match goal {
+        let next = match &wanted {
             None => goals.recv().map_err(|_| cc::RecvTimeoutError::Disconnected),
             Some(_) => goals.recv_timeout(LOOK),
         };
         match next {
-            Ok(next) => (goal, scored) = (next, None),
+            Ok(next) => {
+                (wanted, scored) = (next, None);
+                // The last score was of another goal.
+                show(None);
+            }
             Err(cc::RecvTimeoutError::Timeout) => {}
             Err(cc::RecvTimeoutError::Disconnected) => return,
         }
-        let Some(goal) = &goal else {
-            show(None);
-            continue;
-        };
+        let Some(WantedScore { goal, not }) = &wanted else { continue };
         let clay = published.load().mesh.clone();
         let revision = (clay.object_id(), clay.revision());
         if scored != Some(revision)
+            && *not != Some(clay.object_id())
             && let Ok(score) = goal.score(&clay.to_tri(), &job)
         {
             show(Some(score));

@@ -12,8 +12,8 @@ use sculptd_daemon::kiosk::exhibit::score::Score;
 use sculptd_daemon::kiosk::exhibit::{Exhibit, ExhibitStep};
 use sculptd_daemon::kiosk::{Language, View};
 
-/// Width of the picture of an exhibit, points.
-const PICTURE: f32 = 200.0;
+/// Width of an exhibit to choose, points.
+const CARD: f32 = 190.0;
 /// Width of the task and its figures, points.
 const FIGURES: f32 = 300.0;
 
@@ -32,34 +32,43 @@ pub(super) fn choice(
     scan: &mut Scan,
 ) {
     place(ctx, "choice", free, Align2::CENTER_BOTTOM, |ui| {
-        let card = PICTURE + 24.0 + ui.spacing().item_spacing.x;
-        let fits = ((free.width() - 80.0) / card).floor().max(1.0);
-        ui.set_width(card * fits.min(screen.exhibits.len() as f32));
-        ui.vertical_centered(|ui| {
-            ui.label(RichText::new(&words.choose).size(34.0));
-        });
-        ui.horizontal_wrapped(|ui| {
-            for (i, exhibit) in screen.exhibits.iter().enumerate() {
-                let title = exhibit.manifest.title.get(&words.code);
-                let picture = texture(ui.ctx(), exhibit);
-                let [width, height] = picture.size();
-                let size = vec2(PICTURE, PICTURE * height as f32 / width.max(1) as f32);
-                let pressed = ui.allocate_ui(vec2(PICTURE + 24.0, 0.0), |ui| {
-                    ui.vertical_centered(|ui| {
-                        ui.image((picture.id(), size));
-                        let size = text_size(ui, title, 18.0).x;
-                        let size = if size > PICTURE { 18.0 * PICTURE / size } else { 18.0 };
-                        let button = large(title, size, PICTURE + 24.0);
-                        scan.button(ui, true, button.selected(now.exhibit == Some(i)))
-                    })
-                    .inner
-                });
-                if pressed.inner {
-                    screen.desk.choose(i);
+        let gap = ui.spacing().item_spacing.x;
+        let fits = ((free.width() - 80.0 + gap) / (CARD + gap)).floor().max(1.0) as usize;
+        let fits = fits.min(screen.exhibits.len());
+        ui.set_width(CARD * fits as f32 + gap * (fits - 1) as f32);
+        ui.vertical_centered(|ui| ui.label(RichText::new(&words.choose).size(30.0)));
+        let all: Vec<_> = screen.exhibits.iter().enumerate().collect();
+        for row in all.chunks(fits) {
+            ui.horizontal_top(|ui| {
+                for (i, exhibit) in row {
+                    ui.vertical(|ui| {
+                        ui.set_width(CARD);
+                        if card(ui, (words, exhibit), now.exhibit == Some(*i), scan) {
+                            screen.desk.choose(*i);
+                        }
+                    });
                 }
-            }
-        });
+            });
+        }
     });
+}
+
+/// A picture with the title below it; whether it was pressed.
+fn card(
+    ui: &mut egui::Ui,
+    (words, exhibit): (&Language, &Exhibit),
+    shown: bool,
+    scan: &mut Scan,
+) -> bool {
+    let title = exhibit.manifest.title.get(&words.code);
+    let picture = texture(ui.ctx(), exhibit);
+    let [width, height] = picture.size();
+    let size = vec2(CARD, CARD * height as f32 / width.max(1) as f32);
+    ui.add(egui::Image::new((picture.id(), size)).corner_radius(10));
+    let length = text_size(ui, title, 18.0).x;
+    let room = CARD - 16.0;
+    let size = if length > room { 18.0 * room / length } else { 18.0 };
+    scan.button(ui, true, large(title, size, CARD).selected(shown))
 }
 
 /// The picture of an exhibit on the card, sent once.
@@ -80,8 +89,9 @@ pub(super) fn figures(
     ctx: &egui::Context,
     free: egui::Rect,
     words: &Language,
-    screen: &Screen,
-    now: &View,
+    (screen, now): (&Screen, &View),
+    pad: &mut KioskPad,
+    scan: &mut Scan,
 ) {
     let Some(exhibit) = now.exhibit.and_then(|i| screen.exhibits.get(i)) else { return };
     let Some(step) = exhibit.steps.get(now.step) else { return };
@@ -94,7 +104,7 @@ pub(super) fn figures(
             ui.add_space(8.0);
             let percent = score.percent();
             ui.label(RichText::new(near(words, percent)).size(24.0));
-            let bar = egui::ProgressBar::new(score.near as f32).desired_height(12.0);
+            let bar = egui::ProgressBar::new(score.done as f32).desired_height(12.0);
             ui.add(bar);
             differences(ui, words, &score);
         }
@@ -102,6 +112,11 @@ pub(super) fn figures(
             ui.add_space(8.0);
             let time = format!("{}:{:02}", left / 60, left % 60);
             ui.label(RichText::new(words.time_left.replace("{time}", &time)).size(18.0));
+        }
+        // From a chair nobody reaches so high.
+        if !screen.show.seated {
+            ui.add_space(8.0);
+            choices(ui, words, (screen, now), pad, scan);
         }
     });
 }
@@ -139,21 +154,27 @@ pub(super) fn choices(
     if step.goal.is_none() && now.step + 1 >= steps {
         return;
     }
-    ui.horizontal_wrapped(|ui| {
+    let layout = match screen.show.seated {
+        true => egui::Layout::left_to_right(egui::Align::Center),
+        false => egui::Layout::top_down(egui::Align::Min),
+    };
+    ui.with_layout(layout, |ui| {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        let width = if screen.show.seated { 160.0 } else { FIGURES };
+        let large = |text: &str| large(text, 20.0, width);
         if step.goal.is_some() {
             let ghost = pad.ghost.unwrap_or(step.ghost) && !pad.compares;
-            if scan.button(ui, true, large(&words.goal, 20.0, 160.0).selected(ghost)) {
+            if scan.button(ui, true, large(&words.goal).selected(ghost)) {
                 (pad.ghost, pad.compares) = (Some(!ghost), false);
                 touched();
             }
-            let compare = large(&words.compare, 20.0, 160.0).selected(pad.compares);
+            let compare = large(&words.compare).selected(pad.compares);
             if scan.button(ui, true, compare) {
                 pad.compares = !pad.compares;
                 touched();
             }
         }
-        if now.step + 1 < steps && scan.button(ui, true, large(&words.next, 20.0, 160.0)) {
+        if now.step + 1 < steps && scan.button(ui, true, large(&words.next)) {
             screen.desk.next_step.store(true, Relaxed);
             touched();
         }

@@ -92,7 +92,7 @@ pub fn ui(
             }
         }
         Stage::Working => {
-            exhibit::figures(&ctx, whole, words, screen, &now);
+            exhibit::figures(&ctx, whole, words, (screen, &now), pad, &mut scan);
             let shown = (words, screen, &now);
             tools(&ctx, free, view, shown, pad, (out, &mut scan));
         }
@@ -237,7 +237,9 @@ fn tools(
     let tools = step.map_or(&ExhibitTool::USUAL[..], |step| &step.tools);
     place(ctx, "tools", free, Align2::CENTER_BOTTOM, |ui| {
         ui.set_max_width(free.width() - 80.0);
-        exhibit::choices(ui, words, (screen, shown), pad, scan);
+        if screen.show.seated {
+            exhibit::choices(ui, words, (screen, shown), pad, scan);
+        }
         ui.horizontal_wrapped(|ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
             for tool in tools {

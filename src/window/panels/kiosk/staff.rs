@@ -3,7 +3,7 @@
 
 use egui::{Align2, RichText, vec2};
 
-use super::parts::{Scan, large, place};
+use super::parts::{Scan, TARGET, large, place};
 use crate::language::{current, tr};
 use crate::panels::state::{KioskPad, View};
 use crate::panels::theme;
@@ -11,8 +11,9 @@ use sculptd_daemon::kiosk::View as KioskView;
 use sculptd_daemon::kiosk::desk::Screen;
 use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
 
-/// Width of the page, points.
-const WIDTH: f32 = 720.0;
+/// Widths of the figures and of the buttons, points.
+const FIGURES: f32 = 470.0;
+const BUTTONS: f32 = 280.0;
 
 pub(super) fn ui(
     ctx: &egui::Context,
@@ -25,28 +26,44 @@ pub(super) fn ui(
     // The page refreshes once a second.
     ctx.request_repaint_after(std::time::Duration::from_secs(1));
     let facts = screen.desk.staff.lock().map(|facts| facts.clone()).unwrap_or_default();
+    let wide = free.width() > FIGURES + BUTTONS + 120.0;
     place(ctx, "staff page", free, Align2::CENTER_CENTER, |ui| {
-        ui.set_width(WIDTH.min(free.width() - 80.0));
+        ui.set_width(if wide { FIGURES + BUTTONS + 24.0 } else { FIGURES });
         egui::ScrollArea::vertical().max_height(free.height() - 80.0).show(ui, |ui| {
-            ui.label(RichText::new(tr!("staff-heading")).size(28.0).strong());
-            ui.add_space(8.0);
-            figures(ui, &facts, view);
-            ui.add_space(12.0);
-            buttons(ui, (screen, now), pad, &facts, scan);
-            if let Some(exported) = &facts.exported {
-                match exported {
-                    Ok(file) => {
-                        let file = file.display().to_string();
-                        ui.label(RichText::new(tr!("staff-exported", file = file)).size(16.0))
-                    }
-                    Err(why) => {
-                        let text = tr!("staff-not-exported", why = why.as_str());
-                        ui.label(RichText::new(text).size(16.0).color(ui.visuals().warn_fg_color))
-                    }
-                };
-            }
+            let layout = match wide {
+                true => egui::Layout::left_to_right(egui::Align::Min),
+                false => egui::Layout::top_down(egui::Align::Min),
+            };
+            ui.with_layout(layout, |ui| {
+                ui.vertical(|ui| {
+                    ui.set_width(FIGURES);
+                    ui.label(RichText::new(tr!("staff-heading")).size(28.0).strong());
+                    ui.add_space(8.0);
+                    figures(ui, &facts, view);
+                    exported(ui, &facts);
+                });
+                ui.add_space(24.0);
+                ui.vertical(|ui| {
+                    ui.set_width(BUTTONS);
+                    buttons(ui, (screen, now), pad, &facts, scan);
+                });
+            });
         });
     });
+}
+
+/// Result of the last export.
+fn exported(ui: &mut egui::Ui, facts: &StaffFacts) {
+    let Some(result) = &facts.exported else { return };
+    ui.add_space(8.0);
+    let text = match result {
+        Ok(file) => RichText::new(tr!("staff-exported", file = file.display().to_string())),
+        Err(why) => {
+            let text = RichText::new(tr!("staff-not-exported", why = why.as_str()));
+            text.color(ui.visuals().warn_fg_color)
+        }
+    };
+    ui.label(text.size(16.0));
 }
 
 fn figures(ui: &mut egui::Ui, facts: &StaffFacts, view: &View<'_>) {
@@ -103,39 +120,37 @@ fn buttons(
     facts: &StaffFacts,
     scan: &mut Scan,
 ) {
+    let button = |text: &str| large(text, 18.0, BUTTONS).min_size(vec2(BUTTONS, TARGET - 8.0));
     let press = |ui: &mut egui::Ui, scan: &mut Scan, text: String, request: StaffRequest| {
-        if scan.button(ui, true, large(&text, 18.0, 200.0)) {
+        if scan.button(ui, true, button(&text)) {
             screen.desk.touched.store(true, std::sync::atomic::Ordering::Relaxed);
             screen.desk.ask(request);
         }
     };
     ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
-    if screen.exhibits.len() > 1 {
-        ui.label(RichText::new(tr!("staff-exhibit")).size(16.0).color(theme::quiet(ui)));
-        ui.horizontal_wrapped(|ui| {
-            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            for (i, exhibit) in screen.exhibits.iter().enumerate() {
-                let title = exhibit.manifest.title.get(current().code());
-                let button = large(title, 18.0, 200.0).selected(now.exhibit == Some(i));
-                if scan.button(ui, true, button) {
-                    screen.desk.ask(StaffRequest::Exhibit(i));
-                }
-            }
-        });
+    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+    press(ui, scan, tr!("staff-back"), StaffRequest::Leave);
+    let cleaning = if facts.cleaning { tr!("staff-open") } else { tr!("staff-clean") };
+    press(ui, scan, cleaning, StaffRequest::Cleaning(!facts.cleaning));
+    if facts.free_bytes.is_some() {
+        press(ui, scan, tr!("staff-export"), StaffRequest::Export);
     }
-    ui.horizontal_wrapped(|ui| {
+    press(ui, scan, tr!("staff-restart"), StaffRequest::Restart);
+    if pad.ends {
+        press(ui, scan, tr!("staff-end-sure"), StaffRequest::End);
+    } else if scan.button(ui, true, button(&tr!("staff-end"))) {
+        pad.ends = true;
+    }
+    if screen.exhibits.len() > 1 {
+        ui.add_space(8.0);
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
+        ui.label(RichText::new(tr!("staff-exhibit")).size(16.0).color(theme::quiet(ui)));
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-        press(ui, scan, tr!("staff-back"), StaffRequest::Leave);
-        let cleaning = if facts.cleaning { tr!("staff-open") } else { tr!("staff-clean") };
-        press(ui, scan, cleaning, StaffRequest::Cleaning(!facts.cleaning));
-        if facts.free_bytes.is_some() {
-            press(ui, scan, tr!("staff-export"), StaffRequest::Export);
+        for (i, exhibit) in screen.exhibits.iter().enumerate() {
+            let title = exhibit.manifest.title.get(current().code());
+            if scan.button(ui, true, button(title).selected(now.exhibit == Some(i))) {
+                screen.desk.ask(StaffRequest::Exhibit(i));
+            }
         }
-        press(ui, scan, tr!("staff-restart"), StaffRequest::Restart);
-        if pad.ends {
-            press(ui, scan, tr!("staff-end-sure"), StaffRequest::End);
-        } else if scan.button(ui, true, large(&tr!("staff-end"), 18.0, 200.0)) {
-            pad.ends = true;
-        }
-    });
+    }
 }

@@ -1,0 +1,129 @@
+//! The objects of the build list as one mesh.
+
+use glam::{DMat4, DVec3};
+
+use super::{ParseError, PartName, ThreemfObject, ThreemfPackage, bad};
+use crate::io::gltf::MAX_INSTANCED;
+use crate::io::problem::FilePlace;
+use crate::io::text::refuse;
+use crate::job::Job;
+use crate::{PolyMesh, repair};
+
+/// Colour of vertices without one in a mesh where others have one.
+const WHITE: [u8; 4] = [255; 4];
+
+/// The colours of the vertices: those of the faces around them.
+#[derive(Debug, Default)]
+struct VertexColours {
+    colours: Vec<Option<[u8; 4]>>,
+    /// Vertices whose faces have several colours.
+    several: usize,
+}
+
+impl VertexColours {
+    /// Adds an object whose vertices begin at `base`.
+    fn add(&mut self, object: &ThreemfObject, base: u32) {
+        if object.colours.is_empty() {
+            return;
+        }
+        self.colours.resize(base as usize + object.mesh.positions.len(), None);
+        let mut differs = vec![false; object.mesh.positions.len()];
+        for (corners, colours) in object.mesh.faces().zip(&object.colours) {
+            for (&v, colour) in corners.iter().zip(colours) {
+                let (known, differs) =
+                    (&mut self.colours[(base + v) as usize], &mut differs[v as usize]);
+                *differs |= known.is_some() && colour.is_some() && *known != *colour;
+                *known = known.or(*colour);
+            }
+        }
+        self.several += differs.iter().filter(|differs| **differs).count();
+    }
+
+    /// Returns one colour for each of `count` vertices; `None`: no vertex has one.
+    fn of(self, count: usize, warnings: &mut Vec<String>) -> Option<Vec<[u8; 4]>> {
+        if self.several > 0 {
+            warnings.push(format!(
+                "{} vertices lie between faces of several colours: each has the colour of the \
+                 first",
+                self.several
+            ));
+        }
+        let mut colours = self.colours;
+        if colours.iter().all(Option::is_none) {
+            return None;
+        }
+        colours.resize(count, None);
+        Some(colours.into_iter().map(|colour| colour.unwrap_or(WHITE)).collect())
+    }
+}
+
+/// Objects may hold objects; deeper than this is a circle.
+const DEPTH: usize = 32;
+
+pub(super) fn assemble(
+    package: &ThreemfPackage,
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, ParseError> {
+    let mut out = PolyMesh::new();
+    let mut groups = Vec::new();
+    let mut todo: Vec<(&PartName, DMat4, usize, u32)> = package
+        .build
+        .iter()
+        .enumerate()
+        .rev()
+        .map(|(n, (name, t))| {
+            (name, DMat4::from_scale(DVec3::splat(package.unit)) * *t, 0, n as u32)
+        })
+        .collect();
+    let mut visits = 0usize;
+    let mut colours = VertexColours::default();
+    while let Some((name, place, depth, group)) = todo.pop() {
+        job.check()?;
+        visits += 1;
+        let Some(object) = package.objects.get(name) else {
+            return Err(bad(
+                FilePlace::File,
+                format!("an object {} in {}", name.1, name.0),
+                "none",
+            ));
+        };
+        if depth > DEPTH || visits > 1_000_000 {
+            return Err(bad(
+                FilePlace::File,
+                "objects within objects, up to 32 deep",
+                "a circle or too many",
+            ));
+        }
+        if out.corners.len() + object.mesh.corners.len() > MAX_INSTANCED {
+            return Err(bad(
+                FilePlace::File,
+                format!("at most {MAX_INSTANCED} corners in all objects"),
+                "more",
+            ));
+        }
+        let base = out.positions.len() as u32;
+        for p in &object.mesh.positions {
+            let q = place.transform_point3(*p);
+            if let Some(found) = q.to_array().into_iter().find_map(refuse) {
+                return Err(bad(FilePlace::File, "finite coordinates after the transforms", found));
+            }
+            out.positions.push(q);
+        }
+        colours.add(object, base);
+        let mut part = PolyMesh::new();
+        object.mesh.faces().for_each(|f| part.push_face(&[f[0] + base, f[1] + base, f[2] + base]));
+        if place.determinant() < 0.0 {
+            repair::flip(&mut part);
+        }
+        part.faces().for_each(|f| out.push_face(f));
+        groups.resize(out.face_count(), group);
+        todo.extend(object.components.iter().rev().map(|(n, t)| (n, place * *t, depth + 1, group)));
+    }
+    if out.face_count() == 0 {
+        return Err(bad(FilePlace::File, "an object with triangles in the build list", "none"));
+    }
+    out.colours = colours.of(out.positions.len(), warnings);
+    out.groups = groups.windows(2).any(|w| w[0] != w[1]).then_some(groups);
+    Ok(out)
+}

@@ -1,0 +1,148 @@
+//! 3MF: a zip of XML, its objects placed by the build list, in millimetres whatever unit the file
+//! is in.
+//!
+//! A file that breaks a rule of the specification is refused: the consortium's conformance suite is
+//! the measure. One of its rules is left out, for its own files contradict each other: names of
+//! metadata that nobody defined pass.
+//!
+//! Own reading over the kept crates `zip` and `quick-xml`: the kept reader of whole 3MF files reads
+//! without a bound (a zip of a few kilobytes can hold gigabytes), keeps no place for messages and
+//! no parts beyond the first.
+
+mod assemble;
+mod model;
+mod relationships;
+mod resources;
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+
+use glam::DMat4;
+use quick_xml::events::BytesStart;
+
+use super::problem::{FilePlace, FileProblem, ParseError};
+use crate::PolyMesh;
+use crate::job::Job;
+use assemble::assemble;
+use relationships::PartNames;
+
+/// The name of an object: its part's path and its number.
+type PartName = (String, i64);
+
+#[derive(Default)]
+struct ThreemfObject {
+    mesh: PolyMesh,
+    components: Vec<(PartName, DMat4)>,
+    /// Colours of the faces' corners; empty: no face has any.
+    colours: Vec<[Option<[u8; 4]>; 3]>,
+    /// An object of the type `other` is never built.
+    other: bool,
+}
+
+#[derive(Default)]
+struct ThreemfPackage {
+    objects: BTreeMap<PartName, ThreemfObject>,
+    build: Vec<(PartName, DMat4)>,
+    /// Millimetres in the root part's unit.
+    unit: f64,
+    /// Groups of composite materials, multiproperties and texture coordinates.
+    properties: usize,
+    beams: usize,
+}
+
+fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
+    FileProblem::new(at, expected.into(), found.into()).into()
+}
+
+pub(super) fn parse(
+    bytes: &[u8],
+    warnings: &mut Vec<String>,
+    job: &Job,
+) -> Result<PolyMesh, ParseError> {
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+        bad(FilePlace::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
+    })?;
+    let all: Vec<String> = zip.file_names().filter_map(Result::ok).map(String::from).collect();
+    let names = PartNames::new(all.iter().map(String::as_str));
+    // A choice, not a law of the format: what unpacks to more than this is taken for a trap. Small
+    // files may be a hundred times as long unpacked, large ones eight times.
+    let packed = bytes.len() as u64;
+    let mut room = (packed * 100).min(packed * 8 + (256 << 20)) + (16 << 20);
+    let mut part = |name: &str| -> Result<Vec<u8>, ParseError> {
+        let entry = zip
+            .by_name(name)
+            .map_err(|e| bad(FilePlace::File, format!("a part {name}"), e.to_string()))?;
+        let mut out = Vec::new();
+        entry
+            .take(room + 1)
+            .read_to_end(&mut out)
+            .map_err(|e| bad(FilePlace::File, format!("the part {name} whole"), e.to_string()))?;
+        room = room.checked_sub(out.len() as u64).ok_or_else(|| {
+            bad(
+                FilePlace::File,
+                "parts of at most a hundred times the file's length, or eight and 256 MiB",
+                format!("more in {name}"),
+            )
+        })?;
+        Ok(out)
+    };
+    let rels = part("_rels/.rels")?;
+    let root = relationships::check(&rels, ("_rels/.rels", ""), &names)?.ok_or_else(|| {
+        let expected = "a relationship to a 3dmodel in _rels/.rels";
+        bad(FilePlace::File, expected, "none")
+    })?;
+    let (folder, file) = root.rsplit_once('/').unwrap_or(("", &root));
+    let rels = format!("{folder}/_rels/{file}.rels");
+    if let Some(rels) = names.find(&rels) {
+        relationships::check(&part(rels)?, (rels, folder), &names)?;
+    }
+    let mut package = ThreemfPackage::default();
+    let text = part(&root)?;
+    model::read(&text, (&root, true), &mut package, job)?;
+    job.progress(0.6);
+    // Parts that the root's components and items name.
+    loop {
+        let named = package
+            .objects
+            .values()
+            .flat_map(|o| &o.components)
+            .chain(&package.build)
+            .map(|(n, _)| n);
+        let missing = named
+            .filter(|n| !package.objects.contains_key(n) && n.0 != root)
+            .map(|n| n.0.clone())
+            .next();
+        let Some(path) = missing else { break };
+        let text = part(names.find(&path).unwrap_or(&path))?;
+        let before = package.objects.len();
+        model::read(&text, (&path, false), &mut package, job)?;
+        if package.objects.len() == before {
+            return Err(bad(
+                FilePlace::File,
+                format!("the objects named in {path}"),
+                "none of them",
+            ));
+        }
+    }
+    if package.properties > 0 {
+        warnings.push(format!(
+            "{} groups of composite materials, multiproperties or texture coordinates left out",
+            package.properties
+        ));
+    }
+    if package.beams > 0 {
+        warnings.push(format!("{} beams of beam lattices left out", package.beams));
+    }
+    assemble(&package, warnings, job)
+}
+
+/// An attribute by its name without prefix.
+fn get(e: &BytesStart, name: &str) -> Option<String> {
+    e.attributes()
+        .filter_map(Result::ok)
+        .find(|a| a.key.local_name().as_ref() == name)
+        .map(|a| a.value.to_string())
+}
+
+#[cfg(test)]
+mod tests;
