@@ -105,7 +105,7 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
             let at_goal = |e: String| Fail::Input(format!("{}: {e}", args.goal.display()));
             let (exhibit, notes) = made.map_err(at_goal)?;
             pack::write(&exhibit, &args.out).map_err(Fail::Input)?;
-            // What is printed is what the file has.
+            // The facts are read back from the file.
             let written = open(&args.out, &job)?;
             let file = Some(args.out.clone());
             print(&ExhibitAnswer { notes, file, ..facts(&written, &job)? }, json);

@@ -194,7 +194,8 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)
         .expect("a loop");
     let kiosk = KioskConfig {
-        idle_s: 1.0,
+        // Longer than the busiest machine needs to reset the clay.
+        idle_s: 5.0,
         countdown_s: 1.0,
         gallery: dir.path().join("works"),
         audit: dir.path().join("audit.jsonl"),

@@ -8,6 +8,7 @@
 mod check;
 mod courses;
 mod desktop;
+mod exhibits;
 mod files;
 mod fingers;
 mod first_minutes;

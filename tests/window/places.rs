@@ -43,3 +43,18 @@ pub const EYE_OF_SET: Place = (1065, 414);
 pub const FIRST_FINDING: Place = (1150, 490);
 /// The list of languages on the page of preferences.
 pub const LANGUAGES: Place = (1195, 139);
+
+/// An exhibit, and the page behind the PIN.
+pub const EXHIBIT_CARVE: Place = (307, 645);
+pub const EXHIBIT_FINISHED: Place = (978, 645);
+pub const EXHIBIT_COMPARE: Place = (1090, 513);
+pub const STAFF_DOOR: Place = (1196, 75);
+/// "End for good" on a page without a gallery.
+pub const STAFF_END: Place = (891, 440);
+/// The same with a gallery.
+pub const STAFF_END_BESIDE_EXPORT: Place = (891, 500);
+
+/// A key of the keypad, from 1; 11 is 0 and 12 is OK.
+pub const fn staff_key(number: i32) -> Place {
+    (1045 + (number - 1) % 3 * 80, 136 + (number - 1) / 3 * 76)
+}

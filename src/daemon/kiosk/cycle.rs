@@ -288,7 +288,7 @@ mod tests {
         assert_eq!((c.step(true, false), c.view().stage), (None, Stage::Closed));
         c.set_closed(false);
         assert_eq!(c.step(true, false), Some(KioskAct::Begin));
-        // Closing time: the visit has some minutes more, without a limit of its own too.
+        // At closing time the visit gets some minutes more.
         c.set_closed(true);
         assert_eq!((c.view().stage, c.view().visit_left_s), (Stage::Working, Some(300)));
         let end = (0..3000).find_map(|_| c.step(true, false));

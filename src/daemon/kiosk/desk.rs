@@ -110,6 +110,6 @@ pub struct Screen {
     pub watch: Option<Invitation>,
     /// Exhibits to choose from; empty: free sculpting.
     pub exhibits: Vec<Arc<Exhibit>>,
-    /// How dark the screen is while the installation is closed, from 0 to 1.
+    /// Darkness of the screen while the installation is closed, from 0 (as usual) to 1 (black).
     pub dim: f32,
 }

@@ -7,7 +7,7 @@ const DAY: u32 = 24 * 60;
 /// Names of the days, Monday first.
 const DAYS: [&str; 7] = ["mon", "tue", "wed", "thu", "fri", "sat", "sun"];
 
-/// When visitors may come.
+/// The times at which visitors may come.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Hours {
     /// Minutes since Monday midnight, first and last (excluded); a span may run into the next week.

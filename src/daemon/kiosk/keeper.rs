@@ -336,7 +336,7 @@ impl KioskThread {
         }
     }
 
-    /// Packs the works of today, on a thread of its own: a day's works take a while to copy.
+    /// Packs the works of today on a separate thread: copying a day's works takes a while.
     fn export(&self) {
         let (gallery, done) = (self.config.gallery.clone(), self.exported.0.clone());
         let since = self.calendar.as_ref().map_or(0, LocalClock::midnight);

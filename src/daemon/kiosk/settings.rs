@@ -40,20 +40,20 @@ pub struct KioskConfig {
     pub screen: ScreenSettings,
     /// A program and its arguments that speaks the screen's text, given as its last argument.
     pub speak: Vec<String>,
-    /// Packs of exhibits, or names of those that come with the program; empty: free sculpting.
+    /// Packs of exhibits, or names of built-in exhibits; empty: free sculpting.
     pub exhibits: Vec<PathBuf>,
     pub hours: HoursSettings,
     /// The fleet that manages this installation remotely.
     pub fleet: FleetSettings,
 }
 
-/// When visitors may come, and the screen meanwhile.
+/// Opening hours, and the screen outside them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HoursSettings {
     /// See [`Hours::parse`]; empty: always.
     pub open: Vec<String>,
-    /// How dark the screen is while the installation is closed, from 0 (as usual) to 1 (black).
+    /// Darkness of the screen while the installation is closed, from 0 (as usual) to 1 (black).
     pub dim: f32,
 }
 

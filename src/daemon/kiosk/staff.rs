@@ -25,7 +25,7 @@ pub enum StaffRequest {
     End,
 }
 
-/// What the page shows.
+/// Content of the staff page.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StaffFacts {
     /// Visits that ended today and since the start, and works that were kept today.

@@ -2,8 +2,8 @@
 //! is put away: a program that is killed in between goes on with the visit.
 //!
 //! A visit begins with a reset to a start clay, so its file holds that clay once and the visit's
-//! input alone. The file is made before the visit; where the visitor begins with the clay of another
-//! exhibit, it is made anew, and the input waits. Of everything before the visit only the layout of
+//! input alone. The file is made before the visit. If the visitor begins with the clay of another
+//! exhibit, another file is made, and the input waits for it. Of everything before the visit only the layout of
 //! the desktop outlives the reset; the file begins with it. Attract films are not recorded.
 
 use std::path::{Path, PathBuf};

@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use super::{Course, hash, press, steps};
+use crate::places::STAFF_END_BESIDE_EXPORT;
 use crate::stage::{Stage, differs, pause};
 
 /// The settings of an installation in a folder.
@@ -154,7 +155,15 @@ fn staff_comes(c: &mut Course) {
     c.step("a wrong number of the staff", typed(&[1, 2, 3, 4]), |s| steps(s) == 1);
     pause(1000);
     c.step("the visit goes on", |s| s.drag((-60, 60), (60, 50)), |s| steps(s) == 2);
-    c.step("the right number ends it", typed(&[4, 7, 1, 1]), |s| {
-        s.daemon.0.try_wait().is_ok_and(|ended| ended.is_some_and(|e| e.success()))
-    });
+    c.step("the right number opens the staff page", typed(&[4, 7, 1, 1]), |_| true);
+    c.step(
+        "the end, asked for twice",
+        |s| {
+            pause(1500);
+            press(s, STAFF_END_BESIDE_EXPORT);
+            pause(1000);
+            press(s, STAFF_END_BESIDE_EXPORT);
+        },
+        |s| s.daemon.0.try_wait().is_ok_and(|ended| ended.is_some_and(|e| e.success())),
+    );
 }

@@ -91,7 +91,8 @@ pub fn create(
     let manifest = Manifest {
         start: "start.ply".into(),
         minutes: settings.minutes,
-        radius: 0.0,
+        radius: 0.18,
+        strength: 1.0,
         symmetry: 1,
         title: Texts::new(&settings.title),
         step: vec![step],

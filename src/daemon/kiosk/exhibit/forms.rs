@@ -42,6 +42,14 @@ fn step(tolerance: f64, tools: &[&str], text: Texts) -> StepManifest {
 const START: &str = "start.ply";
 const GOAL: &str = "goal.ply";
 
+fn manifest(
+    (radius, strength, symmetry): (f32, f32, u8),
+    title: Texts,
+    step: Vec<StepManifest>,
+) -> Manifest {
+    Manifest { start: START.into(), minutes: 8.0, radius, strength, symmetry, title, step }
+}
+
 fn exhibit(
     (name, manifest): (&str, Manifest),
     (start, goal): (TriMesh, TriMesh),
@@ -102,8 +110,7 @@ fn figurine_exhibit(job: &Job) -> Result<Exhibit, String> {
         "石块里的熊",
     ]);
     let step = vec![step(2.0, &["carve", "add", "smooth"], text)];
-    let manifest =
-        Manifest { start: START.into(), minutes: 8.0, radius: 0.13, symmetry: 1, title, step };
+    let manifest = manifest((0.18, 1.0, 1), title, step);
     exhibit(("figurine", manifest), (start, goal), job)
 }
 
@@ -121,7 +128,7 @@ fn pot(p: DVec3) -> f64 {
     -smooth_min(-outside, inside, 4.0)
 }
 
-/// A lump with a hollow that is begun, as it stands on the wheel.
+/// A lump of clay on the wheel with the beginning of a hollow.
 fn lump(p: DVec3) -> f64 {
     let across = dvec2(p.x, p.z).length();
     let outside = -smooth_min(-(across - 34.0), -(p.y - 66.0).max(-p.y), 12.0);
@@ -154,8 +161,7 @@ fn pot_exhibit(job: &Job) -> Result<Exhibit, String> {
         "转盘上的罐子",
     ]);
     let step = vec![step(2.5, &["grab", "add", "carve", "smooth"], text)];
-    let manifest =
-        Manifest { start: START.into(), minutes: 8.0, radius: 0.3, symmetry: 16, title, step };
+    let manifest = manifest((0.3, 0.0, 16), title, step);
     exhibit(("pot", manifest), (start, goal), job)
 }
 
@@ -225,8 +231,7 @@ fn relief_exhibit(job: &Job) -> Result<Exhibit, String> {
         "残缺的浮雕",
     ]);
     let step = vec![step(1.0, &["add", "carve", "smooth"], text)];
-    let manifest =
-        Manifest { start: START.into(), minutes: 8.0, radius: 0.06, symmetry: 1, title, step };
+    let manifest = manifest((0.06, 0.0, 1), title, step);
     exhibit(("relief", manifest), (start, goal), job)
 }
 

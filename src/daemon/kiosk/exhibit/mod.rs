@@ -59,6 +59,9 @@ pub struct Manifest {
     /// The brush's radius, a share of the object's own; 0: that of the installation.
     #[serde(default)]
     pub radius: f32,
+    /// The brush's strength, from 0 to 1; 0: that of the installation.
+    #[serde(default)]
+    pub strength: f32,
     /// Copies of each stroke around the vertical axis, 1 to 16: more than one for a pot on the
     /// wheel.
     #[serde(default = "one")]
@@ -163,6 +166,9 @@ impl Exhibit {
         if self.manifest.radius > 0.0 {
             brush.radius = self.manifest.radius;
         }
+        if self.manifest.strength > 0.0 {
+            brush.strength = self.manifest.strength;
+        }
         brush.mirror.radial = self.manifest.symmetry;
         brush.mirror.axis = 1;
         brush.clamped()
@@ -187,6 +193,9 @@ impl Manifest {
         }
         if !(0.0..=2.0).contains(&self.radius) {
             return Err(format!("radius = {}: expected a number from 0 to 2", self.radius));
+        }
+        if !(0.0..=1.0).contains(&self.strength) {
+            return Err(format!("strength = {}: expected a number from 0 to 1", self.strength));
         }
         if !(1..=16).contains(&self.symmetry) {
             return Err(format!("symmetry = {}: expected 1 to 16", self.symmetry));
@@ -256,6 +265,7 @@ mod tests {
         for (old, new, expected) in [
             ("minutes = 5", "minutes = -1", "minutes = -1"),
             ("minutes = 5", "minutes = nan", "minutes"),
+            ("minutes = 5", "strength = 2", "strength = 2"),
             ("tolerance = 1.5", "", "tolerance = 0"),
             ("\"carve\"", "\"chisel\"", "chisel"),
             ("title = {", "titel = {", "titel"),

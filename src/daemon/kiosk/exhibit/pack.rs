@@ -148,7 +148,7 @@ fn from_zip<R: Read + Seek>(zip: &mut zip::ZipArchive<R>, file: &str) -> Result<
     let in_file = |e: String| format!("{file}: {e}");
     let entry = zip.by_name(file).map_err(|e| in_file(e.to_string()))?;
     let mut bytes = Vec::new();
-    // What the entry says of its size may be wrong.
+    // The size in the entry may be wrong.
     let read = entry.take(MAX_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|e| in_file(e.to_string()))?;
     if bytes.len() as u64 > MAX_BYTES {
@@ -218,6 +218,7 @@ mod tests {
             start: "start.ply".into(),
             minutes: 3.0,
             radius: 0.1,
+            strength: 0.0,
             symmetry: 1,
             title: Texts::new("A ball"),
             step: vec![step],

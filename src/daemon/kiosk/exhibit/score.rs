@@ -21,7 +21,7 @@ pub struct Goal {
     near_at_start: f64,
 }
 
-/// How near a work is to its goal. Distances are those that `sculptd distance` measures, in the
+/// The nearness of a work to its goal. Distances are those that `sculptd distance` measures, in the
 /// meshes' unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Score {

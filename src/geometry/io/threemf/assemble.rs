@@ -121,7 +121,11 @@ pub(super) fn assemble(
         todo.extend(object.components.iter().rev().map(|(n, t)| (n, place * *t, depth + 1, group)));
     }
     if out.face_count() == 0 {
-        return Err(bad(FilePlace::File, "an object with triangles in the build list", "none"));
+        let found = match package.beams {
+            0 => "none".to_owned(),
+            beams => format!("none, but {beams} beams of a beam lattice, which are not read"),
+        };
+        return Err(bad(FilePlace::File, "an object with triangles in the build list", found));
     }
     out.colours = colours.of(out.positions.len(), warnings);
     out.groups = groups.windows(2).any(|w| w[0] != w[1]).then_some(groups);

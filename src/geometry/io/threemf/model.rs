@@ -158,9 +158,8 @@ impl ModelPart<'_> {
         Ok(((place, self.index(e, "objectid")?), transform))
     }
 
-    /// Checks the names of an element and of its attributes: prefixes are declared, nothing is of
-    /// XML Schema's own namespace or of an unknown one of the consortium's (core specification,
-    /// 2.3).
+    /// Checks the names of an element and of its attributes: nothing is of XML Schema's own
+    /// namespace or of an unknown one of the consortium's (core specification, 2.3).
     fn check_names(&mut self, e: &BytesStart) -> Result<(), ParseError> {
         for attribute in e.attributes().filter_map(Result::ok) {
             if let Some(prefix) = attribute.key.as_ref().strip_prefix("xmlns:") {
@@ -191,8 +190,8 @@ impl ModelPart<'_> {
     }
 
     fn check_prefix(&self, prefix: &str, name: &str) -> Result<(), ParseError> {
-        let space = self.namespaces.get(prefix);
-        let space = space.ok_or_else(|| self.wrong("a declared prefix", name.into()))?;
+        // Common writers leave some prefixes undeclared: such names are passed over.
+        let Some(space) = self.namespaces.get(prefix) else { return Ok(()) };
         let schema = space.ends_with("/XMLSchema-instance");
         let unknown = space.starts_with(NAMESPACES)
             && !is_known(space)

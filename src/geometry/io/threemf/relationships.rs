@@ -53,8 +53,6 @@ struct Relationship {
     target: String,
 }
 
-/// Kinds of which a part has at most one.
-const SINGLE: [&str; 2] = ["3dmodel", "printticket"];
 /// Kinds whose target the package must hold.
 const HELD: [&str; 4] = ["3dmodel", "printticket", "thumbnail", "3dtexture"];
 
@@ -95,8 +93,11 @@ pub(super) fn check(
     parts: &PartNames,
 ) -> Result<Option<String>, ParseError> {
     let all = read(text, file)?;
-    for kind in SINGLE {
-        let found = all.iter().filter(|r| r.kind == kind).count();
+    // A part of the production extension names many models.
+    let single: &[&str] =
+        if folder.is_empty() { &["3dmodel", "printticket"] } else { &["printticket"] };
+    for kind in single {
+        let found = all.iter().filter(|r| r.kind == *kind).count();
         if found > 1 {
             let expected = format!("at most one relationship to a {kind} in {file}");
             return Err(bad(FilePlace::File, expected, found.to_string()));

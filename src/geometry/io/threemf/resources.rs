@@ -117,7 +117,9 @@ impl Resources {
             match self.kind(*id) {
                 Some(ResourceKind::BaseMaterials | ResourceKind::Composites) => materials += 1,
                 Some(ResourceKind::Colours) => colours += 1,
-                Some(ResourceKind::TextureCoordinates | ResourceKind::Other) => {}
+                Some(
+                    ResourceKind::TextureCoordinates | ResourceKind::Texture | ResourceKind::Other,
+                ) => {}
                 found => {
                     let expected = "groups of materials, colours or texture coordinates as pids";
                     let found = match found {

@@ -156,7 +156,7 @@ pub(super) fn choices(
     }
     let layout = match screen.show.seated {
         true => egui::Layout::left_to_right(egui::Align::Center),
-        false => egui::Layout::top_down(egui::Align::Min),
+        false => egui::Layout::top_down(egui::Align::Center),
     };
     ui.with_layout(layout, |ui| {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);

@@ -92,7 +92,10 @@ pub fn ui(
             }
         }
         Stage::Working => {
-            exhibit::figures(&ctx, whole, words, (screen, &now), pad, &mut scan);
+            // The keypad needs the room.
+            if pad.typed.is_none() {
+                exhibit::figures(&ctx, whole, words, (screen, &now), pad, &mut scan);
+            }
             let shown = (words, screen, &now);
             tools(&ctx, free, view, shown, pad, (out, &mut scan));
         }

@@ -29,7 +29,9 @@ pub(super) fn ui(
     let wide = free.width() > FIGURES + BUTTONS + 120.0;
     place(ctx, "staff page", free, Align2::CENTER_CENTER, |ui| {
         ui.set_width(if wide { FIGURES + BUTTONS + 24.0 } else { FIGURES });
-        egui::ScrollArea::vertical().max_height(free.height() - 80.0).show(ui, |ui| {
+        let most = free.height() - 80.0;
+        let scroll = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
+        scroll.show(ui, |ui| {
             let layout = match wide {
                 true => egui::Layout::left_to_right(egui::Align::Min),
                 false => egui::Layout::top_down(egui::Align::Min),
@@ -43,7 +45,7 @@ pub(super) fn ui(
                     exported(ui, &facts);
                 });
                 ui.add_space(24.0);
-                ui.vertical(|ui| {
+                ui.vertical_centered(|ui| {
                     ui.set_width(BUTTONS);
                     buttons(ui, (screen, now), pad, &facts, scan);
                 });
