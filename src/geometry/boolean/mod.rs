@@ -32,6 +32,8 @@ pub mod arrange;
 mod attributes;
 pub(crate) mod box_tree;
 mod broad_phase;
+mod chain;
+mod chosen;
 /// Inside or outside, for each part of a surface.
 pub mod classify;
 mod common;
@@ -61,6 +63,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 pub use attributes::mixed;
+pub use chain::{BooleanChain, ChainOrigin, ChainSolid};
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use operand::check;
 pub use parts::{shells, split};
