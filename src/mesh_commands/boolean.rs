@@ -17,8 +17,8 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{
-    BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, OwnCrossings, Precision,
-    ResultFaces,
+    BooleanChain, BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, OwnCrossings,
+    Precision, ResultFaces,
 };
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -406,6 +406,9 @@ fn join(
         What::ReverseDifference => vec![Operation::ReverseDifference],
         _ => Operation::ALL.to_vec(),
     };
+    if let (&[operation], None) = (&operations[..], args.refine_cut) {
+        return chain(operands, operation, args, options, job, now, out);
+    }
     let mut solids: Vec<(String, BooleanSolid, Origins)> = Vec::new();
     for (n, right) in operands.meshes.iter().enumerate().skip(1) {
         let left = solids.pop();
@@ -434,6 +437,30 @@ fn join(
             .collect::<Result<_, Fail>>()?;
     }
     Ok(solids)
+}
+
+/// One operation, from the left to the right, at the cost of what each operand cuts.
+fn chain(
+    operands: &Operands,
+    operation: Operation,
+    args: &BooleanArgs,
+    options: &BooleanOptions,
+    job: &Job,
+    now: &impl Fn() -> f64,
+    out: &mut BooleanAnswer,
+) -> Result<Vec<(String, BooleanSolid, Origins)>, Fail> {
+    let [first, tools @ ..] = &operands.meshes[..] else { return Ok(Vec::new()) };
+    let options = BooleanOptions { known_crossings: [operands.crossing[0], None], ..*options };
+    let mut chain = BooleanChain::new(first, tools.len(), options);
+    for (tool, &crossing) in tools.iter().zip(&operands.crossing[1..]) {
+        chain.step(operation, tool, crossing, job, now)?;
+    }
+    let (solid, report) = chain.finish(job)?;
+    out.note(report, args.details);
+    let origins = solid.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
+    let solid =
+        BooleanSolid { operation, mesh: solid.mesh, origins: Vec::new(), facts: solid.facts };
+    Ok(vec![(operation.name().to_owned(), solid, Some(origins))])
 }
 
 /// Each shell in its file.

@@ -63,7 +63,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 pub use attributes::mixed;
-pub use chain::{BooleanChain, ChainOrigin, ChainSolid};
+pub use chain::{BooleanChain, ChainOrigin, ChainSolid, SolidState};
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use operand::check;
 pub use parts::{shells, split};

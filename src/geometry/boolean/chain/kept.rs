@@ -32,17 +32,30 @@ struct Level {
     triangles: Vec<u32>,
 }
 
-/// A closed surface that is changed in places.
+/// What was there after a change.
+#[derive(Debug, Clone)]
+struct Version {
+    /// Faces until then, those that were gone included.
+    faces: u32,
+    coloured: bool,
+    grouped: bool,
+    /// The names of the groups.
+    attributes: Option<Arc<FaceAttributes>>,
+}
+
+const THERE: u32 = u32::MAX;
+
+/// A closed surface that is changed in places. What it was before each change can still be read.
 #[derive(Debug)]
 pub(super) struct KeptSurface {
     at: Vec<DVec3>,
     colours: Option<Vec<[u8; 4]>>,
     starts: Vec<u32>,
     corners: Vec<u32>,
-    alive: Vec<bool>,
+    /// The version from which on a face is gone; `THERE`: it is not.
+    until: Vec<u32>,
     origins: Vec<ChainOrigin>,
     groups: Option<Vec<u32>>,
-    attributes: Option<Arc<FaceAttributes>>,
     triangles: Vec<[u32; 3]>,
     /// The face that each triangle is, or is a part of.
     face_of: Vec<u32>,
@@ -50,6 +63,8 @@ pub(super) struct KeptSurface {
     levels: Vec<Level>,
     /// Faces that are still there.
     live: usize,
+    /// One for each change so far, and one for the beginning.
+    versions: Vec<Version>,
     /// A box around the surface, or around what it was.
     pub span: Span,
     /// True if all faces are triangles.
@@ -97,19 +112,19 @@ impl KeptSurface {
             colours: mesh.colours.clone(),
             starts: vec![0],
             corners: Vec::with_capacity(mesh.corners.len()),
-            alive: Vec::new(),
+            until: Vec::new(),
             origins: Vec::with_capacity(mesh.face_count()),
             groups: groups.map(|_| Vec::new()),
-            attributes: None,
             triangles: Vec::with_capacity(mesh.face_count()),
             face_of: Vec::with_capacity(mesh.face_count()),
             levels: Vec::new(),
             live: 0,
+            versions: Vec::new(),
             span: Span::of(mesh.positions.iter().copied()),
             all_triangles: true,
             next_group: groups.map_or(1, |g| g.iter().max().map_or(0, |m| m + 1)),
         };
-        out.attributes = mesh.attributes.as_ref().filter(|_| groups.is_some()).map(|all| {
+        let attributes = mesh.attributes.as_ref().filter(|_| groups.is_some()).map(|all| {
             let FaceAttributes { groups, libraries, .. } = all.as_ref().clone();
             Arc::new(FaceAttributes { groups, libraries, ..FaceAttributes::default() })
         });
@@ -128,14 +143,33 @@ impl KeptSurface {
             }
         }
         out.add_level(0, job)?;
+        out.note_version(attributes);
         Ok(out)
     }
 
+    fn note_version(&mut self, attributes: Option<Arc<FaceAttributes>>) {
+        self.versions.push(Version {
+            faces: self.until.len() as u32,
+            coloured: self.colours.is_some(),
+            grouped: self.groups.is_some(),
+            attributes,
+        });
+    }
+
+    /// The number of changes so far.
+    pub fn version(&self) -> usize {
+        self.versions.len() - 1
+    }
+
+    fn attributes(&self) -> Option<Arc<FaceAttributes>> {
+        self.versions.last().and_then(|v| v.attributes.clone())
+    }
+
     fn push_face(&mut self, corners: &[u32], origin: ChainOrigin, group: Option<u32>) {
-        let face = self.alive.len() as u32;
+        let face = self.until.len() as u32;
         self.corners.extend_from_slice(corners);
         self.starts.push(self.corners.len() as u32);
-        self.alive.push(true);
+        self.until.push(THERE);
         self.live += 1;
         self.origins.push(origin);
         if let Some(groups) = &mut self.groups {
@@ -153,7 +187,7 @@ impl KeptSurface {
 
     /// Returns true if most of the memory is for faces that went.
     pub fn mostly_gone(&self) -> bool {
-        self.alive.len() > 2 * self.live + 4096
+        self.until.len() > 2 * self.live + 4096
     }
 
     fn face(&self, f: u32) -> &[u32] {
@@ -165,7 +199,7 @@ impl KeptSurface {
     }
 
     fn is_there(&self, t: u32) -> bool {
-        self.alive[self.face_of[t as usize] as usize]
+        self.until[self.face_of[t as usize] as usize] == THERE
     }
 
     /// Puts the triangles from `first` on into the trees.
@@ -216,7 +250,7 @@ impl KeptSurface {
         }
         let of_faces = |g: &Vec<u32>| out.faces.iter().map(|&f| g[f as usize]).collect();
         out.mesh.groups = self.groups.as_ref().map(of_faces);
-        out.mesh.attributes = self.attributes.clone();
+        out.mesh.attributes = self.attributes();
         let of_vertices = |c: &Vec<[u8; 4]>| out.vertices.iter().map(|&v| c[v as usize]).collect();
         out.mesh.colours = self.colours.as_ref().map(of_vertices);
         out
@@ -250,48 +284,58 @@ impl KeptSurface {
     /// Replaces faces.
     pub fn apply(&mut self, change: SurfaceChange, job: &Job) -> Result<(), Cancelled> {
         let (first, before) = (self.triangles.len(), self.at.len());
+        let next = self.versions.len() as u32;
         for &f in &change.removed {
-            self.live -= usize::from(std::mem::replace(&mut self.alive[f as usize], false));
+            self.until[f as usize] = next;
         }
+        self.live -= change.removed.len();
         if change.colours.is_some() && self.colours.is_none() {
             self.colours = Some(vec![[255; 4]; before]);
         }
         if change.faces.groups.is_some() && self.groups.is_none() {
-            self.groups = Some(vec![0; self.alive.len()]);
+            self.groups = Some(vec![0; self.until.len()]);
         }
         self.at.extend(&change.positions);
         if let Some(colours) = &mut self.colours {
             colours.extend(change.colours.iter().flatten());
             colours.resize(self.at.len(), [255; 4]);
         }
-        if change.faces.groups.is_some() {
-            self.attributes = change.faces.attributes.clone();
-        }
+        let named = change.faces.groups.is_some();
+        let attributes = if named { change.faces.attributes.clone() } else { self.attributes() };
         for (f, corners) in change.faces.faces().enumerate() {
             let group = change.faces.groups.as_ref().and_then(|g| g.get(f)).copied();
             self.push_face(corners, change.origins[f], group);
         }
         self.span = self.span.join(change.span);
         self.next_group = change.next_group;
+        self.note_version(attributes);
         self.add_level(first, job)
     }
 
     /// Returns the surface as a mesh, and the origin of each face. Vertices that no face has are
     /// left out.
     pub fn to_mesh(&self) -> (PolyMesh, Vec<ChainOrigin>) {
+        self.mesh_at(self.version())
+    }
+
+    /// As [`KeptSurface::to_mesh`], of the surface after so many changes.
+    pub fn mesh_at(&self, version: usize) -> (PolyMesh, Vec<ChainOrigin>) {
         const NONE: u32 = u32::MAX;
+        let Some(was) = self.versions.get(version) else { return Default::default() };
         let mut names = vec![NONE; self.at.len()];
         let there: Vec<u32> =
-            (0..self.alive.len() as u32).filter(|&f| self.alive[f as usize]).collect();
+            (0..was.faces).filter(|&f| self.until[f as usize] as usize > version).collect();
         for &f in &there {
             self.face(f).iter().for_each(|&v| names[v as usize] = 0);
         }
+        let colours = self.colours.as_ref().filter(|_| was.coloured);
         let mut out = PolyMesh::new();
+        out.colours = colours.map(|_| Vec::new());
         for (v, name) in names.iter_mut().enumerate().filter(|(_, n)| **n != NONE) {
             *name = out.positions.len() as u32;
             out.positions.push(self.at[v]);
-            if let Some(colours) = &self.colours {
-                out.colours.get_or_insert_default().push(colours[v]);
+            if let (Some(to), Some(from)) = (&mut out.colours, colours) {
+                to.push(from[v]);
             }
         }
         out.face_starts.reserve(there.len());
@@ -299,11 +343,9 @@ impl KeptSurface {
             out.corners.extend(self.face(f).iter().map(|&v| names[v as usize]));
             out.face_starts.push(out.corners.len() as u32);
         }
-        if self.colours.is_some() {
-            out.colours.get_or_insert_default();
-        }
-        out.groups = self.groups.as_ref().map(|g| there.iter().map(|&f| g[f as usize]).collect());
-        out.attributes = self.attributes.clone();
+        let groups = self.groups.as_ref().filter(|_| was.grouped);
+        out.groups = groups.map(|g| there.iter().map(|&f| g[f as usize]).collect());
+        out.attributes = was.attributes.clone();
         (out, there.iter().map(|&f| self.origins[f as usize]).collect())
     }
 }

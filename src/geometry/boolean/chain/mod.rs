@@ -12,6 +12,7 @@
 
 mod kept;
 mod local;
+mod state;
 #[cfg(test)]
 mod tests;
 
@@ -21,7 +22,7 @@ use super::box_tree::Span;
 use super::operand::crosses_itself;
 use super::parts::shells_may_meet;
 use super::points::Contact;
-use super::precision::{OperandScale, tolerance_of};
+use super::precision::{OperandScale, Precision, tolerance_of};
 use super::task::note_contact;
 use super::{
     BooleanError, BooleanFacts, BooleanOptions, BooleanReport, NAMES, Operation, OwnCrossings,
@@ -32,6 +33,7 @@ use crate::job::Job;
 pub use kept::ChainOrigin;
 use kept::KeptSurface;
 use local::LocalStep;
+pub use state::SolidState;
 
 /// The solid at the end of a chain.
 #[derive(Debug, Clone)]
@@ -117,7 +119,8 @@ impl<'a> BooleanChain<'a> {
     /// triangles that cross, where the caller knows.
     ///
     /// # Errors
-    /// As [`compute`]. The chain is then as it was before the step.
+    /// As [`compute`]. The chain is then as it was before the step; drop it where the job was
+    /// cancelled.
     pub fn step(
         &mut self,
         operation: Operation,
@@ -126,6 +129,24 @@ impl<'a> BooleanChain<'a> {
         job: &Job,
         now: impl Fn() -> f64,
     ) -> Result<(), BooleanError> {
+        let (done, crossing) = self.step_if_local(operation, tool, crossing, job, &now)?;
+        if !done {
+            self.step_as_a_whole(operation, tool, crossing, job, now)?;
+            self.stepped(tool, crossing);
+        }
+        Ok(())
+    }
+
+    /// As [`BooleanChain::step`], only where that costs what the tool cuts. Returns whether it does,
+    /// and whether the tool has triangles that cross, where that is known by now.
+    fn step_if_local(
+        &mut self,
+        operation: Operation,
+        tool: &PolyMesh,
+        crossing: Option<bool>,
+        job: &Job,
+        now: &impl Fn() -> f64,
+    ) -> Result<(bool, Option<bool>), BooleanError> {
         let mut clock = now();
         let mut laps: Vec<(&'static str, f64)> = Vec::new();
         let mut lap = |name| {
@@ -133,29 +154,32 @@ impl<'a> BooleanChain<'a> {
             laps.push((name, t - clock));
             clock = t;
         };
-        let scale = OperandScale::of(tool);
         let mut crossing = crossing;
         let kept = matches!(operation, Operation::Union | Operation::Difference)
             && self.keep(job, &mut lap)?;
         let done = kept && {
             let volume = check(tool, NAMES[1], job)?;
-            let clean;
-            (clean, crossing) = self.clean(tool, crossing, job)?;
+            let (clean, found) = self.clean(tool, crossing, job)?;
+            crossing = found;
             lap("check");
-            clean && self.step_locally(operation, tool, (volume, scale), job, &mut lap)?
+            clean && self.step_locally(operation, tool, volume, job, &mut lap)?
         };
         for (name, seconds) in laps {
             self.lap(name, seconds);
         }
-        if !done {
-            self.step_as_a_whole(operation, tool, crossing, job, now)?;
+        if done {
+            self.stepped(tool, crossing);
         }
-        self.scale.resolution = coarser(self.scale, scale);
+        Ok((done, crossing))
+    }
+
+    /// Notes that a step with a tool was made.
+    fn stepped(&mut self, tool: &PolyMesh, crossing: Option<bool>) {
+        self.scale.resolution = coarser(self.scale, OperandScale::of(tool));
         let clean = [self.crossing, crossing] == [Some(false); 2];
         self.crossing = clean.then_some(false);
         self.operands += 1;
         self.coming = self.coming.saturating_sub(1);
-        Ok(())
     }
 
     /// The number of steps so far that cost only what their tools cut.
@@ -168,7 +192,7 @@ impl<'a> BooleanChain<'a> {
     /// # Errors
     /// [`BooleanError::Inconsistent`] if it is not closed, or its volume is not what the steps add
     /// up to.
-    pub fn finish(mut self, job: &Job) -> Result<(ChainSolid, BooleanReport), BooleanError> {
+    pub fn finish(self, job: &Job) -> Result<(ChainSolid, BooleanReport), BooleanError> {
         let (mut mesh, origins, facts) = match self.state {
             State::Whole(mesh, origins, facts) => {
                 let origins = origins.unwrap_or_else(|| first_origins(&mesh));
@@ -198,12 +222,9 @@ impl<'a> BooleanChain<'a> {
             let why = format!("the volume of the chain's result is off by {off:.3e}");
             return Err(BooleanError::Inconsistent(why));
         }
-        let precision = self.scale.resolution.precision;
-        let depends = self.report.depends_on_tolerance;
-        note_contact(&mut self.report, self.contact, self.floor, precision);
-        self.report.depends_on_tolerance |= depends;
-        self.report.contact.add(self.contact);
-        Ok((ChainSolid { mesh, origins, facts }, self.report))
+        let report =
+            reported(self.report, self.contact, self.floor, self.scale.resolution.precision);
+        Ok((ChainSolid { mesh, origins, facts }, report))
     }
 
     /// Returns whether an operand crosses itself nowhere, or is to be taken as if it did not, and
@@ -222,6 +243,25 @@ impl<'a> BooleanChain<'a> {
                 (!found, Some(found))
             }
             (OwnCrossings::Solve, None) => (true, None),
+        })
+    }
+
+    /// The chain with all that it owns, once it has search trees.
+    fn owned(self) -> Option<BooleanChain<'static>> {
+        let State::Kept(surface) = self.state else { return None };
+        Some(BooleanChain {
+            state: State::Kept(surface),
+            options: self.options,
+            scale: self.scale,
+            volume: self.volume,
+            volume_bound: self.volume_bound,
+            crossing: self.crossing,
+            operands: self.operands,
+            coming: self.coming,
+            report: self.report,
+            local: self.local,
+            contact: self.contact,
+            floor: self.floor,
         })
     }
 
@@ -261,11 +301,12 @@ impl<'a> BooleanChain<'a> {
         &mut self,
         operation: Operation,
         tool: &PolyMesh,
-        (volume, scale): (f64, OperandScale),
+        volume: f64,
         job: &Job,
         lap: &mut dyn FnMut(&'static str),
     ) -> Result<bool, BooleanError> {
         let State::Kept(surface) = &mut self.state else { return Ok(false) };
+        let scale = OperandScale::of(tool);
         let default = tolerance_of([self.scale, scale]);
         let floor = self.scale.reach().max(scale.reach()) * 2f64.powi(-49);
         let wanted = self.options.tolerance.unwrap_or(default.tolerance);
@@ -358,6 +399,20 @@ impl<'a> BooleanChain<'a> {
         sum.warnings.extend(step.warnings);
         sum.cut.extend(step.cut);
     }
+}
+
+/// The report with what the tolerance decided in local steps.
+fn reported(
+    mut report: BooleanReport,
+    contact: Contact,
+    floor: f64,
+    precision: Precision,
+) -> BooleanReport {
+    let depends = report.depends_on_tolerance;
+    note_contact(&mut report, contact, floor, precision);
+    report.depends_on_tolerance |= depends;
+    report.contact.add(contact);
+    report
 }
 
 /// The coarser resolution of two operands.
