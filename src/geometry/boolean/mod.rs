@@ -25,6 +25,10 @@
 //! the operand by the solid of all places that it winds around. [`BooleanReport`] states whether
 //! the result depends on the tolerance or on such a solid.
 //!
+//! Booleans one after another on one solid go through [`BooleanChain`], which keeps the solid's
+//! search trees: a step arranges only the faces near its tool, by the steps above, and puts what
+//! comes of them in their place. [`compute`] is the chain of one step, which keeps nothing.
+//!
 //! Not promised: features smaller than the tolerance.
 
 /// Both surfaces cut at each other, and the result of each operation from that.

@@ -129,11 +129,28 @@ impl<'a> BooleanChain<'a> {
         job: &Job,
         now: impl Fn() -> f64,
     ) -> Result<(), BooleanError> {
+        let before = self.operands as usize - 1;
+        job.part(before, before.saturating_add(self.coming));
+        let made = self.step_anyhow(operation, tool, crossing, job, now);
+        job.part(0, 1);
+        made
+    }
+
+    /// As [`BooleanChain::step`], whatever a step is a part of.
+    fn step_anyhow(
+        &mut self,
+        operation: Operation,
+        tool: &PolyMesh,
+        crossing: Option<bool>,
+        job: &Job,
+        now: impl Fn() -> f64,
+    ) -> Result<(), BooleanError> {
         let (done, crossing) = self.step_if_local(operation, tool, crossing, job, &now)?;
         if !done {
             self.step_as_a_whole(operation, tool, crossing, job, now)?;
             self.stepped(tool, crossing);
         }
+        job.progress(1.0);
         Ok(())
     }
 

@@ -61,26 +61,33 @@ fn chained(first: &PolyMesh, steps: &[Step], options: BooleanOptions) -> (ChainS
     (chain.finish(&job).expect("a solid").0, local)
 }
 
-/// Each step as a Boolean of its own.
-fn one_by_one(first: &PolyMesh, steps: &[Step], options: BooleanOptions) -> PolyMesh {
-    let mut mesh = first.clone();
+/// Each step as a Boolean of its own, and the most pairs of triangles that cross after one.
+fn one_by_one(
+    first: &PolyMesh,
+    steps: &[Step],
+    options: BooleanOptions,
+) -> (PolyMesh, Option<usize>) {
+    let (mut mesh, mut crossed) = (first.clone(), None);
     for (n, (operation, tool)) in steps.iter().enumerate() {
         let made = compute([&mesh, tool], &[*operation], &options, &Job::default(), || 0.0);
         let (made, _) = made.unwrap_or_else(|e| panic!("step {n}: {e}"));
         mesh = made.into_iter().next().expect("a result").mesh;
+        let facts = check::report(&mesh, true, &Job::default()).expect("a report");
+        crossed = crossed.max(facts.self_intersections);
     }
-    mesh
+    (mesh, crossed)
 }
 
-/// Checks that a result is a closed manifold without crossings, that its facts are its own, and
-/// that each face is in the plane of the face that it came from.
-fn sound(made: &ChainSolid, first: &PolyMesh, steps: &[Step], what: &str) {
+/// Checks that a result is a closed manifold with no more than `crossed` pairs of triangles that
+/// cross, that its facts are its own, and that each face is in the plane of the face that it came
+/// from.
+fn sound(made: &ChainSolid, first: &PolyMesh, steps: &[Step], crossed: usize, what: &str) {
     let facts = check::report(&made.mesh, true, &Job::default()).expect("a report");
     assert!(made.facts.closed && made.facts.manifold, "{what}: {:?}", made.facts);
     if made.mesh.face_count() > 0 {
         assert!(facts.closed && facts.manifold, "{what}: {facts:?}");
     }
-    assert_eq!(facts.self_intersections, Some(0), "{what}");
+    assert!(facts.self_intersections <= Some(crossed), "{what}: {facts:?}");
     assert_eq!(facts.components, made.facts.components, "{what}");
     assert_eq!(made.origins.len(), made.mesh.face_count(), "{what}");
     for (face, origin) in made.mesh.faces().zip(&made.origins) {
@@ -125,23 +132,11 @@ fn random_chains_are_what_single_steps_make() {
         };
         let options = BooleanOptions { faces, ..BooleanOptions::default() };
         let (made, steps_local) = chained(&first, &steps, options);
-        let other = one_by_one(&first, &steps, options);
-        if std::env::var_os("PROBE").is_some() {
-            let n = |m: &PolyMesh| {
-                let r = check::report(m, true, &Job::default()).expect("a report");
-                (r.self_intersections, r.closed, r.manifold, r.components)
-            };
-            let (own, want) = (made.facts.volume, volume(&other));
-            let off = (own - want).abs() / want.max(1.0);
-            let (x, y) = (n(&made.mesh), n(&other));
-            if off > 1e-9 || x.0 != Some(0) || x != y {
-                println!("PROBE seed {seed} {faces:?} off {off:.1e} {x:?} {y:?} local {steps_local}");
-            }
-            local += steps_local;
-            all += steps.iter().filter(|s| s.0 != Operation::Intersection).count();
-            continue;
-        }
-        sound(&made, &first, &steps, &format!("seed {seed}"));
+        let (other, crossed) = one_by_one(&first, &steps, options);
+        // Polygons of more corners than three are bent by rounding, so that their triangles may
+        // cross, in single steps too.
+        let crossed = crossed.filter(|_| faces == ResultFaces::ConvexPolygons).unwrap_or(0);
+        sound(&made, &first, &steps, crossed, &format!("seed {seed}"));
         let (own, want) = (made.facts.volume, volume(&other));
         assert!((own - want).abs() <= 1e-9 * want.max(1.0), "seed {seed}: {own} for {want}");
         if faces == ResultFaces::Triangles {
@@ -202,7 +197,7 @@ fn a_tool_inside_makes_a_cavity_and_one_outside_a_second_shell() {
     for n in 1..=steps.len() {
         let (made, _) = chained(&first, &steps[..n], BooleanOptions::default());
         assert_eq!((made.facts.volume, made.facts.components), (volumes[n], shells[n]), "{n}");
-        sound(&made, &first, &steps, &format!("{n} steps"));
+        sound(&made, &first, &steps, 0, &format!("{n} steps"));
     }
 }
 
@@ -219,11 +214,11 @@ fn a_part_that_comes_apart_at_an_edge_or_a_corner_stays_a_manifold() {
     ];
     let (made, local) = chained(&first, &steps[..2], BooleanOptions::default());
     assert_eq!((made.facts.volume, made.facts.components), (4.0, 2));
-    sound(&made, &first, &steps, "an edge");
+    sound(&made, &first, &steps, 0, "an edge");
     assert_eq!(local, 2);
     let (made, _) = chained(&first, &steps, BooleanOptions::default());
     assert_eq!((made.facts.volume, made.facts.components), (2.0, 2));
-    sound(&made, &first, &steps, "a corner");
+    sound(&made, &first, &steps, 0, "a corner");
 }
 
 #[test]
@@ -240,7 +235,7 @@ fn colours_groups_and_their_names_are_those_of_single_steps() {
     let steps: Vec<Step> = (0..3).map(|n| (Operation::Difference, tool(n))).collect();
     let (made, local) = chained(&first, &steps, BooleanOptions::default());
     assert_eq!(local, 3);
-    let other = one_by_one(&first, &steps, BooleanOptions::default());
+    let (other, _) = one_by_one(&first, &steps, BooleanOptions::default());
     // Faces and vertices may come in another order.
     let key = |m: &PolyMesh| {
         let (colours, groups) =
@@ -302,7 +297,7 @@ fn a_part_or_a_tool_that_crosses_itself_is_solved_as_in_single_steps() {
             (Operation::Union, placed(block.clone(), DMat3::from_rotation_x(1.0), DVec3::X)),
         ];
         let (made, _) = chained(&first, &steps, BooleanOptions::default());
-        let want = volume(&one_by_one(&first, &steps, BooleanOptions::default()));
+        let want = volume(&one_by_one(&first, &steps, BooleanOptions::default()).0);
         assert!((made.facts.volume - want).abs() < 1e-9, "{} for {want}", made.facts.volume);
         let facts = check::report(&made.mesh, true, &Job::default()).expect("a report");
         assert_eq!((facts.closed, facts.self_intersections), (true, Some(0)));
@@ -329,12 +324,40 @@ fn errors_name_the_operand_and_leave_the_chain_as_it_was() {
 }
 
 #[test]
+fn every_state_stays_readable() {
+    let job = Job::default();
+    let first = icosphere(1.0, 6).to_poly();
+    let begun = SolidState::new(&first, BooleanOptions::default(), &job);
+    let mut states = vec![begun.expect("a solid").expect("clean")];
+    let mut random = Random(29);
+    let steps: Vec<Step> =
+        (0..6).map(|_| (Operation::Difference, solid(&mut random, 0.3))).collect();
+    for (operation, tool) in &steps {
+        let last = states.last().expect("one");
+        let (next, _) = last.step(*operation, tool, &job).expect("a step").expect("local");
+        states.push(next);
+    }
+    for (n, state) in states.iter().enumerate() {
+        let want = match n {
+            0 => first.clone(),
+            n => chained(&first, &steps[..n], BooleanOptions::default()).0.mesh,
+        };
+        let off = (volume(&state.mesh()) - volume(&want)).abs();
+        assert!(off < 1e-12, "{n}: off by {off:e}");
+        let facts = check::report(&state.mesh(), true, &job).expect("a report");
+        assert!(facts.closed && facts.self_intersections == Some(0), "{n}: {facts:?}");
+    }
+    // Only the last goes on; an earlier one needs the whole.
+    assert!(states[2].step(Operation::Union, &first, &job).expect("runs").is_none());
+}
+
+#[test]
 fn one_step_is_the_single_boolean() {
     let (a, b) = (icosphere(1.0, 8).to_poly(), cuboid(DVec3::splat(0.2), DVec3::splat(2.0)));
     for operation in Operation::ALL {
         let options = BooleanOptions::default();
         let (made, _) = chained(&a, &[(operation, b.clone())], options);
-        let want = one_by_one(&a, &[(operation, b.clone())], options);
+        let (want, _) = one_by_one(&a, &[(operation, b.clone())], options);
         assert_eq!(made.mesh, want);
     }
 }
