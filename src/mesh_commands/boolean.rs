@@ -220,6 +220,11 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     for path in &args.meshes {
         operands.push(operand(path, args, &job, &now, &mut out)?);
     }
+    if args.what != What::Shells {
+        let lap = now();
+        operands.look_first(args, &job, &mut out)?;
+        *out.phases.entry("look".into()).or_default() += now() - lap;
+    }
     let start = now();
     let faces = match args.polygons {
         _ if args.refine_cut.is_some() => ResultFaces::Triangles,
@@ -247,7 +252,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         own_crossings: if keep { OwnCrossings::Keep } else { OwnCrossings::Solve },
         ..BooleanOptions::default()
     };
-    let (mut best, blank) = (None::<ResultSet>, out);
+    let (mut best, mut blank) = (None::<ResultSet>, out);
     let mut failed = None;
     for factor in SMALLER {
         let first = best.as_ref().map(|b| b.out.tolerance);
@@ -255,7 +260,15 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             options.tolerance = Some(first * factor);
         }
         let out = blank.clone();
-        let mut made = match ResultSet::of(&operands, args, &options, plane, out, &job, &now) {
+        let made = ResultSet::of(&operands, args, &options, plane, out, &job, &now);
+        // Whose crossings they are decides what is done about them.
+        let again = made.as_ref().is_ok_and(|m| m.crossings > 0)
+            && operands.look(args, &job, &mut blank)?;
+        let made = match again {
+            true => ResultSet::of(&operands, args, &options, plane, blank.clone(), &job, &now),
+            false => made,
+        };
+        let mut made = match made {
             Ok(made) => made,
             Err(e) => {
                 failed = Some(e);
@@ -362,9 +375,7 @@ impl ResultSet {
         let (mut ready, mut crossings) = (Vec::new(), 0);
         // Of the largest clean operand, the faces that are still there need no new comparison.
         let meshes = &operands.meshes;
-        let largest = (0..meshes.len())
-            .filter(|&n| operands.clean[n])
-            .max_by_key(|&n| (meshes[n].face_count(), meshes.len() - n));
+        let largest = operands.largest_clean();
         for (name, solid, origins) in solids {
             let file = if several { named(&args.out, &name) } else { args.out.clone() };
             // Kept contact is a sheet with two sides, which a repair would part.

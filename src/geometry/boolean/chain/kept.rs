@@ -185,6 +185,11 @@ impl KeptSurface {
         self.face_of.resize(self.triangles.len(), face);
     }
 
+    /// The number of faces that are still there.
+    pub fn face_count(&self) -> usize {
+        self.live
+    }
+
     /// Returns true if most of the memory is for faces that went.
     pub fn mostly_gone(&self) -> bool {
         self.until.len() > 2 * self.live + 4096

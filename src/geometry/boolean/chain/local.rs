@@ -21,6 +21,15 @@ use crate::triangulate;
 /// Pieces of each surface that are classified again; more where the surfaces are in contact.
 const SAMPLES: [usize; 2] = [12, 100];
 
+/// With fewer faces, a tool or a patch is small beside any part.
+const FEW: usize = 1 << 15;
+
+/// Whether a step with a tool of so many faces may cost less around the tool than as a whole: there
+/// a face costs twice as much.
+pub(super) fn pays(part: usize, tool: usize) -> bool {
+    tool < FEW || 8 * tool < part
+}
+
 /// A step: the tool, and how it is joined with the surface.
 pub(super) struct LocalStep<'a> {
     pub tool: &'a PolyMesh,
@@ -61,6 +70,9 @@ impl LocalStep<'_> {
         let reach = self.span.grown(8.0 * eps);
         let patch = surface.patch(&reach);
         lap("gather");
+        if patch.faces.len() > 2 * FEW && 2 * patch.faces.len() > surface.face_count() {
+            return Ok(Err("the tool reaches most of the part".into()));
+        }
         let common = common([&patch.mesh, tool], eps, job, lap)?;
         if common.same_surface {
             return Ok(Err("both are one surface".into()));

@@ -173,6 +173,7 @@ impl<'a> BooleanChain<'a> {
         };
         let mut crossing = crossing;
         let kept = matches!(operation, Operation::Union | Operation::Difference)
+            && local::pays(self.face_count(), tool.face_count())
             && self.keep(job, &mut lap)?;
         let done = kept && {
             let volume = check(tool, NAMES[1], job)?;
@@ -197,6 +198,14 @@ impl<'a> BooleanChain<'a> {
         self.crossing = clean.then_some(false);
         self.operands += 1;
         self.coming = self.coming.saturating_sub(1);
+    }
+
+    /// The number of faces of the solid.
+    fn face_count(&self) -> usize {
+        match &self.state {
+            State::Whole(mesh, ..) => mesh.face_count(),
+            State::Kept(surface) => surface.face_count(),
+        }
     }
 
     /// The number of steps so far that cost only what their tools cut.
