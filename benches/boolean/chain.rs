@@ -2,10 +2,10 @@
 //! compares.
 //!
 //! `chain FILE [one-by-one]` reads a list of triangle meshes: for each a byte (`+` union, `-`
-//! difference, `&` intersection), the numbers of vertices and triangles as 64 bits, the vertices as
-//! doubles and the corners as 32 bits, little-endian. The first mesh is the part. Then for each line
-//! of standard input it runs the chain and prints one line of JSON. `one-by-one`: each step as a
-//! Boolean of its own.
+//! difference, `&` intersection), the numbers of vertices and triangles as 64 bits, the vertices
+//! as doubles and the corners as 32 bits, little-endian. The first mesh is the part. Then for each
+//! line of standard input it runs the chain and prints one line of JSON. `one-by-one`: each step as
+//! a Boolean of its own.
 
 #![allow(clippy::print_stdout)] // What `chain.py` reads.
 

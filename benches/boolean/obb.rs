@@ -1,8 +1,9 @@
 //! A runner for Open Boolean Benchmark: `obb --request request.json --result result.json`.
 //!
-//! The contract is "Runner I/O Contract", version 1, of github.com/solidean/boolean-benchmark-runners:
-//! runs of operations in which each refers to earlier ones by number. The result of each is written
-//! to `op_N.obj`, and the times that the contract names are measured:
+//! The contract is "Runner I/O Contract", version 1, of the repository
+//! `solidean/boolean-benchmark-runners`: runs of operations in which each refers to earlier ones by
+//! number. The result of each is written to `op_N.obj`, and the times that the contract names are
+//! measured:
 //!
 //! * `io_ms`: the file to polygons; `import_ms`: polygons to triangles, checked as an operand.
 //! * `operation_ms`: the Boolean with all its checks. The search trees of a solid are made in the

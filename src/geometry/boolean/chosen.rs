@@ -1,5 +1,5 @@
-//! The faces of one result, chosen from an arrangement: the same for a whole operand and for a patch
-//! of a larger surface.
+//! The faces of one result, chosen from an arrangement: in the same way for a whole operand and for
+//! a patch of a larger surface.
 
 use super::arrange::{Arrangement, FaceState};
 use super::emit::{self, FaceOrigin};

@@ -218,7 +218,7 @@ fn chained(
 pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResult<Mesh> {
     let options = options(None, "as-operands", false)?;
     if matches!(operation, Operation::Union | Operation::Difference)
-        && let Some(mesh) = stepped(py, a, b, operation, options)?
+        && let Some(mesh) = from_state(py, a, b, operation, options)?
     {
         return Ok(mesh);
     }
@@ -229,7 +229,7 @@ pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResul
 
 /// The same where `a` came from a Boolean, at the cost of what `b` cuts; None where that does not
 /// decide.
-fn stepped(
+fn from_state(
     py: Python<'_>,
     a: &Mesh,
     b: &Mesh,

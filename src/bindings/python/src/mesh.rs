@@ -201,7 +201,8 @@ impl Mesh {
     /// The start of each face's corners, and finally their number: uint32, read-only, shared.
     #[getter]
     fn face_starts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shared(py, self.poly().clone(), &self.poly().face_starts, vec![self.poly().face_starts.len()])
+        let poly = self.poly();
+        shared(py, poly.clone(), &poly.face_starts, vec![poly.face_starts.len()])
     }
 
     /// (n, 4) uint8 RGBA, read-only, shared; None where the mesh has no colours.
@@ -298,7 +299,8 @@ impl Mesh {
     /// True if each edge has exactly two faces, which run along it in opposite directions.
     #[getter]
     fn is_closed(&self, py: Python<'_>) -> bool {
-        let report = py.detach(|| pool::here(|| check::report(self.poly(), false, &Job::default())));
+        let poly = self.poly();
+        let report = py.detach(|| pool::here(|| check::report(poly, false, &Job::default())));
         report.is_ok_and(|r| r.closed)
     }
 

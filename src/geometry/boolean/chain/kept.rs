@@ -1,6 +1,6 @@
 //! A surface that keeps its search trees while parts of it are replaced.
 //!
-//! Faces and vertices are only ever added; a face that goes is marked. The trees are static, one for
+//! Faces and vertices are only added; a face that goes is marked. The trees are static, one for
 //! each batch of new triangles, and small ones are joined before they are many (Bentley and Saxe,
 //! "Decomposable searching problems I: static-to-dynamic transformation", 1980). So a step costs
 //! what it replaces, and a logarithm of the rest.

@@ -148,14 +148,14 @@ impl<'a> BooleanChain<'a> {
         let (done, crossing) = self.step_if_local(operation, tool, crossing, job, &now)?;
         if !done {
             self.step_as_a_whole(operation, tool, crossing, job, now)?;
-            self.stepped(tool, crossing);
+            self.note_step(tool, crossing);
         }
         job.progress(1.0);
         Ok(())
     }
 
-    /// As [`BooleanChain::step`], only where that costs what the tool cuts. Returns whether it does,
-    /// and whether the tool has triangles that cross, where that is known by now.
+    /// As [`BooleanChain::step`], only where that costs what the tool cuts. Returns whether it
+    /// does, and whether the tool has triangles that cross, where that is known by now.
     fn step_if_local(
         &mut self,
         operation: Operation,
@@ -186,13 +186,13 @@ impl<'a> BooleanChain<'a> {
             self.lap(name, seconds);
         }
         if done {
-            self.stepped(tool, crossing);
+            self.note_step(tool, crossing);
         }
         Ok((done, crossing))
     }
 
     /// Notes that a step with a tool was made.
-    fn stepped(&mut self, tool: &PolyMesh, crossing: Option<bool>) {
+    fn note_step(&mut self, tool: &PolyMesh, crossing: Option<bool>) {
         self.scale.resolution = coarser(self.scale, OperandScale::of(tool));
         let clean = [self.crossing, crossing] == [Some(false); 2];
         self.crossing = clean.then_some(false);

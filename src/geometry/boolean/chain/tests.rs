@@ -8,9 +8,9 @@ use crate::check;
 use crate::shapes::{cuboid, cylinder, icosphere, torus};
 
 /// A sequence of numbers from 0 to 1.
-struct Random(u64);
+struct SeededNumbers(u64);
 
-impl Random {
+impl SeededNumbers {
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -36,7 +36,7 @@ fn placed(mut mesh: PolyMesh, turn: DMat3, shift: DVec3) -> PolyMesh {
 }
 
 /// A solid of random kind and place.
-fn solid(random: &mut Random, size: f64) -> PolyMesh {
+fn solid(random: &mut SeededNumbers, size: f64) -> PolyMesh {
     let mesh = match (random.unit() * 4.0) as u32 {
         0 => cuboid(DVec3::splat(-0.7 * size), DVec3::new(0.6, 0.8, 0.9) * size),
         1 => cylinder(0.6 * size, 2.5 * size, 5 + (random.unit() * 20.0) as u32),
@@ -112,7 +112,7 @@ fn random_chains_are_what_single_steps_make() {
     let long = std::env::var_os("SCULPTD_LONG").is_some();
     let (mut local, mut all) = (0, 0);
     for seed in 0..if long { 400 } else { 24 } {
-        let mut random = Random(seed * 77 + 5);
+        let mut random = SeededNumbers(seed * 77 + 5);
         let first = solid(&mut random, 1.4);
         let steps: Vec<Step> = (0..8)
             .map(|_| {
@@ -157,7 +157,7 @@ fn cubes_that_touch_become_one_and_nothing_again() {
             cuboid(low, low + 1.0)
         })
         .collect();
-    let turns = [DMat3::IDENTITY, Random(3).turn()];
+    let turns = [DMat3::IDENTITY, SeededNumbers(3).turn()];
     for turn in turns {
         let cubes: Vec<PolyMesh> =
             cubes.iter().map(|c| placed(c.clone(), turn, DVec3::ZERO)).collect();
@@ -256,7 +256,7 @@ fn colours_groups_and_their_names_are_those_of_single_steps() {
 
 #[test]
 fn the_bits_are_the_same_with_any_number_of_workers() {
-    let mut random = Random(11);
+    let mut random = SeededNumbers(11);
     let first = icosphere(1.0, 20).to_poly();
     let steps: Vec<Step> =
         (0..12).map(|_| (Operation::Difference, solid(&mut random, 0.3))).collect();
@@ -329,7 +329,7 @@ fn every_state_stays_readable() {
     let first = icosphere(1.0, 6).to_poly();
     let begun = SolidState::new(&first, BooleanOptions::default(), &job);
     let mut states = vec![begun.expect("a solid").expect("clean")];
-    let mut random = Random(29);
+    let mut random = SeededNumbers(29);
     let steps: Vec<Step> =
         (0..6).map(|_| (Operation::Difference, solid(&mut random, 0.3))).collect();
     for (operation, tool) in &steps {
