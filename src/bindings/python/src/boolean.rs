@@ -297,8 +297,11 @@ fn boolean(
 
 /// The surfaces of a list of meshes.
 fn surfaces(list: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<PolyMesh>>> {
-    let mesh = |item: PyResult<Bound<'_, PyAny>>| Ok(item?.cast::<Mesh>()?.get().poly().clone());
-    list.try_iter()?.map(mesh).collect()
+    fn surface(item: PyResult<Bound<'_, PyAny>>) -> PyResult<Arc<PolyMesh>> {
+        let item = item?;
+        Ok(item.cast::<Mesh>()?.get().poly().clone())
+    }
+    list.try_iter()?.map(surface).collect()
 }
 
 /// The union of a list of closed solids, which may have any number of meshes but none. The settings

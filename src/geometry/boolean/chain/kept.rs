@@ -287,7 +287,7 @@ impl KeptSurface {
     }
 
     /// Replaces faces.
-    pub fn apply(&mut self, change: SurfaceChange, job: &Job) -> Result<(), Cancelled> {
+    pub fn apply(&mut self, change: &SurfaceChange, job: &Job) -> Result<(), Cancelled> {
         let (first, before) = (self.triangles.len(), self.at.len());
         let next = self.versions.len() as u32;
         for &f in &change.removed {

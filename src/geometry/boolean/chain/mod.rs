@@ -351,7 +351,7 @@ impl<'a> BooleanChain<'a> {
             Ok(made) => made,
             Err(_) => return Ok(false),
         };
-        surface.apply(made.change, job)?;
+        surface.apply(&made.change, job)?;
         lap("graft");
         self.scale.span = surface.span;
         self.local += 1;

@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::{BooleanChain, State, reported};
 use crate::PolyMesh;
-use crate::boolean::points::Contact;
 use crate::boolean::{BooleanError, BooleanOptions, BooleanReport, Operation};
 use crate::job::Job;
 
@@ -57,7 +56,7 @@ impl SolidState {
             return Ok(None);
         }
         let precision = chain.scale.resolution.precision;
-        let contact = std::mem::replace(&mut chain.contact, Contact::default());
+        let contact = std::mem::take(&mut chain.contact);
         let report = std::mem::take(&mut chain.report);
         let report = reported(report, contact, chain.floor, precision);
         Ok(Some((SolidState { shared: self.shared.clone(), version: self.version + 1 }, report)))
