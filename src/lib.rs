@@ -71,8 +71,8 @@
 //! The compiler enforces the dependencies between them; `tests/tidy` rejects cycles between the
 //! files of a crate.
 //!
-//! * `sculptd-geometry` (`src/geometry`) depends on none: meshes, files, repair, BVH, Booleans,
-//!   thickness, distance, jobs that can be cancelled.
+//! * `sculptd-geometry` (`src/geometry`) depends on none: meshes, files, repair, BVH, Booleans and
+//!   chains of them at the cost of what each cuts, thickness, distance, jobs that can be cancelled.
 //! * `sculptd-devices` (`devices`) depends on none: everything between a wire and a `Sample`;
 //!   tablets as data.
 //! * `sculptd-camera` (`devices/camera`) depends on devices: pictures of a webcam to hand samples,

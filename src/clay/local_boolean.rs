@@ -10,13 +10,16 @@ use glam::{DVec3, Vec3};
 
 use crate::{Corner, Cut, Home, NewVertex, Page, Snapshot, home_of};
 use sculptd_geometry::boolean::arrange::{Arrangement, FaceState};
-use sculptd_geometry::boolean::classify::crossings;
+use sculptd_geometry::boolean::classify::{Around, crossings};
 use sculptd_geometry::boolean::points::Map;
 use sculptd_geometry::boolean::{
     BooleanError, BooleanOptions, NAMES, Operation, check, single_tolerance,
 };
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{PolyMesh, triangulate};
+
+/// Pieces of each surface that are classified again.
+const SAMPLES: usize = 4;
 
 /// Union or difference of the clay and a tool (A and B); None where only the whole can tell: for an
 /// intersection, or where the cut does not close.
@@ -43,10 +46,11 @@ pub fn local(
     let resolved = single_tolerance(reach, (high - low).max_element());
     let wanted = options.tolerance.unwrap_or(resolved).max(floor).max(f64::MIN_POSITIVE);
     let patch = ToolSurroundings::of(clay, tool, 4.0 * wanted);
-    let around = |p: DVec3| winding(clay, p);
+    let winding = |p: DVec3| winding(clay, p);
+    let around = Around { winding: &winding, bounds: None, samples: SAMPLES };
     for factor in [1.0, 0.125, 1.0 / 64.0] {
         let eps = (wanted * factor).max(floor);
-        let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(&around), job, &mut |_| ())?;
+        let a = Arrangement::new([&patch.mesh, tool], eps, floor, Some(around), job, &mut |_| ())?;
         if a.doubt.is_none()
             && let Some(change) = patch.change(&a, clay, operation, options.keep_contact, job)
         {

@@ -17,8 +17,8 @@ use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean;
 use sculptd_geometry::boolean::{
-    BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, OwnCrossings, Precision,
-    ResultFaces,
+    BooleanChain, BooleanOptions, BooleanReport, BooleanSolid, Contact, Operation, OwnCrossings,
+    Precision, ResultFaces,
 };
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -220,6 +220,11 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
     for path in &args.meshes {
         operands.push(operand(path, args, &job, &now, &mut out)?);
     }
+    if args.what != What::Shells {
+        let lap = now();
+        operands.look_first(args, &job, &mut out)?;
+        *out.phases.entry("look".into()).or_default() += now() - lap;
+    }
     let start = now();
     let faces = match args.polygons {
         _ if args.refine_cut.is_some() => ResultFaces::Triangles,
@@ -247,7 +252,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         own_crossings: if keep { OwnCrossings::Keep } else { OwnCrossings::Solve },
         ..BooleanOptions::default()
     };
-    let (mut best, blank) = (None::<ResultSet>, out);
+    let (mut best, mut blank) = (None::<ResultSet>, out);
     let mut failed = None;
     for factor in SMALLER {
         let first = best.as_ref().map(|b| b.out.tolerance);
@@ -255,7 +260,15 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
             options.tolerance = Some(first * factor);
         }
         let out = blank.clone();
-        let mut made = match ResultSet::of(&operands, args, &options, plane, out, &job, &now) {
+        let made = ResultSet::of(&operands, args, &options, plane, out, &job, &now);
+        // Whose crossings they are decides what is done about them.
+        let again = made.as_ref().is_ok_and(|m| m.crossings > 0)
+            && operands.look(args, &job, &mut blank)?;
+        let made = match again {
+            true => ResultSet::of(&operands, args, &options, plane, blank.clone(), &job, &now),
+            false => made,
+        };
+        let mut made = match made {
             Ok(made) => made,
             Err(e) => {
                 failed = Some(e);
@@ -362,9 +375,7 @@ impl ResultSet {
         let (mut ready, mut crossings) = (Vec::new(), 0);
         // Of the largest clean operand, the faces that are still there need no new comparison.
         let meshes = &operands.meshes;
-        let largest = (0..meshes.len())
-            .filter(|&n| operands.clean[n])
-            .max_by_key(|&n| (meshes[n].face_count(), meshes.len() - n));
+        let largest = operands.largest_clean();
         for (name, solid, origins) in solids {
             let file = if several { named(&args.out, &name) } else { args.out.clone() };
             // Kept contact is a sheet with two sides, which a repair would part.
@@ -406,6 +417,9 @@ fn join(
         What::ReverseDifference => vec![Operation::ReverseDifference],
         _ => Operation::ALL.to_vec(),
     };
+    if let (&[operation], None) = (&operations[..], args.refine_cut) {
+        return chain(operands, operation, args, options, job, now, out);
+    }
     let mut solids: Vec<(String, BooleanSolid, Origins)> = Vec::new();
     for (n, right) in operands.meshes.iter().enumerate().skip(1) {
         let left = solids.pop();
@@ -434,6 +448,30 @@ fn join(
             .collect::<Result<_, Fail>>()?;
     }
     Ok(solids)
+}
+
+/// One operation, from the left to the right, at the cost of what each operand cuts.
+fn chain(
+    operands: &Operands,
+    operation: Operation,
+    args: &BooleanArgs,
+    options: &BooleanOptions,
+    job: &Job,
+    now: &impl Fn() -> f64,
+    out: &mut BooleanAnswer,
+) -> Result<Vec<(String, BooleanSolid, Origins)>, Fail> {
+    let [first, tools @ ..] = &operands.meshes[..] else { return Ok(Vec::new()) };
+    let options = BooleanOptions { known_crossings: [operands.crossing[0], None], ..*options };
+    let mut chain = BooleanChain::new(first, tools.len(), options);
+    for (tool, &crossing) in tools.iter().zip(&operands.crossing[1..]) {
+        chain.step(operation, tool, crossing, job, now)?;
+    }
+    let (solid, report) = chain.finish(job)?;
+    out.note(report, args.details);
+    let origins = solid.origins.iter().map(|o| (o.operand as usize, o.face)).collect();
+    let solid =
+        BooleanSolid { operation, mesh: solid.mesh, origins: Vec::new(), facts: solid.facts };
+    Ok(vec![(operation.name().to_owned(), solid, Some(origins))])
 }
 
 /// Each shell in its file.

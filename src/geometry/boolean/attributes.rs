@@ -30,8 +30,18 @@ fn names(operands: [&PolyMesh; 2], first: u32) -> Option<Arc<FaceAttributes>> {
 /// Gives a result its colours and groups where an operand has some. Vertices of an operand without
 /// colours are white; B's groups are counted on from A's, so that no two become one.
 pub fn carry(mesh: &mut PolyMesh, origins: &[FaceOrigin], operands: [&PolyMesh; 2]) {
+    let first = operands[0].groups.as_ref().map_or(1, |g| g.iter().max().map_or(0, |m| m + 1));
+    carry_from(mesh, origins, operands, first);
+}
+
+/// As [`carry`], with the number of B's group 0 in the result.
+pub fn carry_from(
+    mesh: &mut PolyMesh,
+    origins: &[FaceOrigin],
+    operands: [&PolyMesh; 2],
+    first: u32,
+) {
     if operands.iter().any(|m| m.groups.is_some()) {
-        let first = operands[0].groups.as_ref().map_or(1, |g| g.iter().max().map_or(0, |m| m + 1));
         let group = |o: &FaceOrigin| {
             let own = operands[o.operand as usize].groups.as_ref();
             let own = own.and_then(|g| g.get(o.face as usize)).copied().unwrap_or(0);

@@ -66,16 +66,27 @@ pub fn pairs(
     if !both.lo.cmple(both.hi).all() {
         return Ok(Vec::new());
     }
-    let grid = CellGrid::over(both, slack);
     let all = |s: usize| 0..surfaces[s].triangles.len() as u32;
-    let (first, marked) = grid.sift(&surfaces[0], all(0).into_par_iter(), None, job);
-    job.check()?;
-    let (second, marked) = grid.sift(&surfaces[1], all(1).into_par_iter(), Some(&marked), job);
-    job.check()?;
-    let (first, _) = if first.len() > FEW {
-        grid.sift(&surfaces[0], first.into_par_iter(), Some(&marked), job)
+    let few = surfaces.iter().map(|s| s.triangles.len()).sum::<usize>() < FEW;
+    let [first, second] = if few {
+        // The marks of the grid alone would take longer.
+        let near = |s: usize| {
+            let meets = |t: &u32| surfaces[s].span(*t).grown(slack).meets(&both);
+            all(s).filter(meets).collect::<Vec<u32>>()
+        };
+        [near(0), near(1)]
     } else {
-        (first, Marked::default())
+        let grid = CellGrid::over(both, slack);
+        let (first, marked) = grid.sift(&surfaces[0], all(0).into_par_iter(), None, job);
+        job.check()?;
+        let (second, marked) = grid.sift(&surfaces[1], all(1).into_par_iter(), Some(&marked), job);
+        job.check()?;
+        let (first, _) = if first.len() > FEW {
+            grid.sift(&surfaces[0], first.into_par_iter(), Some(&marked), job)
+        } else {
+            (first, Marked::default())
+        };
+        [first, second]
     };
     job.check()?;
     // Of the surface of which more is left.
@@ -90,13 +101,21 @@ pub fn pairs(
         let spans: Vec<Span> = left.iter().map(span).collect();
         SpanTree::build(&spans, job).map(|tree| (spans, tree))
     };
-    let (a, b) = rayon::join(|| side(0, &first), || side(1, &second));
+    let (a, b) = if few {
+        (side(0, &first), side(1, &second))
+    } else {
+        rayon::join(|| side(0, &first), || side(1, &second))
+    };
     let ((own, tree), (others, other)) = (a?, b?);
     let mut out = Vec::new();
     tree.pairs(&own, &other, &others, slack, job, |i, j| {
         out.push((first[i as usize], second[j as usize]))
     })?;
-    out.par_sort_unstable();
+    if few {
+        out.sort_unstable();
+    } else {
+        out.par_sort_unstable();
+    }
     Ok(out)
 }
 

@@ -17,8 +17,16 @@ use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::triangulate::area_vector;
 
-/// The winding number of a surface around a point, where the operand is only a part of it.
-pub type Around<'a> = &'a (dyn Fn(DVec3) -> i32 + Sync);
+/// The whole of a surface of which an operand is only a part.
+#[derive(Clone, Copy)]
+pub struct Around<'a> {
+    /// Returns the winding number of the whole around a point.
+    pub winding: &'a (dyn Fn(DVec3) -> i32 + Sync),
+    /// A box around the whole, where one is known.
+    pub bounds: Option<Span>,
+    /// The number of pieces, and of faces, of a surface that are classified again.
+    pub samples: usize,
+}
 
 /// Placements of the faces that nothing cuts: each has that of the connected part that it is in.
 #[derive(Debug, Default)]
@@ -31,6 +39,12 @@ pub struct Classification {
 const NONE: u32 = u32::MAX;
 /// Of a face with a corner beyond the other's box, until its part has a number.
 const FAR: u32 = u32::MAX - 1;
+
+impl std::fmt::Debug for Around<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Around").field("bounds", &self.bounds).finish_non_exhaustive()
+    }
+}
 
 impl Classification {
     /// Returns the placement of a face; `None` for a face that is in pieces.
@@ -99,8 +113,10 @@ pub fn classify(
     let one = |s: usize, pieces: &mut [FacePiece]| {
         let surface = SurfaceView { triangles: &triangles[1 - s], at: &points.at, base: 0 };
         let mut other = WindingOracle::new(surface, bounds[1 - s], points.tolerance());
-        other.around = around.filter(|_| s == 1);
-        other.of_patch = around.is_some();
+        other.of_patch = around.map(|a| a.samples);
+        if let Some(whole) = around.filter(|_| s == 1) {
+            other = other.within(whole);
+        }
         one_side(&meshes[s], pieces, &settled[s], m, &points.at, other, job)
     };
     let (a, b) = rayon::join(|| one(0, first), || one(1, second));
@@ -257,8 +273,8 @@ pub(super) struct WindingOracle<'a> {
     bounds: Span,
     /// The whole of it, where the surface is a part only.
     around: Option<Around<'a>>,
-    /// One operand is a patch of a live surface.
-    of_patch: bool,
+    /// Samples, where one operand is a patch of a larger surface.
+    of_patch: Option<usize>,
     /// The tolerance: nearer to the surface than four of it, nothing is inside or outside.
     eps: f64,
     asked: usize,
@@ -279,13 +295,21 @@ impl<'a> WindingOracle<'a> {
         // Corners on the surface may be beyond its box by the tolerance.
         let bounds = bounds.grown(4.0 * eps);
         let tree = None;
-        WindingOracle { surface, bounds, around: None, of_patch: false, eps, asked: 0, tree }
+        WindingOracle { surface, bounds, around: None, of_patch: None, eps, asked: 0, tree }
+    }
+
+    /// The surface as a part of a whole.
+    fn within(mut self, whole: Around<'a>) -> Self {
+        // Without a box, no place is beyond it.
+        let endless = Span { lo: DVec3::NEG_INFINITY, hi: DVec3::INFINITY };
+        self.bounds = whole.bounds.map_or(endless, |b| b.grown(4.0 * self.eps));
+        self.around = Some(whole);
+        self
     }
 
     /// Returns true if a place is beyond the box of the surface, and therefore outside.
     fn beyond(&self, p: DVec3) -> bool {
-        let within = self.bounds.lo.cmple(p).all() && p.cmple(self.bounds.hi).all();
-        self.around.is_none() && !within
+        !(self.bounds.lo.cmple(p).all() && p.cmple(self.bounds.hi).all())
     }
 
     fn look(&self, part: &mut ConnectedPart, loops: &[&[u32]], at: &[DVec3]) {
@@ -304,9 +328,9 @@ impl<'a> WindingOracle<'a> {
 
     /// Returns the number of pieces, and of faces, of a surface to classify again separately.
     fn samples(&self, faces: usize, pieces: usize) -> usize {
-        if self.of_patch {
+        if let Some(samples) = self.of_patch {
             // The parts of a patch are small, most of its faces are cut, and its border is checked.
-            4
+            samples
         } else if pieces * 4 > faces && pieces > 64 {
             MANY_SAMPLES
         } else if self.surface.triangles.len() > 100_000 {
@@ -338,11 +362,11 @@ impl<'a> WindingOracle<'a> {
     /// Returns the winding number of the surface around a point.
     fn winding(&mut self, o: DVec3, job: &Job) -> Result<i32, Cancelled> {
         job.check()?;
-        if let Some(around) = self.around {
-            return Ok(around(o));
-        }
-        if !(self.bounds.lo.cmple(o).all() && o.cmple(self.bounds.hi).all()) {
+        if self.beyond(o) {
             return Ok(0);
+        }
+        if let Some(whole) = self.around {
+            return Ok((whole.winding)(o));
         }
         self.asked += 1;
         if self.asked > WITHOUT_TREE && self.tree.is_none() {

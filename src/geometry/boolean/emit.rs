@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::points::Map;
 use crate::PolyMesh;
 use crate::disjoint_sets::DisjointSets;
 use crate::fans;
@@ -175,6 +176,29 @@ fn compact(mesh: &mut PolyMesh, at: &[DVec3], degrees: &[u32]) {
 /// index `at`. Returns whether each edge found its partner: then the mesh is closed, oriented and
 /// manifold.
 pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Cancelled> {
+    Ok(separate_patch(mesh, at, |_| false, job)?.open.is_empty())
+}
+
+/// What [`separate_patch`] found and did.
+pub struct Separation {
+    /// Edges without a partner in the direction of their faces, over the points before; an edge
+    /// that can have none, as (`NOWHERE`, `NOWHERE`).
+    pub open: Vec<(u32, u32)>,
+    /// The point that each vertex was; `NOWHERE` for a corner in the middle of an edge.
+    pub from: Vec<u32>,
+}
+
+/// No point.
+pub const NOWHERE: u32 = u32::MAX;
+
+/// As [`separate`], for a patch of a larger surface. Points that are `fixed` have faces outside of
+/// the patch: they stay one vertex, and edges between two of them need no partner.
+pub fn separate_patch(
+    mesh: &mut PolyMesh,
+    at: &[DVec3],
+    fixed: impl Fn(u32) -> bool,
+    job: &Job,
+) -> Result<Separation, Cancelled> {
     let n = mesh.corners.len();
     let mut face_of = vec![0u32; n];
     let mut next = vec![0u32; n];
@@ -199,7 +223,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
     }
     half.sort();
     job.check()?;
-    let mut closed = true;
+    let mut open: Vec<(u32, u32)> = Vec::new();
     let mut several: Vec<(u32, u32)> = Vec::new();
     let mut sets = DisjointSets::new(n);
     let mut i = 0;
@@ -217,7 +241,10 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
         if group.len() == 2 && forward(group[0].1) != forward(group[1].1) {
             pair(group[0].1, group[1].1);
         } else if group.iter().filter(|h| forward(h.1)).count() * 2 != group.len() {
-            closed = false;
+            let c = group[0].1;
+            let ends = (mesh.corners[c as usize], mesh.corners[next[c as usize] as usize]);
+            let border = group.len() == 1 && fixed(ends.0) && fixed(ends.1);
+            open.push(if border { ends } else { (NOWHERE, NOWHERE) });
         } else {
             for (g, h) in around(mesh, at, group, &face_of) {
                 pair(g, h);
@@ -227,15 +254,21 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
         i = j;
     }
     job.check()?;
+    let mut stay: Map<u32, u32> = Map::default();
+    for c in (0..n as u32).filter(|&c| fixed(mesh.corners[c as usize])) {
+        sets.join(c, *stay.entry(mesh.corners[c as usize]).or_insert(c));
+    }
     // One vertex a fan, numbered by first use.
     let mut id = vec![u32::MAX; n];
     let mut corners = vec![0u32; n];
+    let mut from: Vec<u32> = Vec::new();
     mesh.positions.clear();
     for c in 0..n as u32 {
         let r = sets.root(c) as usize;
         if id[r] == u32::MAX {
             id[r] = mesh.positions.len() as u32;
             mesh.positions.push(at[mesh.corners[c as usize] as usize]);
+            from.push(mesh.corners[c as usize]);
         }
         corners[c as usize] = id[r];
     }
@@ -256,6 +289,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
             let v = mesh.positions.len() as u32;
             let middle = (mesh.positions[a as usize] + mesh.positions[b as usize]) * 0.5;
             mesh.positions.push(middle);
+            from.push(NOWHERE);
             middles.extend([(w[1].0, v), (w[1].1, v)]);
         }
     }
@@ -276,7 +310,7 @@ pub fn separate(mesh: &mut PolyMesh, at: &[DVec3], job: &Job) -> Result<bool, Ca
             mesh.push_face(&face);
         }
     }
-    Ok(closed)
+    Ok(Separation { open, from })
 }
 
 /// Partners around an edge with more than two faces: those with the solid between them, as

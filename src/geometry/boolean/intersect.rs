@@ -49,6 +49,9 @@ pub fn c3(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
 
+/// Pairs that one thread looks at before another may take some.
+const PAIRS: usize = 512;
+
 struct Finder<'a> {
     points: &'a mut PointSet,
     eps: f64,
@@ -76,7 +79,7 @@ pub fn intersect(
             && !beside(at, s, t, eps)
             && !beside(at, t, s, eps)
     };
-    pairs = pairs.into_par_iter().filter(near).collect();
+    pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
     job.check()?;
     met(triangles, &pairs, [0, 1], points, eps, job)
 }
@@ -96,7 +99,7 @@ pub fn intersect_itself(
         let apart = |s, t| beyond_shared(at, s, t, eps) || beside(at, s, t, eps);
         near_plane(at, s, t, eps) && near_plane(at, t, s, eps) && !apart(s, t) && !apart(t, s)
     };
-    pairs = pairs.into_par_iter().filter(near).collect();
+    pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
     job.check()?;
     met([triangles, triangles], &pairs, [0, 0], points, eps, job)
 }

@@ -25,6 +25,10 @@
 //! the operand by the solid of all places that it winds around. [`BooleanReport`] states whether
 //! the result depends on the tolerance or on such a solid.
 //!
+//! Booleans one after another on one solid go through [`BooleanChain`], which keeps the solid's
+//! search trees: a step arranges only the faces near its tool, by the steps above, and puts what
+//! comes of them in their place. [`compute`] is the chain of one step, which keeps nothing.
+//!
 //! Not promised: features smaller than the tolerance.
 
 /// Both surfaces cut at each other, and the result of each operation from that.
@@ -32,6 +36,8 @@ pub mod arrange;
 mod attributes;
 pub(crate) mod box_tree;
 mod broad_phase;
+mod chain;
+mod chosen;
 /// Inside or outside, for each part of a surface.
 pub mod classify;
 mod common;
@@ -61,6 +67,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 pub use attributes::mixed;
+pub use chain::{BooleanChain, ChainOrigin, ChainSolid, SolidState};
 pub use emit::{BooleanFacts, FaceOrigin};
 pub use operand::check;
 pub use parts::{shells, split};

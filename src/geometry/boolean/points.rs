@@ -130,6 +130,13 @@ impl Contact {
         self.farthest = self.farthest.max(distance);
     }
 
+    /// Adds what another step found.
+    pub fn add(&mut self, other: Contact) {
+        self.places += other.places;
+        self.farthest = self.farthest.max(other.farthest);
+        self.near_misses += other.near_misses;
+    }
+
     /// Notes a distance that was held against the tolerance: in contact, nearly, or neither.
     pub fn compared(&mut self, distance: f64, eps: f64) -> bool {
         if distance <= eps {

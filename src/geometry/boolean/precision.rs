@@ -8,6 +8,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
+use super::box_tree::Span;
 use crate::PolyMesh;
 
 /// The rounding of a mesh's coordinates.
@@ -65,17 +66,50 @@ const SAMPLES: usize = 512;
 /// coordinate (the 17 digits of double precision leave 2^-53 of it), at most 1e-4 of the size of
 /// the smaller operand.
 pub fn default_tolerance(operands: [&PolyMesh; 2]) -> DefaultTolerance {
-    let far = |m: &PolyMesh| m.positions.iter().fold(DVec3::ZERO, |r, p| r.max(p.abs()));
-    let reach = operands.map(|m| far(m).max_element());
+    tolerance_of(operands.map(OperandScale::of))
+}
+
+/// The size of an operand and the resolution of its coordinates: all that a tolerance depends on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OperandScale {
+    /// The box around all vertices, or a larger one.
+    pub span: Span,
+    /// The rounding of the coordinates.
+    pub resolution: Resolution,
+}
+
+impl OperandScale {
+    pub fn of(mesh: &PolyMesh) -> OperandScale {
+        let span = Span::of(mesh.positions.iter().copied());
+        OperandScale { span, resolution: resolution(mesh) }
+    }
+
+    /// The largest coordinate.
+    pub fn reach(&self) -> f64 {
+        let far = self.span.lo.abs().max(self.span.hi.abs()).max_element();
+        // The box of nothing is endless.
+        if far.is_finite() { far } else { 0.0 }
+    }
+
+    /// The longest side of the box.
+    fn extent(&self) -> f64 {
+        (self.span.hi - self.span.lo).max_element().max(0.0)
+    }
+}
+
+/// As [`default_tolerance`].
+pub(super) fn tolerance_of(operands: [OperandScale; 2]) -> DefaultTolerance {
+    let reach = operands.map(|o| o.reach());
     let largest = reach[0].max(reach[1]);
-    let found = operands.map(resolution);
+    let found = operands.map(|o| o.resolution);
     let precision = found[0].precision.max(found[1].precision);
     let mut error = found[0].error.max(found[1].error);
     if found.iter().any(|r| r.precision == Precision::Single) {
         // A tool that was moved in double precision was single precision once.
         error = error.max(single_error(largest));
     }
-    let size = operands.map(extent).into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+    let size =
+        operands.map(|o| o.extent()).into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
     let least = largest * 2f64.powi(-38);
     let most = if size.is_finite() { (size * COARSEST).max(least) } else { least };
     let wanted = if precision == Precision::Double { 0.0 } else { ERRORS * error };

@@ -3,12 +3,14 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::arrange::{Arrangement, FaceState};
+use super::arrange::Arrangement;
 use super::box_tree::Span;
+use super::chosen::{ChosenFaces, chosen};
 use super::global::{Engine, GlobalEngine};
+use super::points::Contact;
 use super::{
-    BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, Precision, ResultFaces,
-    attributes, common, emit, one_surface, simplify, verify,
+    BooleanError, BooleanOptions, BooleanReport, BooleanSolid, Operation, Precision, attributes,
+    common, emit, one_surface, verify,
 };
 use crate::PolyMesh;
 use crate::job::Job;
@@ -56,26 +58,7 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
                 }
             };
             report.tolerance = eps;
-            let contact = report.contact;
-            // Rounding alone moves a computed place by less.
-            let decided = contact.farthest > 2.0 * self.floor;
-            report.depends_on_tolerance = decided || contact.near_misses > 0;
-            if decided {
-                report.warnings.push(format!(
-                    "{} places up to {:.1e} apart were taken as in contact (tolerance {eps:.1e}, \
-                     coordinates in {}); a smaller tolerance may give another result",
-                    contact.places,
-                    contact.farthest,
-                    precision.name()
-                ));
-            }
-            if contact.near_misses > 0 {
-                report.warnings.push(format!(
-                    "{} places are apart by one to four times the tolerance of {eps:.1e}; a \
-                     larger tolerance may give another result",
-                    contact.near_misses
-                ));
-            }
+            note_contact(report, report.contact, self.floor, precision);
             return Ok(Ok(solids));
         }
         Ok(Err(why))
@@ -169,47 +152,9 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         }
         let (mut solids, mut thin) = (Vec::new(), Vec::new());
         for &operation in operations {
-            job.check()?;
-            let faces = operands.iter().map(|m| m.face_count()).sum();
-            let (mut mesh, mut origins) = (PolyMesh::new(), Vec::with_capacity(faces));
-            mesh.face_starts.reserve(faces);
-            mesh.corners.reserve(operands.iter().map(|m| m.corners.len()).sum());
-            let mut cut: Vec<simplify::CutFace> = Vec::new();
             let triangles = options.faces.triangles(operands);
-            a.faces(operation, options.keep_contact, job, |origin, corners, state| {
-                match options.faces {
-                    _ if state != FaceState::Cut && (!triangles || corners.len() == 3) => {
-                        mesh.push_face(corners);
-                        origins.push(origin);
-                    }
-                    ResultFaces::ConvexPolygons => {
-                        for ring in simplify::convex(corners, &a.points.at) {
-                            mesh.push_face(&ring);
-                            origins.push(origin);
-                        }
-                    }
-                    _ if triangles => {
-                        cut.push(simplify::CutFace { origin, corners: corners.to_vec() })
-                    }
-                    _ => {
-                        mesh.push_face(corners);
-                        origins.push(origin);
-                    }
-                }
-            });
-            job.check()?;
-            let flat = 4.0 * floor.max(a.points.contact.farthest);
-            let group = |o| simplify::group_of(operands, o);
-            for (origin, t) in simplify::retriangulated(&cut, a.own, &a.points.at, flat, group) {
-                mesh.push_face(&t);
-                origins.push(origin);
-            }
-            job.check()?;
-            let at_the_cut = a.on_both();
-            // Kept contact is such a sheet, and wanted.
-            if !options.keep_contact {
-                emit::drop_folded_faces(&mut mesh, &mut origins, at_the_cut);
-            }
+            let ChosenFaces { mut mesh, mut origins } =
+                chosen(&a, operands, operation, options, triangles, floor, job)?;
             let mut facts = emit::finish(&mut mesh, &a.points.at, job)?;
             let contact = a.points.contact.farthest;
             let sheets = options.keep_contact && operation == Operation::Intersection;
@@ -240,6 +185,35 @@ impl<N: Fn() -> f64> BooleanTask<'_, N> {
         report.cut = a.curve();
         job.progress(1.0);
         Ok(Ok(solids))
+    }
+}
+
+/// Says in the report which places the tolerance decided, `report.tolerance`.
+pub(super) fn note_contact(
+    report: &mut BooleanReport,
+    contact: Contact,
+    floor: f64,
+    precision: Precision,
+) {
+    let eps = report.tolerance;
+    // Rounding alone moves a computed place by less.
+    let decided = contact.farthest > 2.0 * floor;
+    report.depends_on_tolerance = decided || contact.near_misses > 0;
+    if decided {
+        report.warnings.push(format!(
+            "{} places up to {:.1e} apart were taken as in contact (tolerance {eps:.1e}, \
+             coordinates in {}); a smaller tolerance may give another result",
+            contact.places,
+            contact.farthest,
+            precision.name()
+        ));
+    }
+    if contact.near_misses > 0 {
+        report.warnings.push(format!(
+            "{} places are apart by one to four times the tolerance of {eps:.1e}; a larger \
+             tolerance may give another result",
+            contact.near_misses
+        ));
     }
 }
 

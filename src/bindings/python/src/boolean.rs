@@ -5,29 +5,48 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean::{
-    BooleanFacts, BooleanOptions, BooleanReport, Operation, ResultFaces, compute,
+    BooleanChain, BooleanFacts, BooleanOptions, BooleanReport, Operation, ResultFaces, SolidState,
+    compute,
 };
 use sculptd_geometry::section::{Section, Slicer};
 
 use crate::array::shared;
 use crate::errors;
 use crate::job::{Progress, watched};
-use crate::mesh::Mesh;
+use crate::mesh::{Before, Mesh};
 
 /// One result of a Boolean.
 ///
-/// `mesh` is the solid; `operand` (uint8: 0 for A, 1 for B) and `face` (uint32) say for each of its
-/// faces which face of which operand it is or was cut from.
+/// `mesh` is the solid; `operand` (uint8: 0 for A, 1 for B; uint32 for lists of more than 256) and
+/// `face` (uint32) say for each of its faces which face of which operand it is or was cut from.
 #[pyclass(frozen, module = "sculptd")]
 #[derive(Debug)]
 struct BooleanResult {
     operation: Operation,
     mesh: Py<Mesh>,
-    operands: Arc<Vec<u8>>,
+    operands: OperandNumbers,
     faces: Arc<Vec<u32>>,
     facts: BooleanFacts,
     report: Arc<BooleanReport>,
+}
+
+/// The operand of each face.
+#[derive(Debug)]
+enum OperandNumbers {
+    Few(Arc<Vec<u8>>),
+    Many(Arc<Vec<u32>>),
+}
+
+impl OperandNumbers {
+    fn of(numbers: impl Iterator<Item = u32> + Clone) -> OperandNumbers {
+        let few: Option<Vec<u8>> = numbers.clone().map(|n| u8::try_from(n).ok()).collect();
+        match few {
+            Some(few) => OperandNumbers::Few(Arc::new(few)),
+            None => OperandNumbers::Many(Arc::new(numbers.collect())),
+        }
+    }
 }
 
 #[pymethods]
@@ -44,10 +63,14 @@ impl BooleanResult {
         self.mesh.clone_ref(py)
     }
 
-    /// For each face of the result: 0 where it is from A, 1 where it is from B. uint8, shared.
+    /// For each face of the result: 0 where it is from A, 1 where it is from B, and of a list its
+    /// place in it. uint8 (uint32 for lists of more than 256), shared.
     #[getter]
     fn operand<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shared(py, self.operands.clone(), &self.operands, vec![self.operands.len()])
+        match &self.operands {
+            OperandNumbers::Few(all) => shared(py, all.clone(), all, vec![all.len()]),
+            OperandNumbers::Many(all) => shared(py, all.clone(), all, vec![all.len()]),
+        }
     }
 
     /// For each face of the result: its face in that operand. uint32, shared.
@@ -141,7 +164,7 @@ fn computed(
     options: &BooleanOptions,
     progress: &Progress,
 ) -> PyResult<Vec<BooleanResult>> {
-    let operands = [a.poly.as_ref(), b.poly.as_ref()];
+    let operands = [a.poly().as_ref(), b.poly().as_ref()];
     let (solids, report) =
         watched(py, progress, |job| compute(operands, operations, options, job, || 0.0))?
             .map_err(|e| errors::boolean(py, &e))?;
@@ -149,8 +172,8 @@ fn computed(
     let result = |s: sculptd_geometry::boolean::BooleanSolid| {
         Ok(BooleanResult {
             operation: s.operation,
-            mesh: Py::new(py, Mesh::warned(s.mesh, report.warnings.clone()))?,
-            operands: Arc::new(s.origins.iter().map(|o| o.operand).collect()),
+            mesh: Py::new(py, Mesh::joined(s.mesh, report.warnings.clone()))?,
+            operands: OperandNumbers::of(s.origins.iter().map(|o| o.operand.into())),
             faces: Arc::new(s.origins.iter().map(|o| o.face).collect()),
             facts: s.facts,
             report: report.clone(),
@@ -159,17 +182,82 @@ fn computed(
     solids.into_iter().map(result).collect()
 }
 
+/// One operation with each mesh of a list in turn.
+fn chained(
+    py: Python<'_>,
+    meshes: &[Arc<PolyMesh>],
+    operation: Operation,
+    options: BooleanOptions,
+    progress: &Progress,
+) -> PyResult<BooleanResult> {
+    let Some((first, tools)) = meshes.split_first() else {
+        return Err(PyValueError::new_err("expected at least one mesh"));
+    };
+    if operation == Operation::ReverseDifference && tools.len() > 1 {
+        return Err(PyValueError::new_err("reverse-difference: expected one mesh, not a list"));
+    }
+    let (solid, report) = watched(py, progress, |job| {
+        let mut chain = BooleanChain::new(first, tools.len(), options);
+        for tool in tools {
+            chain.step(operation, tool, None, job, || 0.0)?;
+        }
+        chain.finish(job)
+    })?
+    .map_err(|e| errors::boolean(py, &e))?;
+    Ok(BooleanResult {
+        operation,
+        mesh: Py::new(py, Mesh::joined(solid.mesh, report.warnings.clone()))?,
+        operands: OperandNumbers::of(solid.origins.iter().map(|o| o.operand)),
+        faces: Arc::new(solid.origins.iter().map(|o| o.face).collect()),
+        facts: solid.facts,
+        report: Arc::new(report),
+    })
+}
+
 /// The mesh of one Boolean with the settings of [`boolean`], for the operators of [`Mesh`].
 pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResult<Mesh> {
     let options = options(None, "as-operands", false)?;
+    if matches!(operation, Operation::Union | Operation::Difference)
+        && let Some(mesh) = from_state(py, a, b, operation, options)?
+    {
+        return Ok(mesh);
+    }
     let made = computed(py, a, b, &[operation], &options, &None)?.into_iter().next();
     let made = made.ok_or_else(|| PyValueError::new_err("no result"))?;
     Ok(made.mesh.get().__copy__())
 }
 
+/// The same where `a` came from a Boolean, at the cost of what `b` cuts; None where that does not
+/// decide.
+fn from_state(
+    py: Python<'_>,
+    a: &Mesh,
+    b: &Mesh,
+    operation: Operation,
+    options: BooleanOptions,
+) -> PyResult<Option<Mesh>> {
+    let (state, whole) = match &a.before {
+        Before::Other => return Ok(None),
+        Before::Boolean => (None, Some(a.poly().clone())),
+        Before::State(state) => (Some(state.clone()), None),
+    };
+    let tool = b.poly().clone();
+    let made = watched(py, &None, |job| {
+        let begun = match (state, &whole) {
+            (None, Some(mesh)) => SolidState::new(mesh, options, job)?,
+            (state, _) => state,
+        };
+        begun.map_or(Ok(None), |state| state.step(operation, &tool, job))
+    })?
+    .map_err(|e| errors::boolean(py, &e))?;
+    Ok(made.map(|(state, report)| Mesh::state(state, report.warnings)))
+}
+
 /// One Boolean of two closed solids: 'union', 'intersection', 'difference' (A minus B) or
 /// 'reverse-difference' (B minus A).
 ///
+/// `b`: a mesh, or a list of meshes that are joined with `a` one after another; each costs what it
+/// cuts, not what `a` has become.
 /// `tolerance`: length within which places are one; None takes what the coordinates can resolve.
 /// `faces`: what cut faces become: 'as-operands', 'triangles', 'convex' or 'polygons'.
 /// `keep_contact`: faces in which the solids only touch belong to the intersection too.
@@ -186,7 +274,7 @@ pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResul
 fn boolean(
     py: Python<'_>,
     a: &Bound<'_, Mesh>,
-    b: &Bound<'_, Mesh>,
+    b: &Bound<'_, PyAny>,
     operation: &str,
     tolerance: Option<f64>,
     faces: &str,
@@ -198,8 +286,37 @@ fn boolean(
         PyValueError::new_err(format!("operation: expected one of {names}; found '{operation}'"))
     })?;
     let options = options(tolerance, faces, keep_contact)?;
-    let made = computed(py, a.get(), b.get(), &[wanted], &options, &progress)?;
-    made.into_iter().next().ok_or_else(|| PyValueError::new_err("no result"))
+    if let Ok(b) = b.cast::<Mesh>() {
+        let made = computed(py, a.get(), b.get(), &[wanted], &options, &progress)?;
+        return made.into_iter().next().ok_or_else(|| PyValueError::new_err("no result"));
+    }
+    let mut all = vec![a.get().poly().clone()];
+    all.append(&mut surfaces(b)?);
+    chained(py, &all, wanted, options, &progress)
+}
+
+/// The surfaces of a list of meshes.
+fn surfaces(list: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<PolyMesh>>> {
+    fn surface(item: PyResult<Bound<'_, PyAny>>) -> PyResult<Arc<PolyMesh>> {
+        let item = item?;
+        Ok(item.cast::<Mesh>()?.get().poly().clone())
+    }
+    list.try_iter()?.map(surface).collect()
+}
+
+/// The union of a list of closed solids, which may have any number of meshes but none. The settings
+/// are those of `boolean`.
+#[pyfunction]
+#[pyo3(signature = (meshes, *, tolerance=None, faces="as-operands", progress=None))]
+fn union(
+    py: Python<'_>,
+    meshes: &Bound<'_, PyAny>,
+    tolerance: Option<f64>,
+    faces: &str,
+    progress: Progress,
+) -> PyResult<BooleanResult> {
+    let options = options(tolerance, faces, false)?;
+    chained(py, &surfaces(meshes)?, Operation::Union, options, &progress)
 }
 
 /// All four results from one arrangement: a dict by the names of the operations.
@@ -283,7 +400,7 @@ fn cut(
     progress: &Progress,
 ) -> PyResult<Vec<Section>> {
     let finite = offsets.iter().all(|o| o.is_finite());
-    let mesh = mesh.get().poly.clone();
+    let mesh = mesh.get().poly().clone();
     watched(py, progress, |job| {
         let slicer = Slicer::new(&mesh, glam::DVec3::from(normal)).filter(|_| finite)?;
         Some(slicer.all(offsets, job))
@@ -299,6 +416,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<BooleanResult>()?;
     m.add_function(wrap_pyfunction!(boolean, m)?)?;
     m.add_function(wrap_pyfunction!(boolean_all, m)?)?;
+    m.add_function(wrap_pyfunction!(union, m)?)?;
     m.add_function(wrap_pyfunction!(sections, m)?)?;
     m.add_function(wrap_pyfunction!(slices, m)?)
 }

@@ -25,7 +25,7 @@ pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<B
 /// there is no volume): a dict. Of an open mesh the volume means little; `check` tells.
 #[pyfunction(name = "measure")]
 fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py, PyDict>> {
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let none: Progress = None;
     let m = watched(py, &none, |_| measures_of(&poly.positions, &poly.triangles().0))?;
     let out = PyDict::new(py);
@@ -62,7 +62,7 @@ fn check_mesh<'py>(
         let request = PartRequest { process, printer, material, up, scale, orient };
         return plain(py, &checked(py, mesh.get(), &request, &progress)?);
     }
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let report = watched(py, &progress, |job| check::report(&poly, crossings, job))?
         .map_err(errors::cancelled)?;
     plain(py, &report)
@@ -120,7 +120,7 @@ fn project(
 ) -> PyResult<Projection> {
     let plane = ProjectionPlane::along(DVec3::from(direction), 0.0)
         .ok_or_else(|| PyValueError::new_err("direction: expected a vector that is not zero"))?;
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let regions = watched(py, &progress, |_| {
         // In the frame of the part, then moved to where the part is.
         let part = CentredMesh::new(&poly, 1.0);

@@ -2,13 +2,13 @@
 
 use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DMat4, DVec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};
-use sculptd_geometry::boolean::Operation;
+use sculptd_geometry::boolean::{Operation, SolidState};
 use sculptd_geometry::face_attributes::FaceAttributes;
 use sculptd_geometry::io::{LoadedMesh, read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
@@ -34,10 +34,24 @@ use crate::{boolean, picture, pool};
 #[pyclass(frozen, module = "sculptd")]
 #[derive(Debug)]
 pub struct Mesh {
-    pub poly: Arc<PolyMesh>,
+    /// Made when first asked for, where the mesh is a state of a solid.
+    poly: OnceLock<Arc<PolyMesh>>,
+    /// What the next Boolean may start from.
+    pub before: Before,
     /// The format of the file, if it came from one.
     format: Option<String>,
     warnings: Vec<String>,
+}
+
+/// What a mesh came from, as far as the next Boolean of it is concerned.
+#[derive(Debug, Clone)]
+pub enum Before {
+    /// A file, arrays, or another operation.
+    Other,
+    /// A Boolean of the whole.
+    Boolean,
+    /// Booleans that keep their search trees.
+    State(SolidState),
 }
 
 /// A mesh as it is pickled.
@@ -63,14 +77,32 @@ fn are_starts(starts: &[u32], corners: usize) -> bool {
 
 impl From<PolyMesh> for Mesh {
     fn from(poly: PolyMesh) -> Self {
-        Mesh { poly: Arc::new(poly), format: None, warnings: Vec::new() }
+        Mesh::warned(poly, Vec::new())
     }
 }
 
 impl Mesh {
     /// With sentences for the caller.
     pub fn warned(poly: PolyMesh, warnings: Vec<String>) -> Mesh {
-        Mesh { poly: Arc::new(poly), format: None, warnings }
+        Mesh { poly: Arc::new(poly).into(), before: Before::Other, format: None, warnings }
+    }
+
+    /// The result of a Boolean.
+    pub fn joined(poly: PolyMesh, warnings: Vec<String>) -> Mesh {
+        Mesh { before: Before::Boolean, ..Mesh::warned(poly, warnings) }
+    }
+
+    /// A state of a solid; its arrays are made when they are first asked for.
+    pub fn state(state: SolidState, warnings: Vec<String>) -> Mesh {
+        Mesh { poly: OnceLock::new(), before: Before::State(state), format: None, warnings }
+    }
+
+    /// The surface.
+    pub fn poly(&self) -> &Arc<PolyMesh> {
+        self.poly.get_or_init(|| match &self.before {
+            Before::State(state) => Arc::new(state.mesh()),
+            Before::Other | Before::Boolean => Arc::default(),
+        })
     }
 
     /// A surface that was made in a frame whose origin is at `centre`.
@@ -81,12 +113,12 @@ impl Mesh {
     }
 
     fn sizes(&self, py: Python<'_>) -> Measures {
-        let sizes = || measures_of(&self.poly.positions, &self.poly.triangles().0);
+        let sizes = || measures_of(&self.poly().positions, &self.poly().triangles().0);
         py.detach(|| pool::here(sizes))
     }
 
     fn regular(&self) -> Option<usize> {
-        let poly = &self.poly;
+        let poly = self.poly();
         let mut sizes = poly.face_starts.windows(2).map(|w| w[1] - w[0]);
         let first = sizes.next().unwrap_or(3);
         sizes.all(|s| s == first).then_some(first as usize)
@@ -143,8 +175,8 @@ impl Mesh {
     /// (n, 3) float64, read-only, shared with the mesh.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let flat: &[f64] = bytemuck::cast_slice(&self.poly.positions);
-        shared(py, self.poly.clone(), flat, vec![self.poly.positions.len(), 3])
+        let flat: &[f64] = bytemuck::cast_slice(&self.poly().positions);
+        shared(py, self.poly().clone(), flat, vec![self.poly().positions.len(), 3])
     }
 
     /// (m, k) uint32, read-only, shared with the mesh. Raises ValueError where faces differ in
@@ -157,33 +189,34 @@ impl Mesh {
                  triangulated()",
             )
         })?;
-        shared(py, self.poly.clone(), &self.poly.corners, vec![self.poly.face_count(), k])
+        shared(py, self.poly().clone(), &self.poly().corners, vec![self.poly().face_count(), k])
     }
 
     /// The corners of all faces, one after the other: uint32, read-only, shared.
     #[getter]
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shared(py, self.poly.clone(), &self.poly.corners, vec![self.poly.corners.len()])
+        shared(py, self.poly().clone(), &self.poly().corners, vec![self.poly().corners.len()])
     }
 
     /// The start of each face's corners, and finally their number: uint32, read-only, shared.
     #[getter]
     fn face_starts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shared(py, self.poly.clone(), &self.poly.face_starts, vec![self.poly.face_starts.len()])
+        let poly = self.poly();
+        shared(py, poly.clone(), &poly.face_starts, vec![poly.face_starts.len()])
     }
 
     /// (n, 4) uint8 RGBA, read-only, shared; None where the mesh has no colours.
     #[getter]
     fn colours<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let Some(colours) = &self.poly.colours else { return Ok(None) };
-        shared(py, self.poly.clone(), colours.as_flattened(), vec![colours.len(), 4]).map(Some)
+        let Some(colours) = &self.poly().colours else { return Ok(None) };
+        shared(py, self.poly().clone(), colours.as_flattened(), vec![colours.len(), 4]).map(Some)
     }
 
     /// The group (OBJ) or object (3MF) of each face, uint32, shared; None where the file has none.
     #[getter]
     fn groups<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let Some(groups) = &self.poly.groups else { return Ok(None) };
-        shared(py, self.poly.clone(), groups, vec![groups.len()]).map(Some)
+        let Some(groups) = &self.poly().groups else { return Ok(None) };
+        shared(py, self.poly().clone(), groups, vec![groups.len()]).map(Some)
     }
 
     /// The format of the file, e.g. 'STL (binary)'; None for a mesh that came from no file.
@@ -200,7 +233,7 @@ impl Mesh {
 
     /// The same surface with every polygon cut into triangles; vertices keep their numbers.
     fn triangulated(&self, py: Python<'_>) -> Mesh {
-        py.detach(|| pool::here(|| written::triangulated(&self.poly))).into()
+        py.detach(|| pool::here(|| written::triangulated(self.poly()))).into()
     }
 
     /// The mesh with every vertex multiplied by `scale`, then moved by `offset`, then mapped by
@@ -217,7 +250,7 @@ impl Mesh {
         if !(scale > 0.0 && scale.is_finite() && offset.is_finite()) {
             return Err(PyValueError::new_err("expected a scale above 0 and a finite offset"));
         }
-        let mut poly = PolyMesh::clone(&self.poly);
+        let mut poly = PolyMesh::clone(self.poly());
         poly.positions.iter_mut().for_each(|p| *p = *p * scale + offset);
         if let Some(rows) = matrix {
             let map = DMat4::from_cols_array_2d(&rows).transpose();
@@ -258,7 +291,7 @@ impl Mesh {
     /// The lowest and the highest corner of the box around all faces; None without faces.
     #[getter]
     fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
-        let used = self.poly.corners.iter().map(|&v| self.poly.positions[v as usize]);
+        let used = self.poly().corners.iter().map(|&v| self.poly().positions[v as usize]);
         let ends = used.map(|p| (p, p)).reduce(|(lo, hi), (p, _)| (lo.min(p), hi.max(p)))?;
         Some((ends.0.to_array(), ends.1.to_array()))
     }
@@ -266,7 +299,8 @@ impl Mesh {
     /// True if each edge has exactly two faces, which run along it in opposite directions.
     #[getter]
     fn is_closed(&self, py: Python<'_>) -> bool {
-        let report = py.detach(|| pool::here(|| check::report(&self.poly, false, &Job::default())));
+        let poly = self.poly();
+        let report = py.detach(|| pool::here(|| check::report(poly, false, &Job::default())));
         report.is_ok_and(|r| r.closed)
     }
 
@@ -284,7 +318,7 @@ impl Mesh {
 
     /// Equal bits of positions, faces, colours, groups and attributes.
     fn __eq__(&self, other: &Bound<'_, Mesh>) -> bool {
-        let (a, b) = (&self.poly, &other.get().poly);
+        let (a, b) = (self.poly(), other.get().poly());
         // By bits, as the hash: 0 and -0 differ.
         let bits = bytemuck::cast_slice::<DVec3, u64>;
         Arc::ptr_eq(a, b) || a == b && bits(&a.positions) == bits(&b.positions)
@@ -292,9 +326,9 @@ impl Mesh {
 
     fn __hash__(&self) -> u64 {
         let mut hash = DefaultHasher::new();
-        hash.write(bytemuck::cast_slice(&self.poly.positions));
-        hash.write(bytemuck::cast_slice(&self.poly.corners));
-        hash.write(bytemuck::cast_slice(&self.poly.face_starts));
+        hash.write(bytemuck::cast_slice(&self.poly().positions));
+        hash.write(bytemuck::cast_slice(&self.poly().corners));
+        hash.write(bytemuck::cast_slice(&self.poly().face_starts));
         hash.finish()
     }
 
@@ -302,6 +336,7 @@ impl Mesh {
     pub fn __copy__(&self) -> Mesh {
         Mesh {
             poly: self.poly.clone(),
+            before: self.before.clone(),
             format: self.format.clone(),
             warnings: self.warnings.clone(),
         }
@@ -316,7 +351,7 @@ impl Mesh {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
         let PolyMesh { positions, face_starts, corners, colours, groups, attributes } =
-            PolyMesh::clone(&self.poly);
+            PolyMesh::clone(self.poly());
         let pickled = PickledMesh {
             positions,
             face_starts,
@@ -353,19 +388,19 @@ impl Mesh {
             groups: p.groups,
             attributes: p.attributes.map(Arc::new),
         };
-        Ok(Mesh { poly: Arc::new(poly), format: p.format, warnings: p.warnings })
+        Ok(Mesh { format: p.format, ..Mesh::warned(poly, p.warnings) })
     }
 
     /// The picture that a notebook shows.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let png = picture::drawn(py, &self.poly, (480, 360))?;
+        let png = picture::drawn(py, self.poly(), (480, 360))?;
         Ok(PyBytes::new(py, &png))
     }
 
     /// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf. The
     /// file is written beside and renamed, so a file that stood there stays whole if this fails.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| pool::here(|| write_mesh(&path, &self.poly)));
+        let written = py.detach(|| pool::here(|| write_mesh(&path, self.poly())));
         written.map_err(|e| errors::write(&e))
     }
 
@@ -403,12 +438,12 @@ impl Mesh {
     }
 
     fn __repr__(&self) -> String {
-        let (v, f) = (self.poly.positions.len(), self.poly.face_count());
+        let (v, f) = (self.poly().positions.len(), self.poly().face_count());
         format!("<sculptd.Mesh of {v} vertices and {f} faces>")
     }
 
     fn __len__(&self) -> usize {
-        self.poly.face_count()
+        self.poly().face_count()
     }
 }
 
@@ -422,7 +457,7 @@ fn read(py: Python<'_>, path: PathBuf, progress: Progress) -> PyResult<Mesh> {
     let path: &Path = &path;
     let LoadedMesh { mesh, format, warnings, .. } =
         watched(py, &progress, |job| read_mesh(path, job))?.map_err(|e| errors::read(py, &e))?;
-    Ok(Mesh { poly: Arc::new(mesh), format: Some(format.name().into()), warnings })
+    Ok(Mesh { format: Some(format.name().into()), ..Mesh::warned(mesh, warnings) })
 }
 
 /// Adds what this file defines.

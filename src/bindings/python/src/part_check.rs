@@ -68,7 +68,7 @@ pub fn checked(
     watched(py, progress, |job| {
         check_part(
             "",
-            &mesh.poly,
+            mesh.poly(),
             scale,
             &settings,
             CheckRequest { orient, ..Default::default() },

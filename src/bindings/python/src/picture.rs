@@ -31,7 +31,7 @@ fn picture<'py>(
     if eye.is_some_and(|e| !e.is_finite() || e == Vec3::ZERO) {
         return Err(PyValueError::new_err("towards_eye: expected a vector that is not zero"));
     }
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let measured = thickness.map(|t| t.get().measured.clone());
     if measured.as_ref().is_some_and(|m| m.values.len() != poly.positions.len()) {
         return Err(PyValueError::new_err("thickness: expected that of the same mesh"));

@@ -88,7 +88,7 @@ fn decimate(
     if error.is_nan() || error < 0.0 || triangles == 0 && error == f64::INFINITY {
         return Err(PyValueError::new_err("expected a number of triangles, or an error, or both"));
     }
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let target = DecimationTarget { triangles, error, single: false };
     let made =
         watched(py, &progress, |job| quadric(&poly, target, job))?.map_err(errors::cancelled)?;
@@ -108,7 +108,7 @@ fn subdivide(
     scheme: &str,
     progress: Progress,
 ) -> PyResult<Mesh> {
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     if subdivision::corners_after(&poly, levels) > MOST_CORNERS {
         return Err(PyValueError::new_err(format!(
             "levels: {levels} levels of {} faces do not fit into memory",
@@ -174,7 +174,7 @@ fn repair(
     if !(weld >= 0.0 && weld.is_finite()) {
         return Err(PyValueError::new_err("weld: expected a length of 0 or more"));
     }
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let (made, told) =
         watched(py, &progress, |job| repaired(PolyMesh::clone(&poly), weld, longest_hole, job))?
             .map_err(|e| errors::boolean(py, &e))?;

@@ -32,7 +32,7 @@ pub fn prepared(
     mesh: &Mesh,
     progress: &Progress,
 ) -> PyResult<(CentredMesh, DistanceSolid)> {
-    let poly = mesh.poly.clone();
+    let poly = mesh.poly().clone();
     watched(py, progress, |job| {
         let part = CentredMesh::new(&poly, 1.0);
         let solid = DistanceSolid::build(&part.mesh, job)?;

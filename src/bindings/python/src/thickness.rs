@@ -224,7 +224,7 @@ fn thickness_of(
         at: if faces { MeasuredPlaces::VerticesAndFaces } else { MeasuredPlaces::Vertices },
         ..ThicknessSettings::default()
     };
-    let poly = mesh.get().poly.clone();
+    let poly = mesh.get().poly().clone();
     let found = watched(py, &progress, |job| {
         if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
             return Ok(None);

@@ -131,6 +131,37 @@ class Booleans(unittest.TestCase):
             np.testing.assert_allclose(away, 0.0, atol=1e-12)
         self.assertEqual(set(made.operand), {0, 1})
 
+    def test_a_list_is_joined_one_after_another(self):
+        row = [Mesh.box((x, 0, 0), (x + 1, 1, 1)) for x in range(8)]
+        made = sculptd.union(row)
+        self.assertEqual((made.volume, made.components), (8.0, 1))
+        self.assertTrue(made.closed and made.manifold)
+        self.assertEqual(set(made.operand), set(range(8)))
+        drilled = sculptd.boolean(made.mesh, row[2:5], "difference")
+        self.assertEqual((drilled.volume, drilled.components), (5.0, 2))
+        self.assertEqual(sculptd.union(row[:1]).mesh.volume, 1.0)
+        with self.assertRaises(ValueError):
+            sculptd.union([])
+        with self.assertRaises(TypeError):
+            sculptd.union([1, 2])
+        many = sculptd.union([Mesh.box((x, 0, 0), (x + 1, 1, 1)) for x in range(300)])
+        self.assertEqual((many.volume, many.operand.dtype), (300.0, np.uint32))
+
+    def test_every_state_of_a_part_stays_as_it_was(self):
+        part = Mesh.box((0, 0, 0), (10, 1, 1))
+        states = [part]
+        for x in range(8):
+            part = part - Mesh.box((x + 0.5, -1, -1), (x + 1, 2, 2))
+            states.append(part)
+        for n, state in enumerate(states):
+            self.assertAlmostEqual(state.volume, 10 - 0.5 * n, places=12)
+        # On from the middle, once more.
+        other = states[3] | Mesh.box((20, 0, 0), (21, 1, 1))
+        self.assertAlmostEqual(other.volume, 9.5, places=12)
+        self.assertAlmostEqual((other - states[1]).volume, 1.0, places=12)
+        self.assertAlmostEqual(states[8].volume, 6.0, places=12)
+        self.assertTrue(all(s.is_closed for s in [*states, other]))
+
     def test_an_open_operand_is_named(self):
         a, _ = cubes()
         open_ = Mesh(a.vertices, a.faces[1:])

@@ -59,6 +59,7 @@ if typing.TYPE_CHECKING:
         slices,
         subdivide,
         thickness,
+        union,
     )
 else:
 
@@ -103,6 +104,7 @@ __all__ = [
     "slices",
     "subdivide",
     "thickness",
+    "union",
 ]
 
 

@@ -131,7 +131,7 @@ class BooleanResult:
     @property
     def mesh(self) -> Mesh: ...
     @property
-    def operand(self) -> NDArray[np.uint8]: ...
+    def operand(self) -> NDArray[np.uint8] | NDArray[np.uint32]: ...
     @property
     def face(self) -> NDArray[np.uint32]: ...
     @property
@@ -220,7 +220,7 @@ class _Measures(TypedDict):
 def read(path: _Path, progress: _Progress = None) -> Mesh: ...
 def boolean(
     a: Mesh,
-    b: Mesh,
+    b: Mesh | Sequence[Mesh],
     operation: _Operation = "union",
     *,
     tolerance: float | None = None,
@@ -237,6 +237,13 @@ def boolean_all(
     keep_contact: bool = False,
     progress: _Progress = None,
 ) -> dict[_Operation, BooleanResult]: ...
+def union(
+    meshes: Sequence[Mesh],
+    *,
+    tolerance: float | None = None,
+    faces: _Faces = "as-operands",
+    progress: _Progress = None,
+) -> BooleanResult: ...
 class _Section(TypedDict):
     area: float
     perimeter: float

@@ -32,7 +32,8 @@ def to_trimesh(mesh):
 def engine(meshes, operation, check_volume=True, tolerance=None, progress=None, **_):
     """One operation on a list of meshes, as trimesh's engines are called.
 
-    Difference takes every further mesh from the first. ``tolerance`` and ``progress`` are those of
+    Difference takes every further mesh from the first. The meshes are joined one after another, each
+    at the cost of what it cuts. ``tolerance`` and ``progress`` are those of
     `sculptd.boolean`.
     """
     if operation not in ("union", "intersection", "difference"):
@@ -42,22 +43,13 @@ def engine(meshes, operation, check_volume=True, tolerance=None, progress=None, 
     if check_volume and not all(m.is_volume for m in meshes):
         raise ValueError("Not all meshes are volumes!")
 
-    def two(a, b, what):
-        made = boolean(a, b, what, tolerance=tolerance, faces="triangles", progress=progress)
-        return made.mesh
-
     parts = [from_trimesh(m) for m in meshes]
-    if operation == "difference":
-        return to_trimesh(two(parts[0], _cascade(parts[1:], two, "union"), "difference"))
-    return to_trimesh(_cascade(parts, two, operation))
-
-
-def _cascade(parts, two, operation):
-    # Neighbours first: operands of like size, and no long chain through one growing mesh.
-    while len(parts) > 1:
-        pairs = [parts[i : i + 2] for i in range(0, len(parts), 2)]
-        parts = [two(*pair, operation) if len(pair) == 2 else pair[0] for pair in pairs]
-    return parts[0]
+    if len(parts) == 1:
+        return to_trimesh(parts[0])
+    made = boolean(
+        parts[0], parts[1:], operation, tolerance=tolerance, faces="triangles", progress=progress
+    )
+    return to_trimesh(made.mesh)
 
 
 def _register():
