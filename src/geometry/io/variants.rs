@@ -1,10 +1,8 @@
 //! Files that are valid or common and not what most programs write.
 
-use std::io::{Cursor, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use zip::write::SimpleFileOptions;
 
 use super::problem::ParseError;
 use super::write_packed::base64;
@@ -167,27 +165,4 @@ fn a_gltf_of_another_version_is_refused() {
         let told = refused("a.gltf", other.as_bytes());
         assert!(told.contains("glTF version 2"), "{version}: {told}");
     }
-}
-
-#[test]
-fn what_a_3mf_requires_is_known_or_refused_by_its_name() {
-    let file = |space: &str| {
-        let text = format!(
-            r#"<model requiredextensions="b" xmlns:b="{space}"><resources><object id="1"><mesh>
-            <vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
-            <vertex x="0" y="1" z="0"/></vertices>
-            <triangles><triangle v1="0" v2="1" v3="2"/></triangles>
-            <b:beamlattice><b:beams><b:beam v1="0" v2="1"/></b:beams></b:beamlattice>
-            </mesh></object></resources><build><item objectid="1"/></build></model>"#
-        );
-        let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
-        zip.start_file("3D/3dmodel.model", SimpleFileOptions::default()).expect("a part");
-        zip.write_all(text.as_bytes()).expect("written");
-        zip.finish().expect("a zip").into_inner()
-    };
-    let beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
-    let told = read("a.3mf", &file(beams)).warnings;
-    assert_eq!(told, ["1 beams of beam lattices left out"]);
-    let unknown = "http://example.com/beamlattice/1";
-    assert!(refused("a.3mf", &file(unknown)).contains(unknown));
 }

@@ -71,6 +71,20 @@ fn a_coloured_mesh_comes_back_from_its_file() {
     assert!(warnings.is_empty(), "{warnings:?}");
 }
 
+#[test]
+fn what_a_file_requires_is_known_or_refused_by_its_name() {
+    let with = |space: &str| {
+        let beams = "</triangles><b:beamlattice><b:beam v1=\"0\" v2=\"1\"/></b:beamlattice>";
+        let required = format!("<model requiredextensions=\"b\" xmlns:b=\"{space}\"");
+        read(RELS, &MODEL.replace("<model", &required).replacen("</triangles>", beams, 1))
+    };
+    let beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+    let (_, warnings) = with(beams).expect("known");
+    assert!(warnings.iter().any(|w| w == "1 beams of beam lattices left out"), "{warnings:?}");
+    let unknown = "http://example.com/beamlattice/1";
+    assert!(with(unknown).is_err_and(|e| e.contains(unknown)));
+}
+
 /// Each rule by a file that breaks it alone.
 #[test]
 fn a_file_that_breaks_a_rule_is_refused_with_its_name() {

@@ -77,7 +77,9 @@ pub fn ui(
     if now.stage == Stage::Closed {
         closed::ui(&ctx, whole, words, screen, &now);
     } else {
-        languages(&ctx, free, screen, pad, &mut scan);
+        // During a visit to an exhibit its form needs the room.
+        let folded = now.stage == Stage::Working && now.exhibit.is_some() && !pad.unfolded;
+        languages(&ctx, free, (screen, folded), pad, &mut scan);
     }
     if screen.staff {
         door(&ctx, free, words, &now, screen, pad, &mut scan);
@@ -199,26 +201,29 @@ fn told_staff(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut
     }
 }
 
-/// Shows the languages, each by its native name.
+/// Shows the languages, each by its native name; folded, the chosen one alone.
 fn languages(
     ctx: &egui::Context,
     free: egui::Rect,
-    screen: &Screen,
+    (screen, folded): (&Screen, bool),
     pad: &mut KioskPad,
     scan: &mut Scan,
 ) {
     if screen.words.len() < 2 {
         return;
     }
-    place(ctx, "languages", free, Align2::LEFT_TOP, |ui| {
+    let name = if folded { "language" } else { "languages" };
+    place(ctx, name, free, Align2::LEFT_TOP, |ui| {
         ui.set_max_width(free.width() * 0.6);
         ui.horizontal_wrapped(|ui| {
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            let chosen = pad.language;
             let shown = screen.words.iter().enumerate();
-            for (i, l) in shown.filter(|(_, l)| fonts::can_draw(ctx, &l.all())) {
-                let button = large(&l.name, 20.0, 130.0).selected(pad.language == i);
+            let drawn = shown.filter(|(_, l)| fonts::can_draw(ctx, &l.all()));
+            for (i, l) in drawn.filter(|(i, _)| !folded || *i == chosen) {
+                let button = large(&l.name, 20.0, 130.0).selected(chosen == i);
                 if scan.button(ui, true, button) {
-                    pad.language = i;
+                    (pad.language, pad.unfolded) = (i, folded);
                     screen.desk.touched.store(true, Relaxed);
                 }
             }

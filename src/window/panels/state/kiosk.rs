@@ -5,6 +5,8 @@
 pub struct KioskPad {
     /// Index into the screen's languages.
     pub language: usize,
+    /// The list of languages was unfolded.
+    pub(in crate::panels) unfolded: bool,
     /// Digits that staff has typed so far, while the keypad is open.
     pub typed: Option<String>,
     /// [`sculptd_daemon::kiosk::View::wrong`] when the keypad was opened.
