@@ -156,9 +156,10 @@
 //!   sculpt, reset. Waits for: time, the published state.
 //! * `sculptd-visits`, made by `daemon::kiosk::visit_journal`: makes the session file of the next
 //!   visit, and removes it once the visit's work was put away.
-//! * `sculptd-score`, made by `daemon::kiosk::exhibit::score_thread`: scores the newest clay against
-//!   the goal of an exhibit during a visit. Waits for: the next goal, time.
-//! * `sculptd-export`, made by `daemon::kiosk::keeper`: packs the works of today into one file, once.
+//! * `sculptd-score`, made by `daemon::kiosk::exhibit::score_thread`: scores the newest clay
+//!   against the goal of an exhibit during a visit. Waits for: the next goal, time.
+//! * `sculptd-export`, made by `daemon::kiosk::keeper`: packs the works of today into one file,
+//!   once.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: sends finished sculptures to their
 //!   destination. Waits for: the disk, the network.
 //! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the

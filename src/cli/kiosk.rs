@@ -8,7 +8,7 @@ use super::run::{self as run_command, RunArgs};
 use super::{Fail, Outcome, answer};
 use sculptd_daemon::kiosk::exhibit::create::{NewExhibit, create, goal_of};
 use sculptd_daemon::kiosk::exhibit::score::Score;
-use sculptd_daemon::kiosk::exhibit::{Exhibit, pack};
+use sculptd_daemon::kiosk::exhibit::{self, Exhibit, pack};
 use sculptd_geometry::io::read_mesh;
 use sculptd_geometry::job::Job;
 
@@ -140,7 +140,7 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
 }
 
 fn open(place: &Path, job: &Job) -> Result<Exhibit, Fail> {
-    pack::open(place, job).map_err(Fail::Input)
+    exhibit::open(place, job).map_err(Fail::Input)
 }
 
 fn settings(args: &NewExhibitArgs) -> Result<NewExhibit, Fail> {

@@ -181,11 +181,16 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
         catalogue = catalogue.with_dir(dir).map_err(|e| Fail::Config(e.to_string()))?;
     }
     let players = open_players(args, &config, &catalogue)?;
+    let named = kiosk_settings::KioskArgs {
+        kiosk: args.kiosk,
+        file: args.kiosk_config.as_deref(),
+        exhibits: &args.exhibit,
+    };
     #[cfg(not(feature = "network"))]
-    let kiosk = kiosk_settings::read(args)?;
+    let kiosk = kiosk_settings::read(&named)?;
     #[cfg(feature = "network")]
     let (kiosk, fleet) =
-        kiosk_settings::read(args)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
+        kiosk_settings::read(&named)?.map_or((None, None), |(kiosk, part)| (Some(kiosk), part));
     #[cfg(unix)]
     let web = args.web.options(kiosk.as_ref()).map_err(Fail::Config)?;
     #[cfg(unix)]

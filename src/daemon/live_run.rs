@@ -17,9 +17,9 @@ use crate::config::{Config, DevicesConfig};
 use crate::demo_devices::{self, DemoError, Playing};
 use crate::kiosk::desk::Screen;
 use crate::kiosk::settings::LanguageTexts;
-use crate::kiosk::start::{Start, StartForm};
+use crate::kiosk::start::Start;
 use crate::kiosk::unrecorded::WithoutFilms;
-use crate::kiosk::{KioskConfig, exhibit, keeper, recovery};
+use crate::kiosk::{KioskConfig, keeper, recovery};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
 #[cfg(unix)]
@@ -39,14 +39,13 @@ use crate::tick_statistics::Summary;
 use crate::web::WebRole;
 use crate::window_link::{WindowLink, WindowStanding};
 use sculptd_camera::camera_thread::{CameraChoice, CameraHandle};
-use sculptd_clay::brush::{BrushSettings, Presets};
+use sculptd_clay::brush::Presets;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{self, SenderFactory};
 use sculptd_devices::recording::Player;
 use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
 use sculptd_engine::world::World;
-use sculptd_geometry::job::Job;
 
 /// Options of a live run.
 #[derive(Debug, Default)]
@@ -194,8 +193,12 @@ impl LiveRun {
         let models = ModelTables::new(&catalogue, &config.devices);
         let adaptors = Arc::new(adaptors::start(devices, catalogue, &clock, &factory));
         let mut notices = Vec::new();
-        let first =
-            options.kiosk.as_ref().map(|kiosk| first_state(kiosk, &options, config, &begun));
+        // Without exhibits every visitor finds what the first one found.
+        let plain = || begun.started_with.clone().unwrap_or_else(|| begun.world.mesh().to_tri());
+        let first = options.kiosk.as_ref().map(|kiosk| {
+            let settings = (&options.presets, *begun.world.brush(), config.camera.camera());
+            Start::new(kiosk, settings, plain)
+        });
         let mut first = first.transpose().map_err(LiveRunError::Kiosk)?;
         let (begun, visits) = match (&options.visits, &mut first) {
             (Some(folder), Some(first)) => {
@@ -526,51 +529,6 @@ fn screen(
     let desk = keeper.desk;
     let screen = Screen { desk, words, staff, show, watch: None, exhibits, dim };
     Ok((Some(screen), Some(keeper.thread)))
-}
-
-/// Returns the initial state for visitors: the forms of the exhibits, or what the first visitor
-/// found.
-fn first_state(
-    kiosk: &KioskConfig,
-    options: &LiveOptions,
-    config: &Config,
-    begun: &Begun,
-) -> Result<Start, String> {
-    let brush = first_brush(options, *begun.world.brush());
-    let camera = config.camera.camera();
-    let plain = || begun.started_with.clone().unwrap_or_else(|| begun.world.mesh().to_tri());
-    if kiosk.exhibits.is_empty() {
-        return Ok(Start::free(Arc::new(plain()), camera, brush));
-    }
-    let mut forms = Vec::new();
-    for place in &kiosk.exhibits {
-        let exhibit = exhibit::pack::open(place, &Job::default())?;
-        let (found, most) = (exhibit.start.triangles.len(), kiosk.max_triangles);
-        if found > most {
-            let place = place.display();
-            return Err(format!("{place}: {found} triangles, at most {most} (max_triangles)"));
-        }
-        forms.push(StartForm {
-            plain: exhibit.start.clone(),
-            brush: exhibit.first_brush(&options.presets, &brush),
-            exhibit: Some(Arc::new(exhibit)),
-        });
-    }
-    let (plain, free) = (forms[0].plain.clone(), forms[0].brush);
-    Ok(Start { forms, ..Start::free(plain, camera, free) })
-}
-
-/// Returns the brush that visitors start with: that of the installation's settings, or the world's.
-fn first_brush(options: &LiveOptions, now: BrushSettings) -> BrushSettings {
-    let Some(kiosk) = &options.kiosk else { return now };
-    let mut brush = match kiosk.brush_kind() {
-        Ok(Some(kind)) => options.presets.switched(&now, kind),
-        _ => now,
-    };
-    if kiosk.radius > 0.0 {
-        brush.radius = kiosk.radius;
-    }
-    brush.clamped()
 }
 
 /// Plays recordings at their own speed on a thread of their own, from now on.

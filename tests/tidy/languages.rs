@@ -36,7 +36,7 @@ const STAY: [(&str, &[&str]); 17] = [
     ("panels/brush_picture.rs", &["brush_pictures.png"]),
     // Keys of a keypad that need no word; the other words of an installation have files of their
     // own (config/languages/CODE.toml).
-    ("panels/kiosk.rs", &["OK", "door", "keypad"]),
+    ("panels/kiosk/mod.rs", &["OK", "door", "keypad", "language", "languages"]),
     // A quantile, and what files are called.
     ("panels/timing.rs", &["p50", "p99", "max", "ms"]),
     ("panels/files.rs", &["stl, obj, ply, off, glb, 3mf"]),

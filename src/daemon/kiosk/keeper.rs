@@ -468,7 +468,7 @@ impl KioskThread {
         }
         if let Some(news) = self.start.news.as_ref().filter(|_| !film) {
             let form = self.built.get(form);
-            let _ = news.send(VisitNews::Begins(form.plain.clone(), form.brush));
+            let _ = news.send(VisitNews::Begins(form.plain.clone(), Box::new(form.brush)));
         }
     }
 

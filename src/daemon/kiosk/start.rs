@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use crossbeam_channel as cc;
 
-use super::exhibit::Exhibit;
+use super::KioskConfig;
+use super::exhibit::{self, Exhibit};
 use super::visit_journal::VisitNews;
 use crate::command_queue::QueuedCommand;
-use sculptd_clay::brush::BrushSettings;
+use sculptd_clay::brush::{BrushSettings, Presets};
 use sculptd_clay::{BuildError, Clay};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Beginning, Command, NewClay};
@@ -49,11 +50,56 @@ pub struct InterruptedVisit {
 }
 
 impl Start {
+    /// Returns the start of the exhibits of `kiosk`, or else that of free sculpting on `plain`.
+    ///
+    /// # Errors
+    /// Returns a message if an exhibit cannot be opened or has too many triangles.
+    pub fn new(
+        kiosk: &KioskConfig,
+        (presets, brush, camera): (&Presets, BrushSettings, Camera),
+        plain: impl FnOnce() -> TriMesh,
+    ) -> Result<Start, String> {
+        let brush = first_brush(kiosk, presets, brush);
+        let mut forms = Vec::new();
+        for place in &kiosk.exhibits {
+            let exhibit = exhibit::open(place, &Job::default())?;
+            let (found, most) = (exhibit.start.triangles.len(), kiosk.max_triangles);
+            if found > most {
+                let place = place.display();
+                return Err(format!("{place}: {found} triangles, at most {most} (max_triangles)"));
+            }
+            forms.push(StartForm {
+                plain: exhibit.start.clone(),
+                brush: exhibit.first_brush(presets, &brush),
+                exhibit: Some(Arc::new(exhibit)),
+            });
+        }
+        Ok(match forms.first() {
+            None => Start::free(Arc::new(plain()), camera, brush),
+            Some(first) => {
+                let free = Start::free(first.plain.clone(), camera, brush);
+                Start { forms, ..free }
+            }
+        })
+    }
+
     /// Returns a start with one form, for free sculpting.
     pub fn free(plain: Arc<TriMesh>, camera: Camera, brush: BrushSettings) -> Start {
         let forms = vec![StartForm { plain, brush, exhibit: None }];
         Start { forms, camera, film: Arc::default(), interrupted: None, news: None }
     }
+}
+
+/// Returns the brush that visitors start with: that of the installation's settings, or `now`.
+fn first_brush(kiosk: &KioskConfig, presets: &Presets, now: BrushSettings) -> BrushSettings {
+    let mut brush = match kiosk.brush_kind() {
+        Ok(Some(kind)) => presets.switched(&now, kind),
+        _ => now,
+    };
+    if kiosk.radius > 0.0 {
+        brush.radius = kiosk.radius;
+    }
+    brush.clamped()
 }
 
 /// The forms with their clay, built once.

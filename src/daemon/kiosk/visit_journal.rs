@@ -3,8 +3,9 @@
 //!
 //! A visit begins with a reset to a start clay, so its file holds that clay once and the visit's
 //! input alone. The file is made before the visit. If the visitor begins with the clay of another
-//! exhibit, another file is made, and the input waits for it. Of everything before the visit only the layout of
-//! the desktop outlives the reset; the file begins with it. Attract films are not recorded.
+//! exhibit, another file is made, and the input waits for it. Of everything before the visit only
+//! the layout of the desktop outlives the reset; the file begins with it. Attract films are not
+//! recorded.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -40,8 +41,8 @@ pub struct VisitJournal {
     /// The clay that the visit began with.
     begins_with: Option<Arc<TriMesh>>,
     prepared: cc::Receiver<PreparedFile>,
-    /// Takes the file of each visit that ended, `None` if the visit was not recorded; and files that
-    /// begin with another clay than the visit.
+    /// Takes the file of each visit that ended, `None` if the visit was not recorded; and files
+    /// that begin with another clay than the visit.
     ended: cc::Sender<Option<SessionWriter>>,
     desktop: Option<Command>,
 }
@@ -163,7 +164,7 @@ pub struct VisitStart {
 #[derive(Debug)]
 pub enum VisitNews {
     /// A visit begins with this clay and this brush.
-    Begins(Arc<TriMesh>, BrushSettings),
+    Begins(Arc<TriMesh>, Box<BrushSettings>),
     /// A visit has ended.
     PutAway(PutAway),
 }
@@ -262,7 +263,7 @@ impl VisitFolder {
                 VisitNews::Begins(plain, _) if Arc::ptr_eq(&plain, &self.start.plain) => continue,
                 VisitNews::Begins(plain, brush) => {
                     self.start.plain = plain;
-                    self.start.settings.brush = brush;
+                    self.start.settings.brush = *brush;
                     if self.open.is_some() && self.ended.recv().is_err() {
                         break;
                     }

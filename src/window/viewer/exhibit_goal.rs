@@ -4,50 +4,14 @@
 use std::sync::Arc;
 
 use super::distance_field::DistanceReference;
-use super::overlay_mesh::Triangles;
 use super::state::WindowState;
 use super::wiring::Wiring;
 use crate::look::Map;
 use sculptd_daemon::kiosk::exhibit::ExhibitStep;
 use sculptd_daemon::kiosk::exhibit::score::Goal;
-use sculptd_engine::hand::Similarity;
-use sculptd_geometry::TriMesh;
 
-/// Colour of a goal that shows through the clay, sRGB and opacity.
-const GHOST: [u8; 4] = [70, 190, 255, 110];
 /// The ends of the distance map's scale, in tolerances.
 const SCALE: f32 = 4.0;
-
-/// A form that shows through the clay.
-#[derive(Debug, Default)]
-pub(super) struct Ghost {
-    pub(super) triangles: Triangles,
-    /// The mesh that the triangles are of.
-    of: Option<Arc<TriMesh>>,
-}
-
-impl Ghost {
-    /// Shows a form; `None`: none.
-    fn show(&mut self, form: Option<&Arc<TriMesh>>) {
-        let same = match (&self.of, form) {
-            (Some(old), Some(new)) => Arc::ptr_eq(old, new),
-            (old, new) => old.is_none() == new.is_none(),
-        };
-        if same {
-            return;
-        }
-        self.triangles.clear();
-        if let Some(form) = form {
-            self.triangles.form(form, &Similarity::NONE, GHOST);
-        }
-        self.of = form.cloned();
-    }
-
-    /// The triangles, if there are any.
-    pub(super) fn shown(&self) -> Option<&Triangles> {
-        self.of.is_some().then_some(&self.triangles)
-    }
-}
 
 impl WindowState {
     /// The exhibit's step that is shown.

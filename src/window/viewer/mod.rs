@@ -24,6 +24,7 @@ mod follow;
 mod four_views;
 mod frame;
 mod frame_uniform;
+mod ghost;
 pub mod gizmo;
 pub mod gpu;
 mod input;

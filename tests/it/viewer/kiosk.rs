@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable;
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::desk::{KioskDesk, Screen, VisitResult};
 use sculptd_daemon::kiosk::exhibit::score::Score;
-use sculptd_daemon::kiosk::exhibit::{Exhibit, forms, pack};
+use sculptd_daemon::kiosk::exhibit::{self, Exhibit, forms};
 use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
@@ -263,7 +263,8 @@ fn one_switch_presses_what_is_lit_and_all_lies_within_reach() {
 }
 
 fn exhibits() -> Vec<Arc<Exhibit>> {
-    let open = |name: &&str| Arc::new(pack::open(Path::new(name), &Job::default()).expect("known"));
+    let open =
+        |name: &&str| Arc::new(exhibit::open(Path::new(name), &Job::default()).expect("known"));
     forms::NAMES.iter().map(open).collect()
 }
 
@@ -357,7 +358,10 @@ fn a_visitor_chooses_an_exhibit_hides_the_goal_and_compares() {
     }
     h.get_by_label("Grab").click();
     h.run_steps(3);
-    let grabs = |a: &UiRequest| matches!(a, UiRequest::World(Command::Brush(b)) if b.kind == BrushKind::Grab);
+    let grabs = |a: &UiRequest| match a {
+        UiRequest::World(Command::Brush(b)) => b.kind == BrushKind::Grab,
+        _ => false,
+    };
     assert!(h.state().asked.iter().any(grabs));
     assert!(h.query_by_label("Next step").is_none(), "it has one step");
     assert!(h.query_by_label("Italiano").is_none(), "the form needs the room");

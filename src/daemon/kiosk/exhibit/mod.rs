@@ -6,9 +6,12 @@
 
 pub mod create;
 pub mod forms;
+mod open;
 pub mod pack;
 pub mod score;
 pub mod score_thread;
+
+pub use open::open;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -219,7 +222,8 @@ impl Manifest {
         for (i, step) in self.step.iter().enumerate() {
             let number = i + 1;
             let tolerance = step.tolerance;
-            if !step.goal.is_empty() && !(tolerance > 0.0 && tolerance.is_finite()) {
+            let is_distance = tolerance > 0.0 && tolerance.is_finite();
+            if !step.goal.is_empty() && !is_distance {
                 return Err(format!(
                     "step {number}: tolerance = {tolerance}: expected a distance above 0, for the \
                      step has a goal"

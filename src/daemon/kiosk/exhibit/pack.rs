@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::score::Goal;
-use super::{Exhibit, ExhibitStep, MANIFEST, Manifest, PICTURE, forms};
+use super::{Exhibit, ExhibitStep, MANIFEST, Manifest, PICTURE};
 use crate::kiosk::gallery::portrait;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::io::{encode, parse, write_beside};
@@ -17,33 +17,20 @@ const MAX_BYTES: u64 = 256 << 20;
 /// Most triangles of a mesh of a pack: a goal is drawn and measured while visitors sculpt.
 pub const MAX_TRIANGLES: usize = 1_000_000;
 
-/// Opens an exhibit: a folder, a `.zip` file, or the name of one that comes with the program.
+/// Reads a pack: a folder or a `.zip` file.
 ///
 /// # Errors
 /// Returns a message that names the file and what was expected.
-pub fn open(place: &Path, job: &Job) -> Result<Exhibit, String> {
+pub fn read(place: &Path, job: &Job) -> Result<Exhibit, String> {
     let name = place.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    if !place.exists() {
-        let made = place.to_str().and_then(|text| forms::make(text, job));
-        return made.unwrap_or_else(|| {
-            let known = forms::NAMES.join(", ");
-            Err(format!(
-                "{}: expected a folder, a .zip file, or one of {known}, found nothing",
-                place.display()
-            ))
-        });
+    let at_place = |e: String| format!("{}: {e}", place.display());
+    if place.is_dir() {
+        return assemble(name, |file| from_folder(place, file), job).map_err(at_place);
     }
-    let read: Box<dyn FnMut(&str) -> Result<Vec<u8>, String>> = match place.is_dir() {
-        true => Box::new(|file: &str| from_folder(place, file)),
-        false => {
-            let file = std::fs::File::open(place);
-            let file = file.map_err(|e| format!("{}: {e}", place.display()))?;
-            let zip = zip::ZipArchive::new(std::io::BufReader::new(file));
-            let mut zip = zip.map_err(|e| format!("{}: {e}", place.display()))?;
-            Box::new(move |file: &str| from_zip(&mut zip, file))
-        }
-    };
-    assemble(name, read, job).map_err(|e| format!("{}: {e}", place.display()))
+    let file = std::fs::File::open(place).map_err(|e| at_place(e.to_string()))?;
+    let zip = zip::ZipArchive::new(std::io::BufReader::new(file));
+    let mut zip = zip.map_err(|e| at_place(e.to_string()))?;
+    assemble(name, |file| from_zip(&mut zip, file), job).map_err(at_place)
 }
 
 /// Puts an exhibit together from its files.
@@ -97,7 +84,7 @@ fn assemble(
 /// Makes an exhibit of a manifest and the meshes that it names.
 ///
 /// # Errors
-/// As [`open`].
+/// As [`read`].
 pub fn of_meshes(
     name: &str,
     manifest: &Manifest,
@@ -198,78 +185,4 @@ pub fn write(exhibit: &Exhibit, to: &Path) -> Result<(), String> {
         write_beside(&file, |out| out.write_all(bytes)).map_err(|e| at(&file, &e))?;
     }
     std::fs::rename(&part, to).map_err(|e| at(to, &e))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kiosk::exhibit::{StepManifest, Texts};
-    use sculptd_geometry::shapes;
-
-    fn exhibit() -> Exhibit {
-        let step = StepManifest {
-            goal: "goal.ply".into(),
-            tolerance: 0.5,
-            tools: vec!["carve".into()],
-            ghost: true,
-            text: Texts::new("Find the ball"),
-        };
-        let manifest = Manifest {
-            start: "start.ply".into(),
-            minutes: 3.0,
-            radius: 0.1,
-            strength: 0.0,
-            symmetry: 1,
-            title: Texts::new("A ball"),
-            step: vec![step],
-        };
-        let (start, goal) = (shapes::icosphere(12.0, 12), shapes::icosphere(10.0, 12));
-        let meshes = [("start.ply", &start), ("goal.ply", &goal)];
-        of_meshes("ball", &manifest, &meshes, &Job::default()).expect("an exhibit")
-    }
-
-    #[test]
-    fn a_pack_comes_back_from_a_folder_and_from_a_file() {
-        let dir = tempfile::tempdir().expect("a folder");
-        let made = exhibit();
-        for name in ["ball", "ball.zip"] {
-            let place = dir.path().join(name);
-            write(&made, &place).expect("written");
-            let read = open(&place, &Job::default()).expect("read");
-            assert_eq!(*read.start, *made.start);
-            assert_eq!((read.name.as_str(), &read.manifest.title), ("ball", &made.manifest.title));
-            let [a, b] = [&read, &made].map(|e| e.steps[0].goal.clone().expect("a goal"));
-            assert_eq!((&a.mesh, a.tolerance), (&b.mesh, b.tolerance));
-        }
-        assert!(write(&made, &dir.path().join("ball")).is_err_and(|e| e.contains("exists")));
-        let folder: Vec<_> = std::fs::read_dir(dir.path()).expect("listed").collect();
-        assert_eq!(folder.len(), 2, "nothing half-written is left");
-    }
-
-    #[test]
-    fn a_broken_pack_says_where() {
-        let dir = tempfile::tempdir().expect("a folder");
-        let place = dir.path().join("ball");
-        write(&exhibit(), &place).expect("written");
-        let text = std::fs::read_to_string(place.join(MANIFEST)).expect("a text");
-        let with = |old: &str, new: &str| {
-            #[allow(clippy::disallowed_methods)] // A broken file is what this test is about.
-            std::fs::write(place.join(MANIFEST), text.replace(old, new)).expect("written");
-            open(&place, &Job::default()).expect_err("refused")
-        };
-        assert!(with("goal-1.ply", "../goal-1.ply").contains("without a folder"));
-        assert!(with("goal-1.ply", "/etc/passwd").contains("without a folder"));
-        assert!(with("goal-1.ply", "none.ply").contains("none.ply"));
-        assert!(with("minutes = 3.0", "minutes = three").contains(MANIFEST));
-        #[allow(clippy::disallowed_methods)] // As above.
-        std::fs::write(place.join("goal-1.ply"), b"ply\n").expect("written");
-        assert!(with("nothing", "nothing").contains("goal-1.ply"));
-        let said = open(&dir.path().join("nowhere"), &Job::default()).expect_err("refused");
-        assert!(said.contains("figurine, pot, relief"), "{said}");
-        #[allow(clippy::disallowed_methods)] // As above.
-        std::fs::write(dir.path().join("a.zip"), b"PK no").expect("written");
-        assert!(
-            open(&dir.path().join("a.zip"), &Job::default()).is_err_and(|e| e.contains("a.zip"))
-        );
-    }
 }

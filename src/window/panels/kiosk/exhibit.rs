@@ -85,7 +85,7 @@ fn texture(ctx: &egui::Context, exhibit: &Exhibit) -> TextureHandle {
 }
 
 /// Shows the task, how near the work is, and the time left.
-pub(super) fn figures(
+pub(super) fn task(
     ctx: &egui::Context,
     free: egui::Rect,
     words: &Language,

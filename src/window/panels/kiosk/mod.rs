@@ -96,7 +96,7 @@ pub fn ui(
         Stage::Working => {
             // The keypad needs the room.
             if pad.typed.is_none() {
-                exhibit::figures(&ctx, whole, words, (screen, &now), pad, &mut scan);
+                exhibit::task(&ctx, whole, words, (screen, &now), pad, &mut scan);
             }
             let shown = (words, screen, &now);
             tools(&ctx, free, view, shown, pad, (out, &mut scan));

@@ -41,7 +41,7 @@ pub(super) fn ui(
                     ui.set_width(FIGURES);
                     ui.label(RichText::new(tr!("staff-heading")).size(28.0).strong());
                     ui.add_space(8.0);
-                    figures(ui, &facts, view);
+                    metrics(ui, &facts, view);
                     exported(ui, &facts);
                 });
                 ui.add_space(24.0);
@@ -68,7 +68,7 @@ fn exported(ui: &mut egui::Ui, facts: &StaffFacts) {
     ui.label(text.size(16.0));
 }
 
-fn figures(ui: &mut egui::Ui, facts: &StaffFacts, view: &View<'_>) {
+fn metrics(ui: &mut egui::Ui, facts: &StaffFacts, view: &View<'_>) {
     let quiet = theme::quiet(ui);
     let row = |ui: &mut egui::Ui, name: String, value: String| {
         ui.label(RichText::new(name).size(16.0).color(quiet));
