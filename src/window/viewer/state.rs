@@ -12,7 +12,7 @@ use super::check_task::CheckKey;
 use super::clay_picture::ClayPicture;
 use super::earlier_pictures::EarlierPictures;
 use super::fingers::Fingers;
-use super::ghost::Ghost;
+use super::goal_ghost::Ghost;
 use super::gpu::{Gpu, NoViewer, choose_formats, instance_on};
 use super::look_choice::LookChoice;
 use super::look_files::LookFolders;
