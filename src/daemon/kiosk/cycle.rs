@@ -121,7 +121,7 @@ impl Cycle {
         self.ends = (ticks > 0).then(|| self.now + ticks);
     }
 
-    /// Closes or opens the installation. A visit in progress goes on for [`GRACE_S`] at most.
+    /// Closes or opens the installation. A visit in progress goes on for five minutes at most.
     pub fn set_closed(&mut self, closed: bool) {
         if closed && !self.closed && self.is_visited() {
             let latest = self.now + (GRACE_S * self.rate_hz) as u64;

@@ -215,6 +215,8 @@ impl KioskThread {
             let typed = self.desk.typed.lock().ok().and_then(|mut t| t.take());
             if let Some(number) = typed {
                 cycle.type_pin(&number, &self.config.staff_pin);
+                // The page opens with figures of now.
+                self.look(&mut cycle);
             }
             self.staff(&mut cycle);
             if self.clock.now_us().saturating_sub(self.looked_us) >= SLOW_US {

@@ -55,7 +55,7 @@ impl LeftOut {
 }
 
 impl<J> WithoutFilms<J> {
-    /// Wraps the journal of an installation. `film`: see [`super::keeper::Start::film`].
+    /// Wraps the journal of an installation. `film`: see [`super::start::Start::film`].
     pub fn new(journal: J, film: Arc<AtomicBool>) -> Self {
         WithoutFilms { journal, film, left_out: None }
     }
