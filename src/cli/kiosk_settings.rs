@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "network")]
-use super::fleet_part::FleetPart;
 use super::{Fail, display};
 use crate::settings::LANGUAGES;
 use sculptd_daemon::kiosk::KioskConfig;
+#[cfg(feature = "network")]
+use sculptd_network::fleet::installation_thread::FleetPart;
 
 /// The part of the command line that names an installation.
 #[derive(Debug)]
