@@ -4,8 +4,9 @@ use glam::Vec2;
 use sculptd_clay::{Clay, Workers};
 use sculptd_daemon::config::{LoopConfig, Resolved};
 use sculptd_daemon::kiosk::staff::StaffRequest;
-use sculptd_daemon::kiosk::start::Start;
+use sculptd_daemon::kiosk::start::{Start, StartForm};
 use sculptd_daemon::kiosk::unrecorded::WithoutFilms;
+use sculptd_daemon::kiosk::visit_journal::{self, VisitStart};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
 use sculptd_daemon::live::Live;
 use sculptd_daemon::session;
@@ -289,4 +290,78 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     assert!(!keeper.desk.again.load(Relaxed));
     keeper.thread.join().expect("the keeper ends");
     live.stop().expect("ends").world.verify_invariants().expect("sound");
+}
+
+/// A pen presses an exhibit: its touch begins a visit with the form that is shown, the window's
+/// press comes later. The visit goes on with the chosen one, and its file too.
+#[test]
+fn a_choice_that_comes_after_the_touch_is_the_visit_s() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let config = Resolved::defaults(sculptd::presets()).config;
+    let plains = [5_000, 8_000].map(|n| Arc::new(shapes::sphere_of_about(n)));
+    let clay = |plain| Clay::build(plain, &Default::default()).expect("a ball");
+    let hashes = [0, 1].map(|i| clay(&plains[i]).snapshot().hash());
+    let world = startup::world(clay(&plains[0]), &config);
+    let mut start = Start::free(plains[0].clone(), config.camera.camera(), config.brush);
+    let second = StartForm { plain: plains[1].clone(), ..start.forms[0].clone() };
+    start.forms.push(second);
+    let settings = Settings {
+        rate_hz: 120,
+        dab_budget: config.r#loop.dab_budget,
+        undo_bytes: 1 << 30,
+        camera: start.camera,
+        brush: config.brush,
+        hands: config.hand,
+    };
+    let visit = VisitStart { plain: plains[0].clone(), settings, film: start.film.clone() };
+    let recording = visit_journal::start(dir.path(), visit, None).expect("recorded");
+    start.news = Some(recording.news);
+    let clock = Clock::monotonic();
+    let (factory, receiver) = queue::channel(4096);
+    let journal: Box<dyn Journal> = Box::new(recording.journal);
+    let rate = LoopConfig::default();
+    let live = Live::start(world, receiver, clock.clone(), rate, 1024, Some(journal));
+    let live = live.expect("a loop");
+    let kiosk = KioskConfig { idle_s: 600.0, ..KioskConfig::default() };
+    let words = kiosk.words(sculptd::settings::LANGUAGES).expect("English");
+    let stop = Arc::new(AtomicBool::new(false));
+    let keeper = keeper::start(
+        (kiosk, &words),
+        start,
+        live.published.clone(),
+        live.commands.clone(),
+        &factory,
+        clock.clone(),
+        stop.clone(),
+    )
+    .expect("keeps");
+    let hash = || live.published.load_full().mesh.hash();
+    until("the film sculpts", || live.published.load_full().figures.dabs > 20);
+    // As a press on the screen elsewhere.
+    keeper.desk.touched.store(true, Relaxed);
+    until("a visit begins with the form that is shown", || hash() == hashes[0]);
+    keeper.desk.choose(1);
+    until("it goes on with the chosen one", || hash() == hashes[1]);
+    let mut sender = factory.sender();
+    for i in 0..40 {
+        let pen = Pen {
+            in_range: true,
+            tip: i < 39,
+            pos_mm: Vec2::new(40.0 + i as f32 * 0.5, 50.0),
+            area_mm: Vec2::splat(100.0),
+            pressure: Some(0.5),
+            ..Pen::default()
+        };
+        let t_us = clock.now_us();
+        sender.push(Sample { device: DeviceId(0), t_us, device_t_us: None, body: Body::Pen(pen) });
+    }
+    sender.flush();
+    until("the visitor sculpts", || hash() != hashes[1]);
+    until("the input is in the file", || recording.health.written.load(Relaxed) > 0);
+    stop.store(true, Relaxed);
+    keeper.thread.join().expect("the keeper ends");
+    live.stop().expect("ends").world.verify_invariants().expect("sound");
+    recording.thread.join().expect("the files' thread ends");
+    let left = std::fs::read_dir(dir.path()).expect("a folder").count();
+    assert_eq!(left, 0, "the work was put away");
 }

@@ -209,6 +209,7 @@ impl KioskThread {
             let done = self.desk.finished.swap(false, Relaxed);
             let act = cycle.step(touched, done);
             self.carry_out(act, &mut cycle);
+            self.follow_choice(&mut cycle);
             if self.desk.next_step.swap(false, Relaxed) {
                 self.next_step(&mut cycle);
             }
@@ -360,15 +361,35 @@ impl KioskThread {
                 #[cfg(unix)]
                 self.show_link(None);
                 self.show_result(None);
-                self.dabs_before = self.published.load().figures.dabs;
                 let chosen = self.desk.take_choice().filter(|&index| index < self.built.len());
-                let form = chosen.or(self.form).unwrap_or(0);
-                let before = self.published.load().mesh.object_id();
-                self.put_back(form, false);
-                cycle.limit(self.minutes());
-                self.send_goal(Some(before));
+                self.begin_with(chosen.or(self.form).unwrap_or(0), cycle);
             }
             Some(KioskAct::End { seconds }) => self.end_visit(seconds, cycle.view().visits),
+        }
+    }
+
+    /// Begins with a form.
+    fn begin_with(&mut self, form: usize, cycle: &mut Cycle) {
+        self.dabs_before = self.published.load().figures.dabs;
+        let before = self.published.load().mesh.object_id();
+        self.put_back(form, false);
+        cycle.limit(self.minutes());
+        self.send_goal(Some(before));
+    }
+
+    /// A pen that presses an exhibit begins the visit by its touch, with the exhibit that is shown;
+    /// the window's press comes when the pen is lifted.
+    fn follow_choice(&mut self, cycle: &mut Cycle) {
+        // While nobody is there the choice waits for the visit that it begins.
+        if cycle.view().stage == Stage::Attract {
+            return;
+        }
+        let chosen = self.desk.take_choice().filter(|&index| index < self.built.len());
+        if let Some(form) = chosen
+            && cycle.view().stage == Stage::Working
+            && self.form != Some(form)
+        {
+            self.begin_with(form, cycle);
         }
     }
 

@@ -264,7 +264,9 @@ impl VisitFolder {
                 VisitNews::Begins(plain, brush) => {
                     self.start.plain = plain;
                     self.start.settings.brush = *brush;
-                    if self.open.is_some() && self.ended.recv().is_err() {
+                    // The tick thread hands the file back: unused, or with a visit that began
+                    // with another clay a moment ago. What was not recorded comes as `None`.
+                    if self.open.is_some() && !self.ended.iter().any(|writer| writer.is_some()) {
                         break;
                     }
                     self.close(Some(PutAway::Done));
