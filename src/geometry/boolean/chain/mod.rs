@@ -55,7 +55,8 @@ pub struct ChainSolid {
 /// use sculptd_geometry::shapes::cuboid;
 ///
 /// let (job, options) = (Job::default(), BooleanOptions::default());
-/// let mut chain = BooleanChain::new(&cuboid(DVec3::ZERO, DVec3::splat(4.0)), 2, options);
+/// let block = cuboid(DVec3::ZERO, DVec3::splat(4.0));
+/// let mut chain = BooleanChain::new(&block, 2, options);
 /// for x in [1.0, 2.5] {
 ///     let drill = cuboid(DVec3::new(x, 1.0, -1.0), DVec3::new(x + 0.5, 2.0, 5.0));
 ///     chain.step(Operation::Difference, &drill, None, &job, || 0.0)?;
