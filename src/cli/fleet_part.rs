@@ -7,6 +7,7 @@ use super::log_ring::KeptLines;
 use crate::settings::LANGUAGES;
 use sculptd_daemon::kiosk::KioskConfig;
 use sculptd_daemon::live_run::LiveRun;
+use sculptd_daemon::local_time::unix_s;
 use sculptd_network::fleet::access::FleetKey;
 use sculptd_network::fleet::installation_thread::{FleetPart, RunInSight, start};
 use sculptd_network::fleet::settings_files::{SettingsFiles, TrialStart};
@@ -68,13 +69,6 @@ pub fn part(
         started_s: unix_s(),
         entropy: system_entropy(),
     }))
-}
-
-/// Seconds since 1970 (UTC).
-#[allow(clippy::disallowed_methods)] // The edge: what is published says when it began.
-pub fn unix_s() -> u64 {
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    now.map_or(0, |d| d.as_secs())
 }
 
 /// Starts the part of a run that has begun.

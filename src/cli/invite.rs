@@ -3,15 +3,17 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde_json::json;
 
 use super::shared::{JoinRole, data_folder};
 use super::{Fail, Outcome, answer};
+use sculptd_daemon::local_time::unix_s;
 use sculptd_daemon::qr_code::Code;
 use sculptd_geometry::picture::Picture;
 use sculptd_network::join_link::{JoinLink, is_endpoint, sculpture_name};
-use sculptd_network::keyring::{Invitation, Keyring, fresh};
+use sculptd_network::keyring::{Invitation, OwnerFolder};
 use sculptd_network::random::system_entropy;
 
 /// Squares of the quiet border (ISO/IEC 18004), and pixels of a square in a picture.
@@ -30,6 +32,14 @@ pub struct InviteArgs {
     /// name and can be revoked separately.
     #[arg(long = "as", value_name = "PERSON")]
     pub person: Option<String>,
+    /// Let the invitation end after this time, as 90m, 2h or 3d.
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub expires: Option<Duration>,
+    /// Withdraw the invitations of this person, or the one whose file has this name, as "viewer".
+    /// Everyone who came with them is sent away.
+    #[arg(long, value_name = "PERSON",
+        conflicts_with_all = ["person", "role", "expires", "output"])]
+    pub withdraw: Option<String>,
     /// Address on which the host listens, as tcp/studio.example:7447. May be repeated; without it
     /// the guest looks for the host on the local network.
     #[arg(long, value_name = "ENDPOINT", value_parser = endpoint)]
@@ -42,6 +52,19 @@ pub struct InviteArgs {
     /// shown below the link, if the output is a terminal.
     #[arg(short, long, value_name = "FILE", value_parser = picture_file)]
     pub output: Option<PathBuf>,
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let expected = || "expected a time as 90m, 2h or 3d".to_owned();
+    let unit = text.chars().last().ok_or_else(expected)?;
+    let seconds = match unit {
+        'm' => 60,
+        'h' => 3_600,
+        'd' => 86_400,
+        _ => return Err(expected()),
+    };
+    let count: u32 = text[..text.len() - 1].parse().map_err(|_| expected())?;
+    Ok(Duration::from_secs(u64::from(count) * seconds))
 }
 
 fn endpoint(text: &str) -> Result<String, String> {
@@ -65,11 +88,13 @@ fn picture_file(text: &str) -> Result<PathBuf, String> {
 
 pub fn run(args: &InviteArgs, json: bool) -> Outcome {
     let folder = args.keys.clone().unwrap_or_else(|| data_folder("invitations").join(&args.name));
+    if let Some(whom) = &args.withdraw {
+        return withdraw(whom, &folder, json);
+    }
     let (invitation, made) = invitation(args, &folder)?;
     if made {
         eprintln!(
-            "sculptd: an invitation was made in {}; a host that is running learns of it when it \
-             is started anew",
+            "sculptd: an invitation was made in {}; your running daemon takes it within 2 s",
             folder.display()
         );
     }
@@ -91,6 +116,7 @@ pub fn run(args: &InviteArgs, json: bool) -> Outcome {
         "name": link.name,
         "role": link.invitation.role.name(),
         "person": link.invitation.name,
+        "expires_s": link.invitation.expires_s,
         "connect": link.connect,
         "file": args.output.as_ref().map(|p| p.display().to_string()),
     });
@@ -102,33 +128,48 @@ pub fn run(args: &InviteArgs, json: bool) -> Outcome {
     Ok(())
 }
 
-/// The invitation of the folder for this role, or for this person; where there is none, one is
-/// made. Whether it was.
+/// The invitation of the folder for this role, person and time, and true if it was made just now.
 fn invitation(args: &InviteArgs, folder: &Path) -> Result<(Invitation, bool), Fail> {
     let config = |e: &dyn std::fmt::Display| Fail::Config(e.to_string());
     let (mut entropy, role) = (system_entropy(), args.role.role());
-    let (keyring, made) = Keyring::of_folder(folder, &mut entropy).map_err(|e| config(&e))?;
-    let fits = |i: &&Invitation| i.role == role && i.name == args.person;
-    if let Some(found) = keyring.0.iter().find(fits) {
+    let (mut all, made) = OwnerFolder::open(folder, &mut entropy).map_err(|e| config(&e))?;
+    let fits = |i: &Invitation| i.role == role && i.name == args.person && i.expires_s.is_none();
+    let found = all.invitations.iter().map(|(_, i)| i).find(|i| fits(i) && args.expires.is_none());
+    if let Some(found) = found {
         return Ok((found.clone(), made));
     }
-    let made = Invitation { role, name: args.person.clone(), secret: fresh(&mut entropy) };
-    // Whatever the person's name is, the file's is one.
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let stem: String = match &args.person {
-        Some(person) => {
-            format!("{}-{}", role.name(), person.chars().map(plain).collect::<String>())
-        }
-        None => role.name().into(),
+    let expires_s = args.expires.map(|duration| unix_s() + duration.as_secs());
+    let added = all.add(role, args.person.clone(), expires_s, &mut entropy);
+    Ok((added.map_err(|e| config(&e))?, true))
+}
+
+/// Deletes the invitations of a person, or the files of these names.
+fn withdraw(whom: &str, folder: &Path, json: bool) -> Outcome {
+    let config = |e: &dyn std::fmt::Display| Fail::Config(e.to_string());
+    let (all, _) = OwnerFolder::open(folder, &mut system_entropy()).map_err(|e| config(&e))?;
+    let is_meant = |(path, i): &&(PathBuf, Invitation)| {
+        let file = path.file_stem().is_some_and(|stem| *stem == *whom);
+        i.name.as_deref() == Some(whom) || file
     };
-    let free = (0..1000).map(|k| match k {
-        0 => folder.join(format!("{stem}.key")),
-        k => folder.join(format!("{stem}-{k}.key")),
+    let meant: Vec<&PathBuf> =
+        all.invitations.iter().filter(is_meant).map(|(path, _)| path).collect();
+    if meant.is_empty() {
+        let text = "no invitation is for a person of this name, nor has it as its file's name";
+        return Err(Fail::Usage(format!("{whom}: {text} in {}", folder.display())));
+    }
+    for path in &meant {
+        std::fs::remove_file(path).map_err(|e| Fail::io(path, &e))?;
+    }
+    let files: Vec<String> = meant.iter().map(|p| p.display().to_string()).collect();
+    answer(json, &json!({ "withdrawn": files }), |out| {
+        files.iter().try_for_each(|file| writeln!(out, "withdrawn: {file}"))?;
+        writeln!(
+            out,
+            "Your running daemon sends the new list to all within two seconds. If none runs, the \
+             invitation is valid until one does."
+        )
     });
-    let path = free.into_iter().find(|p| !p.exists());
-    let path = path.ok_or_else(|| Fail::Config(format!("{}: too many keys", folder.display())))?;
-    made.write(&path).map_err(|e| config(&e))?;
-    Ok((made, true))
+    Ok(())
 }
 
 /// Returns true if a square is dark; border squares are not.

@@ -46,8 +46,10 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
         let mut summary = std::mem::take(&mut ended.summary);
         let path = self.export.as_deref().filter(|_| !handed_on);
         summary.export = export(path, &mut ended.world)?;
+        let trouble = ended.shared.trouble();
         warn_of_fault(ended.close_session());
-        (self.then)(summary)
+        (self.then)(summary)?;
+        trouble.map_or(Ok(()), |trouble| Err(Fail::Check(trouble)))
     }
 
     /// The same for a run whose window is lost; the exit code. An installation without its screen

@@ -16,10 +16,11 @@ pub enum LogFormat {
 /// `info,sculptd_daemon::session=trace`). Without it, and where it cannot be read, `info`.
 pub fn begin(format: LogFormat) {
     let wanted = std::env::var("SCULPTD_LOG").unwrap_or_default();
-    // The network library's messages about every session do not concern users.
+    // The network library reports every lost connection as an error. The program reports those that
+    // concern a person itself.
     let usual = || {
         let all = Targets::new().with_default(LevelFilter::INFO);
-        all.with_target("zenoh", LevelFilter::ERROR)
+        all.with_target("zenoh", LevelFilter::OFF)
     };
     let parsed = match wanted.trim() {
         "" => Ok(usual()),

@@ -218,18 +218,17 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     #[cfg(not(feature = "network"))]
     let (begun, shared) = (begin(&meshes, session.map(PathBuf::as_path), &config)?, None);
     #[cfg(feature = "network")]
-    let (begun, shared) = if args.shared.join.is_some() {
-        let alone = |config: &Config| begin(&[], None, config);
+    let (begun, shared) = {
         let session = session.map(PathBuf::as_path);
-        let (begun, shared) = args.shared.join(&mut config, session, alone)?;
-        (begun, Some(shared))
-    } else {
-        let begun = begin(&meshes, session.map(PathBuf::as_path), &config)?;
-        let hosts = args.shared.host.is_some();
-        let shared = hosts
-            .then(|| args.shared.host(&begun, session.map(PathBuf::as_path), &config))
-            .transpose()?;
-        (begun, shared)
+        let own = |config: &Config| begin(&meshes, session, config);
+        let alone = |config: &Config| begin(&[], None, config);
+        match args.shared.is_on() {
+            true => {
+                let (begun, shared) = args.shared.begin(&mut config, session, own, alone)?;
+                (begun, Some(shared))
+            }
+            false => (own(&config)?, None),
+        }
     };
     let objects = begun.world.scene().objects();
     let found: usize = objects.iter().map(|o| o.clay.triangle_count()).sum();

@@ -6,12 +6,13 @@ use std::time::Duration;
 
 use super::Fail;
 use sculptd_daemon::config::Config;
+use sculptd_daemon::local_time::unix_s;
 use sculptd_daemon::shared_input::SharedInput;
 use sculptd_daemon::startup::{Begun, session_settings};
 use sculptd_devices::Clock;
 use sculptd_network::join_link::{JoinLink, MAX_LINK, is_link, sculpture_name};
-use sculptd_network::keyring::{Entropy, Invitation, Keyring};
-use sculptd_network::live::{Shared, SharedSettings};
+use sculptd_network::keyring::{Entropy, Invitation, OwnerFolder};
+use sculptd_network::live::{Entered, Shared, SharedSettings};
 use sculptd_network::random::system_entropy;
 use sculptd_network::shared_error::SharedError;
 use sculptd_network::shared_session::SharedSession;
@@ -24,7 +25,8 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct SharedArgs {
-    /// Share this sculpture under a name: others join with an invitation from the folder --keys.
+    /// Share this sculpture under a name: others join with an invitation from the folder --keys. If
+    /// your sculpture of this name is shared already, join it.
     #[arg(long, value_name = "NAME", value_parser = sculpture_name,
         conflicts_with_all = ["join", "kiosk"])]
     pub host: Option<String>,
@@ -41,9 +43,13 @@ pub struct SharedArgs {
     #[arg(long, value_name = "FILE", requires = "join")]
     pub key: Option<PathBuf>,
     /// As what to join: a sculptor; a viewer, who does nothing; a device, whose samples go to the
-    /// others, and which shows nothing of theirs. Without it, what the link says, or a sculptor.
+    /// others, and which shows nothing of theirs. Without it, what the invitation says.
     #[arg(long, value_enum, value_name = "ROLE", requires = "join")]
     pub role: Option<JoinRole>,
+    /// Join the sculpture of this number, if two are shared under one name: the message about them
+    /// shows the numbers.
+    #[arg(long, value_name = "NUMBER", requires = "join", value_parser = sculpture_number)]
+    pub sculpture: Option<u32>,
     /// Your name for the others; default: the name in the link, or that of your account.
     #[arg(long = "as", value_name = "NAME")]
     pub person: Option<String>,
@@ -54,6 +60,10 @@ pub struct SharedArgs {
     /// network are found without it.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Vec<String>,
+}
+
+fn sculpture_number(text: &str) -> Result<u32, String> {
+    u32::from_str_radix(text, 16).map_err(|_| "expected eight hexadecimal digits".into())
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -125,7 +135,12 @@ impl SharedArgs {
     /// Returns true if this run is only a viewer or a device of another's sculpture. It stores
     /// nothing then.
     pub fn looks_on(&self) -> bool {
-        self.join.is_some() && self.role.is_some_and(|role| role != JoinRole::Sculptor)
+        let Some(text) = self.join.as_ref().map(|j| &*j.0) else { return false };
+        let of_key = || self.key.as_deref().and_then(|key| Invitation::read(key).ok());
+        let of_link = || JoinLink::read(text).ok().map(|link| link.invitation);
+        let invited = || of_key().or_else(of_link).map(|i| i.role);
+        let role = self.role.map(JoinRole::role).or_else(invited);
+        role.is_some_and(|role| role != Role::Sculptor)
     }
 
     fn link(&self, name: &str, connect: &[String]) -> Result<ZenohLink, Fail> {
@@ -134,82 +149,65 @@ impl SharedArgs {
         ZenohLink::open(name, &endpoints).map_err(|e| Fail::Usage(format!("the network: {e}")))
     }
 
-    fn identity(&self, role: Role, invitation: Invitation, entropy: Entropy) -> Identity {
+    fn identity(
+        &self,
+        role: Role,
+        invitation: Invitation,
+        clock: &Clock,
+        entropy: Entropy,
+    ) -> Identity {
         let account = ["USER", "LOGNAME", "USERNAME"].iter().find_map(|k| std::env::var(k).ok());
         let own = self.person.clone().or_else(|| invitation.name.clone());
         let name = own.or(account).unwrap_or_else(|| "somebody".into());
-        Identity { name, role, invitation, entropy }
+        let epoch_s = unix_s().saturating_sub(clock.now_us() / 1_000_000);
+        Identity { name, role, invitation, epoch_s, entropy }
     }
 
-    /// Hosts the world that a run has begun.
-    pub fn host(
-        &self,
-        begun: &Begun,
-        session: Option<&Path>,
-        config: &Config,
-    ) -> Result<Box<dyn SharedInput>, Fail> {
-        let name = self.host.as_deref().unwrap_or_default();
-        let folder = self.keys.clone().unwrap_or_else(|| data_folder("invitations").join(name));
-        let mut entropy = system_entropy();
-        let (keyring, made) =
-            Keyring::of_folder(&folder, &mut entropy).map_err(|e| Fail::Config(e.to_string()))?;
-        let own = keyring.of_host().cloned().ok_or_else(|| {
-            Fail::Config(format!(
-                "{}: every sculptor's invitation is for one person, and none for the host. Make \
-                 one with: sculptd invite {name}",
-                folder.display()
-            ))
-        })?;
-        if made {
-            eprintln!("sculptd: invitations were made in {}", folder.display());
-        }
-        eprintln!(
-            "sculptd: '{name}' is shared; others join with: sculptd run --join {name} --key {}, or \
-             by a link or QR code from: sculptd invite {name}",
-            folder.join("sculptor.key").display()
-        );
-        let clock = Clock::monotonic();
-        let (rate, tick) = (config.r#loop.rate_hz, begun.world.tick());
-        let identity = self.identity(Role::Sculptor, own, entropy);
-        let station = Station::host(identity, keyring, rate, tick, clock.now_us());
-        let shared = Shared::start(
-            station,
-            Box::new(self.link(name, &[])?),
-            clock,
-            settings(config, name, session.map(|s| (s, true))),
-        );
-        let shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
-        Ok(Box::new(shared.link))
-    }
-
-    /// Joins a shared sculpture and waits for its world. The local loop uses the host's rate.
-    /// `alone` creates the world of a device, which receives nothing.
-    pub fn join(
+    /// Joins a shared sculpture, or hosts one. The local loop uses the host's rate. `own` begins
+    /// the world of a host, `alone` that of a device, which receives nothing.
+    pub fn begin(
         &self,
         config: &mut Config,
         session: Option<&Path>,
+        own: impl FnOnce(&Config) -> Result<Begun, Fail>,
         alone: impl FnOnce(&Config) -> Result<Begun, Fail>,
     ) -> Result<(Begun, Box<dyn SharedInput>), Fail> {
-        if let Some(path) = session.filter(|path| path.exists()) {
-            let path = path.display();
-            let text = "who joins begins a new session: name a file that is not there";
-            return Err(Fail::Usage(format!("{path}: {text}")));
-        }
-        let JoinLink { name, invitation, connect } = self.target()?;
-        let (name, is_by_link) = (&*name, self.key.is_none());
-        let said = if is_by_link { invitation.role } else { Role::Sculptor };
-        let role = self.role.map_or(said, JoinRole::role);
         let clock = Clock::monotonic();
-        let identity = self.identity(role, invitation, system_entropy());
-        let station = Station::join(identity, clock.now_us());
-        let shared = Shared::start(
-            station,
-            Box::new(self.link(name, &connect)?),
-            clock,
-            settings(config, name, session.map(|s| (s, false))),
-        );
+        let mut entropy = system_entropy();
+        let folder =
+            self.host.as_deref().map(|name| self.folder(name, &mut entropy)).transpose()?;
+        let (target, role) = match (&self.host, &folder) {
+            (Some(name), Some(folder)) => {
+                let (name, invitation) = (name.clone(), folder.of_owner());
+                (JoinLink { name, invitation, connect: Vec::new() }, Role::Sculptor)
+            }
+            _ => {
+                if let Some(path) = session.filter(|path| path.exists()) {
+                    let path = path.display();
+                    let text = "who joins begins a new session: name a file that is not there";
+                    return Err(Fail::Usage(format!("{path}: {text}")));
+                }
+                let target = self.target()?;
+                let role = self.role.map_or(target.invitation.role, JoinRole::role);
+                (target, role)
+            }
+        };
+        let JoinLink { name, invitation, connect } = target;
+        let name = &*name;
+        let identity = self.identity(role, invitation, &clock, entropy);
+        let person = identity.name.clone();
+        let is_host = folder.is_some();
+        let station = match is_host {
+            true => Station::join_or_host(identity, clock.now_us()),
+            false => Station::join(identity, self.sculpture, clock.now_us()),
+        };
+        let link = Box::new(self.link(name, &connect)?);
+        let settings = settings(config, name, session, folder);
+        let shared = Shared::start(station, link, clock, settings);
         let mut shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
-        eprintln!("sculptd: joining '{name}'");
+        if !is_host {
+            eprintln!("sculptd: joining '{name}'");
+        }
         let (said, mut next_us) = (Clock::monotonic(), 1_000_000);
         let coming = |bytes: u64| {
             if said.now_us() >= next_us {
@@ -218,32 +216,77 @@ impl SharedArgs {
             }
         };
         let entered = shared.enter(name, role != Role::Device, PATIENCE, coming);
-        let (world, rate) = entered.map_err(|e| match e {
-            SharedError::Refused(_) => Fail::Permission(e.to_string()),
+        let entered = entered.map_err(|e| match e {
+            SharedError::Refused(_) | SharedError::NotLetIn { .. } => {
+                Fail::Permission(e.to_string())
+            }
             SharedError::Session(_) => Fail::Input(e.to_string()),
             e => Fail::Check(e.to_string()),
         })?;
-        if (30..=1000).contains(&rate) {
-            config.r#loop.rate_hz = rate;
-        }
-        let (world, journal) = match world {
-            Some((world, journal)) => (*world, journal.map(|j| *j)),
-            // It stands still.
-            None => (alone(config)?.world, None),
+        let begun =
+            |world, journal| Begun { world, journal, warnings: Vec::new(), started_with: None };
+        let begun = match entered {
+            Entered::NobodyHosts => {
+                let begun = own(config)?;
+                shared.host(config.r#loop.rate_hz, begun.world.tick());
+                eprintln!(
+                    "sculptd: '{name}' is shared; others join with: sculptd run --join {name} \
+                     --key {}, or by a link or QR code from: sculptd invite {name}",
+                    self.folder_path(name).join("sculptor.key").display()
+                );
+                begun
+            }
+            Entered::World((world, journal), rate) => {
+                if is_host {
+                    eprintln!("sculptd: '{name}' is shared already: '{person}' joins it");
+                }
+                take_rate(config, rate);
+                begun(*world, journal.map(|j| *j))
+            }
+            // Its world stands still.
+            Entered::Device(rate) => {
+                take_rate(config, rate);
+                begun(alone(config)?.world, None)
+            }
         };
-        Ok((
-            Begun { world, journal, warnings: Vec::new(), started_with: None },
-            Box::new(shared.link),
-        ))
+        Ok((begun, Box::new(shared.link)))
+    }
+
+    fn folder_path(&self, name: &str) -> PathBuf {
+        self.keys.clone().unwrap_or_else(|| data_folder("invitations").join(name))
+    }
+
+    fn folder(&self, name: &str, entropy: &mut Entropy) -> Result<OwnerFolder, Fail> {
+        let path = self.folder_path(name);
+        let opened = OwnerFolder::open(&path, entropy).map_err(|e| Fail::Config(e.to_string()));
+        opened.map(|(folder, made)| {
+            if made {
+                eprintln!("sculptd: invitations were made in {}", path.display());
+            }
+            folder
+        })
     }
 }
 
-/// `session`: a file of which a session is made, and whether it is one already.
-fn settings(config: &Config, name: &str, session: Option<(&Path, bool)>) -> SharedSettings {
+fn take_rate(config: &mut Config, rate: u32) {
+    if (30..=1000).contains(&rate) {
+        config.r#loop.rate_hz = rate;
+    }
+}
+
+/// `session`: a file of which a session is made, if it is not one already.
+fn settings(
+    config: &Config,
+    name: &str,
+    session: Option<&Path>,
+    folder: Option<OwnerFolder>,
+) -> SharedSettings {
     let workers = config.r#loop.worker_count();
     let begun = session_settings(config);
-    let session = session.map(|(path, taken)| SharedSession::new(path, begun, taken));
-    SharedSettings { workers, dumps: data_folder("differences").join(name), session }
+    // A host's session is the file itself, from the beginning.
+    let is_taken = |path: &Path| folder.is_some() && path.exists();
+    let session = session.map(|path| SharedSession::new(path, begun, is_taken(path)));
+    SharedSettings { workers, dumps: data_folder("differences").join(name), session, folder }
 }
 
 /// A folder in the user's data folder.

@@ -12,6 +12,9 @@ pub struct PeopleReply {
     pub own: u8,
     /// All who ever came, in the order of their numbers.
     pub people: Vec<PersonInfo>,
+    /// The connection to the others; `null` if nothing is shared.
+    #[serde(default)]
+    pub link: Option<SharedLink>,
     /// Counts of the input of this daemon's devices and commands; `null` if nothing is shared.
     #[serde(default)]
     pub own_input: Option<OwnInput>,
@@ -19,6 +22,44 @@ pub struct PeopleReply {
     /// `null` if none was refused.
     #[serde(default)]
     pub undo_refused: Option<UndoRefused>,
+}
+
+/// The connection of this daemon to the others at a shared sculpture.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SharedLink {
+    /// State of the connection.
+    pub state: SharedState,
+    /// Name of the person whose daemon hosts; `null` if unknown.
+    pub host: Option<String>,
+    /// Whole seconds for which the state has been so.
+    pub since_s: u64,
+    /// Batches of local input that no host has ordered yet.
+    pub waiting: u64,
+    /// Batches of local input that never reached the others: only this daemon's sculpture and
+    /// session contain them.
+    pub undelivered: u64,
+    /// Why the host sent this daemon away; `null` if it did not.
+    pub reason: Option<String>,
+    /// Number of the sculpture, eight hexadecimal digits: two of one name differ in it.
+    pub sculpture: String,
+    /// Other sculptures that are shared under the same name on this network: number, people, age.
+    pub others: Vec<String>,
+}
+
+/// See [`SharedLink`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum SharedState {
+    /// It orders everybody's input.
+    Hosts,
+    /// It follows the host.
+    Follows,
+    /// It hears neither the host nor a successor. Its input waits.
+    CutOff,
+    /// The host sent it away. It goes on alone.
+    SentAway,
 }
 
 /// Counts of the local input: all of it is in the sculpture when `ordered` is `batches`.

@@ -123,6 +123,9 @@ pub struct StatusReply {
     pub curve_points: u64,
     /// The session file; `null` where nothing is recorded.
     pub journal: Option<JournalStatus>,
+    /// The connection to the others at a shared sculpture; `null` if nothing is shared.
+    #[serde(default)]
+    pub shared: Option<crate::people::SharedLink>,
     /// Pens that are in range where a stroke may begin: those whose ring is shown.
     #[serde(default)]
     pub pens: Vec<PenStatus>,

@@ -17,6 +17,7 @@ use super::hand_jobs;
 pub use super::hand_jobs::operation;
 use super::operations::basis::{Basis, Placing};
 use super::operations::{self, Computed, OperationError, Target, in_place};
+use super::people::SharedState;
 use super::published::Published;
 use sculptd_clay::{Grafted, Level, LevelError, Levels, PAGE_VERTICES};
 use sculptd_engine::answer::Answer;
@@ -58,7 +59,12 @@ pub fn join(
     let (work, tool) = (&shown.mesh, in_own_frame(shown, tool));
     let options = BooleanOptions::default();
     let then = held.then_some(Command::PutDown);
-    if let Some(cut) = sculptd_clay::local_boolean::local(work, &tool, operation, &options, job)?
+    // The others at a shared sculpture have the same surface, and not the same pages: a cut of some
+    // pages is for one daemon alone.
+    let is_shared = shown.standing.state != SharedState::NotShared;
+    if !is_shared
+        && let Some(cut) =
+            sculptd_clay::local_boolean::local(work, &tool, operation, &options, job)?
         && cut.page_count() <= MOST_PAGES
         && cut.can_be_made(work)
     {

@@ -49,7 +49,9 @@ pub enum NoAnswer {
     #[error("no answer came within {0} s; the command may still be carried out")]
     Late(u64),
     /// The loop has ended, or the sculpture was replaced before it came to the command.
-    #[error("the loop ended before it came to the command")]
+    #[error(
+        "no answer will come: the loop ended, or the sculpture was replaced; look at what is there"
+    )]
     Ended,
 }
 

@@ -22,7 +22,7 @@ use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::input_hold::LoopHold;
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
-use crate::people::PeopleHere;
+use crate::people::{PeopleHere, SharedEnd};
 use crate::priority::raise_priority;
 use crate::session::writer::WriterThread;
 use crate::shared_input::{NextTick, SharedInput};
@@ -48,6 +48,8 @@ const LAST_TICKS: u32 = 8;
 const QUIET_TICKS: u32 = 8;
 /// Longest sleep: so often an idle loop ticks for those who watch over it.
 const LONGEST_SLEEP: Duration = Duration::from_secs(1);
+/// Longest wait at the end for the others to take the last input, in microseconds.
+const DELIVERY_US: u64 = 4_000_000;
 
 /// A running loop.
 #[derive(Debug)]
@@ -71,6 +73,8 @@ pub struct Ended {
     pub receiver: Receiver,
     /// Sessions that were begun while the loop ran, to be waited for.
     pub writing: Vec<WriterThread>,
+    /// End of the part in a shared sculpture.
+    pub shared: SharedEnd,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -212,8 +216,9 @@ struct TickBuffers {
     held: VecDeque<QueuedCommand>,
     /// Input held back for an operation.
     hold: LoopHold,
-    /// For a shared sculpture: channels for the answers of local commands still in transit.
-    waiting: VecDeque<AnswerSender>,
+    /// For a shared sculpture: channels for the answers of local commands still in transit, by
+    /// their numbers.
+    waiting: VecDeque<(u64, AnswerSender)>,
     /// Requests of hands to workers, sent once the state that they refer to is published.
     asked: Vec<HandRequest>,
     figures: TickStatistics,
@@ -306,11 +311,11 @@ impl Ticking {
                 edits |= begins;
                 if let Some(shared) = &mut self.shared {
                     let answer = queued.answer.take();
-                    if shared.refuses(&queued) {
-                        now.answer(answer, tick, Err(SceneError::NotShared));
+                    if let Some(refused) = shared.refusal(&queued) {
+                        now.answer(answer, tick, Err(refused));
                         continue;
                     }
-                    now.waiting.push_back(answer);
+                    now.senders.push(answer);
                     // Every replica builds what the command needs.
                     queued.payload.take().into_iter().for_each(|p| garbage.discard_owned(p));
                     now.commands.push(queued.command);
@@ -347,6 +352,7 @@ impl Ticking {
             if let Some(shared) = &mut self.shared {
                 state.people = Some(shared.people());
                 state.own_input = shared.own_input();
+                state.standing = shared.standing();
                 if let Some(ahead) = shared.ahead(&self.world) {
                     state.show_ahead(ahead);
                 }
@@ -370,8 +376,28 @@ impl Ticking {
             now.figures.overruns = pacer.overruns;
             quiet = if has_input || self.has_work(&now) { 0 } else { quiet + 1 };
         }
+        let shared = self.end_shared(&mut now, &garbage);
         let Ticking { world, receiver, writing, .. } = self;
-        Ended { world, figures: now.figures, receiver, writing }
+        Ended { world, figures: now.figures, receiver, writing, shared }
+    }
+
+    /// Delivers what is still on its way to the others, and steps here what cannot be delivered.
+    fn end_shared(&mut self, now: &mut TickBuffers, garbage: &GarbageSink) -> SharedEnd {
+        let Some(mut shared) = self.shared.take() else { return SharedEnd::default() };
+        let until = self.clock.now_us() + DELIVERY_US;
+        shared.close();
+        let quiet = cc::never::<()>();
+        loop {
+            self.step_shared(shared.as_mut(), now, garbage);
+            if let Some(end) = shared.closed() {
+                return end;
+            }
+            if self.clock.now_us() >= until {
+                let undelivered = shared.standing().waiting;
+                return SharedEnd { undelivered, ..SharedEnd::default() };
+            }
+            let _ = quiet.recv_timeout(Duration::from_millis(2));
+        }
     }
 
     fn is_stopped(&self) -> bool {
@@ -447,17 +473,16 @@ impl Ticking {
         now: &mut TickBuffers,
         garbage: &GarbageSink,
     ) {
-        // Commands of the tablets' keys have nobody who waits for a result.
-        let told = now.commands.len().min(now.waiting.len());
-        (told..now.commands.len()).for_each(|_| now.waiting.push_back(None));
         let own_us = now.samples.last().map(|s| s.t_us);
-        shared.submit(&self.world, &mut now.samples, &mut now.commands);
+        let first = shared.submit(&self.world, &mut now.samples, &mut now.commands);
+        // Commands of the tablets' keys follow; their results have no receiver.
+        now.waiting.extend((first..).zip(now.senders.drain(..)));
         let newest = now.newest;
         let until = self.clock.now_us() + 3_000_000 / u64::from(self.rate_hz.max(1));
         loop {
             match shared.next(&self.world) {
                 NextTick::Wait => break,
-                NextTick::World(mut world, journal) => {
+                NextTick::World(mut world, journal, waiting_from) => {
                     // The old file ends here: it records another world.
                     if let Some(old) = self.journal.take() {
                         garbage.discard_owned(old);
@@ -470,16 +495,21 @@ impl Ticking {
                     world.set_garbage_sink(garbage.clone());
                     world.set_page_supply(self.pages.clone());
                     world.warm();
-                    now.waiting.clear();
+                    // Their senders are dropped, so the callers learn that no answer will come.
+                    now.waiting.retain(|(number, _)| *number >= waiting_from);
                     now.late = None;
                     garbage.discard_owned(std::mem::replace(&mut self.world, *world));
                 }
                 NextTick::Step(next) => {
+                    for number in next.refused {
+                        let sender = now.take_waiting(number);
+                        now.answer(sender, next.tick, Err(SceneError::NotShared));
+                    }
                     let mut own = next.own.iter().peekable();
                     for i in 0..next.commands.len() {
-                        let is_own = own.next_if(|o| **o == i).is_some();
-                        let to = if is_own { now.waiting.pop_front() } else { None };
-                        now.senders.push(to.flatten());
+                        let number = own.next_if(|o| o.0 == i).map(|o| o.1);
+                        let sender = number.and_then(|number| now.take_waiting(number));
+                        now.senders.push(sender);
                     }
                     (now.samples, now.commands) = (next.samples, next.commands);
                     self.step(next.tick, now, garbage, shared.hosts());
@@ -532,6 +562,16 @@ impl TickBuffers {
             queued.t_us = None;
         }
         true
+    }
+
+    /// Takes the channel of a command by its number. Earlier commands will not be answered any
+    /// more: their channels are dropped.
+    fn take_waiting(&mut self, number: u64) -> AnswerSender {
+        while self.waiting.front().is_some_and(|(first, _)| *first < number) {
+            self.waiting.pop_front();
+        }
+        let is_it = self.waiting.front().is_some_and(|(first, _)| *first == number);
+        is_it.then(|| self.waiting.pop_front()).flatten().and_then(|(_, sender)| sender)
     }
 
     /// Keeps an answer until its effect is published.

@@ -22,6 +22,7 @@ use crate::kiosk::unrecorded::WithoutFilms;
 use crate::kiosk::{KioskConfig, keeper, recovery};
 use crate::live::{Live, LiveError};
 use crate::live_booleans;
+use crate::people::SharedEnd;
 #[cfg(unix)]
 use crate::qr_code::{Code, Invitation};
 use crate::session::Health;
@@ -150,6 +151,8 @@ pub struct FinishedRun {
     pub world: World,
     /// Without the name of a file: nothing was written yet.
     pub summary: Summary,
+    /// End of the part in a shared sculpture.
+    pub shared: SharedEnd,
     writing: Vec<WriterThread>,
     /// Others are answered until the session is closed.
     #[cfg(unix)]
@@ -387,6 +390,7 @@ impl LiveRun {
         Ok(FinishedRun {
             world: ended.world,
             summary,
+            shared: ended.shared,
             writing: self.writing.into_iter().chain(ended.writing).collect(),
             #[cfg(unix)]
             _served: self._served,

@@ -57,7 +57,7 @@ impl LocalClock {
 
 /// Seconds since 1970 (UTC).
 #[allow(clippy::disallowed_methods)] // The edge: opening hours are of the calendar.
-fn unix_s() -> u64 {
+pub fn unix_s() -> u64 {
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     since.map_or(0, |since| since.as_secs())
 }

@@ -31,6 +31,69 @@ pub struct PeopleHere {
     pub own: u8,
     /// Every person.
     pub all: Vec<Person>,
+    /// The number of the sculpture, as a person sees it: two of one name differ in it.
+    pub sculpture: String,
+    /// Other sculptures of the same name, each with its people and its age.
+    pub others: Vec<String>,
+    /// Why the host sent this daemon away.
+    pub sent_away: Option<String>,
+}
+
+/// This daemon's connection to the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SharedState {
+    /// Nothing is shared, or nobody has let this daemon in yet.
+    #[default]
+    NotShared,
+    /// It orders everybody's input.
+    Hosts,
+    /// It follows the host.
+    Follows,
+    /// Nothing has come from the host, nor from a successor.
+    CutOff,
+    /// The host sent it away: it goes on alone.
+    SentAway,
+}
+
+/// See [`SharedState`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SharedStanding {
+    /// The state.
+    pub state: SharedState,
+    /// Number of the person whose daemon hosts; 0: unknown.
+    pub host: u8,
+    /// Whole seconds since which it is so.
+    pub since_s: u64,
+    /// Batches of local input that no host has ordered yet.
+    pub waiting: u64,
+    /// Batches of local input that never reached the others. Only this daemon's sculpture contains
+    /// them.
+    pub undelivered: u64,
+}
+
+/// End of this daemon's part in a shared sculpture.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SharedEnd {
+    /// Why the host sent it away.
+    pub sent_away: Option<String>,
+    /// Batches of local input that never reached the others.
+    pub undelivered: u64,
+}
+
+impl SharedEnd {
+    /// Returns a message for the person; `None`: all input was delivered.
+    pub fn trouble(&self) -> Option<String> {
+        let kept = "they are in this daemon's sculpture and session alone";
+        match (&self.sent_away, self.undelivered) {
+            (None, 0) => None,
+            (None, n) => Some(format!("{n} batches of input did not reach the others: {kept}")),
+            (Some(why), 0) => Some(format!("this daemon was sent away: {why}")),
+            (Some(why), n) => Some(format!(
+                "this daemon was sent away: {why}. {n} batches of its input did not reach the \
+                 others: {kept}"
+            )),
+        }
+    }
 }
 
 /// Counts of this daemon's input.

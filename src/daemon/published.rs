@@ -8,7 +8,7 @@ use std::sync::Arc;
 use arc_swap::ArcSwap;
 use glam::Vec3;
 
-use crate::people::{OwnInput, PeopleHere};
+use crate::people::{OwnInput, PeopleHere, PersonRole, SharedStanding};
 use crate::tick_statistics::{Losses, Percentiles};
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_clay::{GarbageSink, Hit, Ray, Snapshot};
@@ -82,6 +82,8 @@ pub struct Published {
     pub people: Option<Arc<PeopleHere>>,
     /// Counts of the local input, if the sculpture is shared.
     pub own_input: OwnInput,
+    /// The connection to the others, if the sculpture is shared.
+    pub standing: SharedStanding,
     /// The newest undo or redo of the local person that was refused because another person's step
     /// blocks it.
     pub undo_refused: Option<UndoRefusal>,
@@ -187,6 +189,7 @@ impl Published {
             redo_steps: world.redo_steps(),
             people: None,
             own_input: OwnInput::default(),
+            standing: SharedStanding::default(),
             undo_refused: world.undo_refused(),
             others,
             figures,
@@ -241,6 +244,12 @@ impl Published {
             (lo.min(a), hi.max(b))
         });
         if all.0.cmple(all.1).all() { all } else { self.transform().bounds(self.mesh.bounds()) }
+    }
+
+    /// Returns true if this daemon's person only looks on at a shared sculpture.
+    pub fn looks_on(&self) -> bool {
+        let person = self.people.as_ref().and_then(|people| people.person(people.own));
+        person.is_some_and(|person| person.role == PersonRole::Viewer)
     }
 
     /// Returns one hash of all objects; the cost grows with their size.

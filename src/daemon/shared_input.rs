@@ -4,11 +4,12 @@
 use std::sync::Arc;
 
 use crate::command_queue::QueuedCommand;
-use crate::people::{OwnInput, PeopleHere};
+use crate::people::{OwnInput, PeopleHere, SharedEnd, SharedStanding};
 use crate::session::SessionWriter;
 use crate::session::writer::WriterThread;
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
 
 /// The ordered input of one tick.
@@ -20,8 +21,11 @@ pub struct SharedTick {
     pub samples: Vec<Sample>,
     /// In the order in which they are stepped.
     pub commands: Vec<Command>,
-    /// Indices of the local commands among them, in order.
-    pub own: Vec<usize>,
+    /// Indices of the local commands among them, in order, and the number that
+    /// [`SharedInput::submit`] gave each.
+    pub own: Vec<(usize, u64)>,
+    /// Numbers of local commands that the host refused.
+    pub refused: Vec<u64>,
 }
 
 /// A session that records a shared world from the state at which this replica joined.
@@ -35,17 +39,23 @@ pub enum NextTick {
     /// Step this tick.
     Step(SharedTick),
     /// Replace the world: the replica has joined again. If the session is recorded, it continues in
-    /// another file, which begins with that world.
-    World(Box<World>, Option<SharedJournal>),
+    /// another file, which begins with that world. Local commands with lower numbers than the last
+    /// value are in it already, or lost.
+    World(Box<World>, Option<SharedJournal>, u64),
 }
 
 /// A sculpture shared by several daemons. The tick thread calls it; no method waits.
 pub trait SharedInput: Send + std::fmt::Debug {
-    /// Returns true if a command of this daemon cannot be shared; it is then not submitted.
-    fn refuses(&mut self, command: &QueuedCommand) -> bool;
-    /// Submits the local input of one tick, once a tick, and empties both lists. `world`: the
-    /// loop's.
-    fn submit(&mut self, world: &World, samples: &mut Vec<Sample>, commands: &mut Vec<Command>);
+    /// Why a command of this daemon is not submitted; `None`: it is.
+    fn refusal(&mut self, command: &QueuedCommand) -> Option<SceneError>;
+    /// Submits the local input of one tick, once a tick, and empties both lists. Returns the number
+    /// of the first command; the others' follow. `world`: the loop's.
+    fn submit(
+        &mut self,
+        world: &World,
+        samples: &mut Vec<Sample>,
+        commands: &mut Vec<Command>,
+    ) -> u64;
     /// Returns the next action.
     fn next(&mut self, world: &World) -> NextTick;
     /// Called after the tick of [`NextTick::Step`].
@@ -57,6 +67,12 @@ pub trait SharedInput: Send + std::fmt::Debug {
     fn people(&self) -> Arc<PeopleHere>;
     /// Returns the counts of the local input.
     fn own_input(&self) -> OwnInput;
+    /// Returns the state of the connection.
+    fn standing(&self) -> SharedStanding;
+    /// The run ends: what is still on its way is delivered, and what cannot be is stepped here.
+    fn close(&mut self);
+    /// After [`SharedInput::close`]: how it ended, once it has.
+    fn closed(&self) -> Option<SharedEnd>;
     /// Returns true if this daemon orders the input. Only that daemon starts the one-time jobs of a
     /// step.
     fn hosts(&self) -> bool;

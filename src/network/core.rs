@@ -3,11 +3,14 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use crate::keyring::Entropy;
+use crate::keyring::{Entropy, Invitation};
+use crate::membership::SignedMembership;
 use crate::outbox::Outbox;
 use crate::replica_log::ReplicaLog;
+use crate::seal::Secret;
 use crate::wire::frame::{Frame, PersonId, Role};
-use crate::wire::message::{Address, AmongHeirs, FromHost, FromMember, Greeting, Nonce};
+use crate::wire::greeting::Greeting;
+use crate::wire::message::{Address, AmongHeirs, FromHost, FromMember, Nonce};
 
 /// Microseconds between two messages to one receiver while something happens.
 pub const SEND_US: u64 = 50_000;
@@ -56,6 +59,8 @@ pub enum Event {
     },
     /// This station hosts from now on, or no longer.
     Hosting(bool),
+    /// This station looked for a host, and there is none: it may host.
+    NobodyHosts,
     /// The own world differs from the host's after a frame; a checkpoint will follow.
     Differs {
         /// The frame.
@@ -69,6 +74,30 @@ pub enum Event {
     Refused(String),
 }
 
+/// Another sculpture of the same name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OtherSculpture {
+    /// Its number.
+    pub sculpture: u64,
+    /// Number of people who are connected.
+    pub here: u8,
+    /// Seconds since it was first shared.
+    pub age_s: u32,
+}
+
+impl std::fmt::Display for OtherSculpture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (people, minutes) = (self.here, self.age_s / 60);
+        let people = if people == 1 { "1 person".into() } else { format!("{people} people") };
+        write!(f, "{:08x} ({people}, since {minutes} min)", short_number(self.sculpture))
+    }
+}
+
+/// The number of a sculpture as a person sees and types it.
+pub fn short_number(sculpture: u64) -> u32 {
+    (sculpture >> 32) as u32
+}
+
 /// The parts that all phases share.
 pub struct Core {
     /// The own name on the network.
@@ -79,6 +108,22 @@ pub struct Core {
     pub role: Role,
     /// The own number; 0 before the first entry.
     pub person: PersonId,
+    /// The key with which the station greets and hosts.
+    pub invitation: Invitation,
+    /// The newest list of members that the station knows.
+    pub members: Option<SignedMembership>,
+    /// For those who may take over: the key of the group.
+    pub group: Option<Secret>,
+    /// The sculpture; 0: not known yet.
+    pub sculpture: u64,
+    /// Time at which the sculpture was first shared, in seconds since 1970.
+    pub begun_s: u64,
+    /// Seconds since 1970 at time 0.
+    pub epoch_s: u64,
+    /// The person whose daemon hosts; 0: unknown.
+    pub host: PersonId,
+    /// Other sculptures that are shared under the same name.
+    pub others: Vec<OtherSculpture>,
     /// Ticks a second.
     pub rate_hz: u32,
     /// The ordered input.
@@ -91,6 +136,8 @@ pub struct Core {
     pub events: VecDeque<Event>,
     /// Random bytes.
     pub entropy: Entropy,
+    /// The station was sent away: nothing follows.
+    pub ended: bool,
 }
 
 impl std::fmt::Debug for Core {
@@ -98,6 +145,9 @@ impl std::fmt::Debug for Core {
         f.debug_struct("Core").field("name", &self.name).field("log", &self.log.reached()).finish()
     }
 }
+
+/// Reason for sending away a person whose invitation was withdrawn.
+pub const ENDED: &str = "the invitation was withdrawn";
 
 /// Seals messages among the possible successors, under a separate key, so that no two messages of
 /// the group share a nonce.
@@ -109,10 +159,8 @@ pub struct HeirsSeal {
 
 impl HeirsSeal {
     /// A seal with a key that is drawn for it.
-    pub fn new(group: &crate::seal::Secret, core: &mut Core) -> HeirsSeal {
-        let mut stream = [0; 8];
-        (core.entropy)(&mut stream);
-        let stream = u64::from_le_bytes(stream);
+    pub fn new(group: &Secret, core: &mut Core) -> HeirsSeal {
+        let stream = core.draw();
         HeirsSeal { stream, seal: group.heirs_seal(stream) }
     }
 }
@@ -130,6 +178,48 @@ impl Core {
     /// Tells something to the log.
     pub fn note(&mut self, text: impl Into<String>) {
         self.events.push_back(Event::Note(text.into()));
+    }
+
+    /// Ends the station's part: it is let in no more.
+    pub fn end(&mut self, why: impl Into<String>) {
+        self.ended = true;
+        self.events.push_back(Event::Refused(why.into()));
+    }
+
+    /// Seconds since 1970.
+    pub fn now_s(&self, now_us: u64) -> u64 {
+        self.epoch_s + now_us / 1_000_000
+    }
+
+    /// Draws a number that is not 0.
+    pub fn draw(&mut self) -> u64 {
+        let mut bytes = [0; 8];
+        (self.entropy)(&mut bytes);
+        u64::from_le_bytes(bytes).max(1)
+    }
+
+    /// Takes a list of members if it is newer than what is known.
+    pub fn take_members(&mut self, members: SignedMembership) -> bool {
+        let is_newer = members.list().version > self.members_version();
+        if is_newer {
+            self.members = Some(members);
+        }
+        is_newer
+    }
+
+    /// Checks that the list admits the key of this name for a person and a role now.
+    ///
+    /// # Errors
+    /// The text gives the reason.
+    pub fn admits(&self, key: &[u8; 8], name: &str, role: Role, now_us: u64) -> Result<(), String> {
+        let found = self.members.as_ref().and_then(|m| m.list().find(key));
+        let member_key = found.ok_or_else(|| ENDED.to_owned())?;
+        member_key.allows(name, role, self.now_s(now_us))
+    }
+
+    /// The version of the newest list of members that is known; 0: none.
+    pub fn members_version(&self) -> u64 {
+        self.members.as_ref().map_or(0, |m| m.list().version)
     }
 
     /// A number that is used once.
@@ -166,7 +256,7 @@ impl Core {
     }
 
     /// Sends to all who may take over.
-    pub fn among_heirs(&mut self, heirs: &mut HeirsSeal, message: AmongHeirs) {
+    pub fn among_heirs(&mut self, heirs: &mut HeirsSeal, message: &AmongHeirs) {
         let mut bytes = heirs.stream.to_le_bytes().to_vec();
         bytes.extend(heirs.seal.seal(&message.to_bytes()));
         self.send(To::Heirs, HEIRS, &bytes);

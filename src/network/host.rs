@@ -1,7 +1,8 @@
 //! The host: lets people in, orders input into frames, sends them, compares hashes.
 //!
 //! Laws kept here:
-//! * Nobody without a key gets further than a greeting, and only so many a second are answered.
+//! * Nobody without a key gets further than a greeting ([`crate::door`]); whoever is no longer in
+//!   the list of members is sent away, and the group of the heirs gets another key.
 //! * A batch is acknowledged when it is in a frame that a replica has too.
 //! * What a member may send is bounded in bytes a second, in batches that wait, and by its role;
 //!   what goes beyond is dropped, counted and told.
@@ -11,23 +12,23 @@ use std::sync::Arc;
 
 use crate::acknowledgement::Acknowledgements;
 use crate::comparison::HashComparison;
-use crate::core::{Core, Event, HeirsSeal, IDLE_US, LOST_US, RoundTrip, To, ms};
+use crate::core::{Core, ENDED, Event, HeirsSeal, IDLE_US, LOST_US, ms};
+use crate::door::{Door, Greeted};
+use crate::heirs::Heard;
 use crate::held_checkpoint::{HeldCheckpoint, drop_old, is_recent, people_at};
 use crate::host_limits::{
-    ALONE_US, BUSY_US, GONE_US, GREETINGS, HERE_ALREADY, MAX_MEMBERS, MAX_WAITING, PATIENCE,
-    REST_US,
+    ALONE_US, BUSY_US, GONE_US, HERE_ALREADY, MAX_MEMBERS, MEMBERS_US, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, Greeted, JoinedMember, PER_MESSAGE, SenderLimits, bounded, drop_silent, fitting,
-    note_departures, until_next,
+    BatchQueue, JoinedMember, PER_MESSAGE, bounded, drop_silent, fitting, not_admitted,
+    note_departures, number_for, until_next,
 };
-use crate::keyring::Keyring;
-use crate::rate_limit::RateLimit;
-use crate::seal::Secret;
+use crate::keyring::fresh;
+use crate::membership::SignedMembership;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
+use crate::wire::greeting::Greeting;
 use crate::wire::message::{
-    Address, AmongHeirs, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Offer, Reached,
-    Term, VERSION,
+    Address, AmongHeirs, Entry, FromHost, FromMember, HeirsWord, NOT_ENTERED, Offer, Reached, Term,
 };
 
 /// The host's state.
@@ -35,14 +36,14 @@ use crate::wire::message::{
 pub struct Host {
     /// This turn.
     pub term: Term,
-    keyring: Keyring,
-    group: Secret,
     heirs: HeirsSeal,
-    greeted: BTreeMap<Address, Greeted>,
+    /// Challenges of others, and when they were heard.
+    heard: Heard,
+    door: Door,
     members: BTreeMap<Address, JoinedMember>,
     waiting: BTreeMap<PersonId, BatchQueue>,
     arrivals: Vec<Arrival>,
-    strangers: RateLimit,
+    looked_us: u64,
     acknowledgements: Acknowledgements,
     /// The tick that was due at this time.
     epoch: (u64, u64),
@@ -60,25 +61,23 @@ pub struct Host {
     at_rest: bool,
     alone_since_us: Option<u64>,
     present_us: u64,
-    /// Datagrams that nobody with a key can have sent.
-    pub forged: u64,
 }
 
 impl Host {
     /// A host whose log is that of `core`, in a new turn.
-    pub fn new(core: &mut Core, keyring: Keyring, group: Secret, term: Term, now_us: u64) -> Host {
+    pub fn new(core: &mut Core, term: Term, now_us: u64) -> Host {
         core.log.begin_turn(term);
         let first = term.number == 1;
+        let group = core.group.get_or_insert_with(|| fresh(&mut core.entropy)).clone();
         let mut host = Host {
             term,
             heirs: HeirsSeal::new(&group, core),
-            keyring,
-            group,
-            greeted: BTreeMap::new(),
+            heard: Heard::default(),
+            door: Door::new(now_us),
             members: BTreeMap::new(),
             waiting: BTreeMap::new(),
             arrivals: Vec::new(),
-            strangers: RateLimit::new(GREETINGS.0, GREETINGS.1, now_us),
+            looked_us: now_us,
             acknowledgements: Acknowledgements::default(),
             epoch: (core.log.tick(), now_us),
             last_input_us: now_us,
@@ -93,7 +92,6 @@ impl Host {
             // The first host has nobody to wait for.
             alone_since_us: first.then_some(0),
             present_us: 0,
-            forged: 0,
         };
         // This host acknowledges the log entries that the previous one did not.
         for (person, applied) in core.log.people() {
@@ -107,72 +105,97 @@ impl Host {
         }
         core.outbox.begin_after(core.log.applied(core.person));
         core.events.push_back(Event::Entered { person: core.person, rate_hz: core.rate_hz });
+        core.host = core.person;
         core.events.push_back(Event::Hosting(true));
         host
     }
 
-    /// Tells at once that it is here.
-    pub fn present(&mut self) {
+    /// Answers the challenge at once.
+    pub fn present(&mut self, challenge: u64, now_us: u64) {
+        self.heard.take(challenge, now_us);
         self.present_us = 0;
     }
 
-    /// Returns the data that a successor needs.
-    pub fn succession(&self) -> (Keyring, Secret) {
-        (self.keyring.clone(), self.group.clone())
+    /// Takes a greeting. True: another host of the same sculpture goes on, and this one does not.
+    pub fn greeting(
+        &mut self,
+        core: &mut Core,
+        from: Address,
+        greeting: &Greeting,
+        now_us: u64,
+    ) -> bool {
+        match greeting {
+            Greeting::Hello(hello) => {
+                let about = (self.term, 1 + self.members.len().min(254) as u8);
+                self.door.hello(core, from, hello, about, now_us);
+                false
+            }
+            Greeting::Challenge(challenge) => {
+                self.door.other_host(core, from, challenge, self.term, now_us)
+            }
+            Greeting::Refused { to, .. } => {
+                self.door.strangers_host(core, to);
+                false
+            }
+        }
     }
 
-    /// Takes a greeting.
-    pub fn greeting(&mut self, core: &mut Core, from: Address, greeting: &Greeting, now_us: u64) {
-        let Greeting::Hello { version, nonce, key } = *greeting else { return };
-        if !self.strangers.take(1.0, now_us) {
+    /// Sends everybody to the host that stays.
+    pub fn step_down(&mut self, core: &mut Core) {
+        let all: Vec<Address> = self.members.keys().copied().collect();
+        for to in all {
+            self.dismiss(core, to, "another host has a later turn: join again");
+        }
+    }
+
+    /// Takes a list of members. Members that are not in it are sent away; all others receive it.
+    pub fn take_members(&mut self, core: &mut Core, members: SignedMembership, now_us: u64) {
+        if !core.take_members(members) {
             return;
         }
-        let refuse = |core: &mut Core, reason: String| {
-            core.note(format!("{from:016x} was not let in: {reason}"));
-            core.greet(To::Peer(from), &Greeting::Refused { to: nonce, reason });
-        };
-        if version != VERSION {
-            let reason = format!("the host speaks version {VERSION}, and this is {version}");
-            return refuse(core, reason);
+        let group = fresh(&mut core.entropy);
+        self.heirs = HeirsSeal::new(&group, core);
+        core.group = Some(group);
+        self.door.greeted.clear();
+        self.look_at_members(core, now_us);
+    }
+
+    /// Sends away who is not in the list, or no longer; tells the others of a new list.
+    fn look_at_members(&mut self, core: &mut Core, now_us: u64) {
+        self.looked_us = now_us;
+        let Some(members) = core.members.clone() else { return };
+        if !members.list().may_host(&core.invitation.secret.public(), core.now_s(now_us)) {
+            return core.end(ENDED);
         }
-        let Some(invitation) = self.keyring.find(&key).cloned() else {
-            return refuse(core, "the key is not one of this sculpture".into());
-        };
-        self.greeted.retain(|_, g| now_us < g.at_us + GONE_US);
-        if self.greeted.len() >= MAX_MEMBERS {
-            return refuse(core, "too many greet at once".into());
+        for (to, why) in not_admitted(&self.members, core, now_us) {
+            self.dismiss(core, to, &why);
         }
-        // A greeting that is repeated, because the way is long, has the same answer.
-        let known = self.greeted.get(&from).filter(|g| g.nonces.0 == nonce);
-        let own: Nonce = known.map_or_else(|| core.nonce(), |g| g.nonces.1);
-        let (up, down) = invitation.secret.seals(&nonce, &own);
-        let proof = invitation.secret.proof(&nonce, &own, &self.term);
-        let (nonces, at_us, term) = ((nonce, own), now_us, self.term);
-        self.greeted.insert(from, Greeted { up, down, invitation, nonces, at_us });
-        core.greet(To::Peer(from), &Greeting::Challenge { to: nonce, nonce: own, term, proof });
+        let version = members.list().version;
+        for (to, m) in &mut self.members {
+            if m.knows < version && !m.waits && now_us >= m.told_members_us + MEMBERS_US {
+                m.told_members_us = now_us;
+                let group = core.group.as_ref().filter(|_| m.role == Role::Sculptor).map(|g| g.0);
+                let members = members.to_bytes();
+                core.down(*to, &mut m.down, &FromHost::Members { members, group });
+            }
+        }
     }
 
     /// Takes a sealed message.
     pub fn receive(&mut self, core: &mut Core, from: Address, sealed: &[u8], now_us: u64) {
-        if let Some(greeted) = self.greeted.get(&from)
+        if let Some(greeted) = self.door.greeted.get_mut(&from)
             && let Some(plain) = greeted.up.open(sealed)
         {
             let message = FromMember::from_bytes(&plain);
             if let (Ok(FromMember::Join { name, role, reached }), Some(greeted)) =
-                (message, self.greeted.remove(&from))
+                (message, self.door.greeted.remove(&from))
             {
                 self.join(core, from, greeted, (name, role), reached, now_us);
             }
             return;
         }
-        let Some(member) = self.members.get_mut(&from) else {
-            self.forged += 1;
-            return;
-        };
-        let Some(plain) = member.up.open(sealed) else {
-            self.forged += 1;
-            return;
-        };
+        let Some(member) = self.members.get_mut(&from) else { return };
+        let Some(plain) = member.up.open(sealed) else { return };
         if !member.limits.bytes.take(plain.len() as f64, now_us) {
             return self.violation(core, from, "sends more than is allowed", now_us);
         }
@@ -213,15 +236,12 @@ impl Host {
         now_us: u64,
     ) {
         self.members.remove(&from);
-        let number = self.arrivals.iter().find(|a| a.name == name).map(|a| a.person);
-        let number = number.or_else(|| {
-            let next = core.log.number(&name)?;
-            let taken = |n: PersonId| self.arrivals.iter().any(|a| a.person == n);
-            (next..=254).find(|n| !taken(*n) && (*n == next || core.log.person(*n).is_none()))
-        });
+        let number = number_for(&name, &self.arrivals, &core.log);
         let clean = !name.trim().is_empty() && !name.chars().any(char::is_control);
         let there = |m: &JoinedMember| m.name == name && now_us < m.heard_us + LOST_US * 2;
-        let refused = match (greeted.invitation.allows(&name, role), number) {
+        let key = greeted.member_key.key.name();
+        let allowed = core.admits(&key, &name, role, now_us);
+        let refused = match (allowed, number) {
             (Err(why), _) => Some(why),
             _ if !clean => Some("a name is text without control characters".into()),
             _ if name == core.name || self.members.values().any(there) => {
@@ -246,25 +266,11 @@ impl Host {
             self.arrivals.push(arrival);
         }
         let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
-        let member = JoinedMember {
-            person,
-            name,
-            role,
-            up: greeted.up,
-            down: greeted.down,
-            heard_us: now_us,
-            waits: !resumes,
-            have: resumes.then(|| reached.map_or(core.log.last(), |r| r.1)),
-            first: reached.map_or(core.log.last(), |r| r.1),
-            sent: reached.map_or(core.log.last(), |r| r.1),
-            progress_us: now_us,
-            wanted: Default::default(),
-            next_us: now_us,
-            trip: RoundTrip::default(),
-            limits: SenderLimits::new(now_us),
-            violations: 0,
-            told_us: 0,
-        };
+        let first = reached.map_or(core.log.last(), |r| r.1);
+        let who = (person, name, role);
+        // The answer to its greeting had the list.
+        let mut member = JoinedMember::new(who, greeted, core.members_version(), first, now_us);
+        (member.waits, member.have) = (!resumes, resumes.then_some(first));
         self.members.insert(from, member);
         if resumes {
             let people = core.log.people();
@@ -285,7 +291,6 @@ impl Host {
         offer: Option<Offer>,
         people: Vec<(Arrival, u64)>,
     ) {
-        let succession = (self.group.0.to_vec(), self.keyring.to_bytes());
         let Some(member) = self.members.get_mut(&to) else { return };
         member.waits = false;
         if let Some(index) = offer {
@@ -294,13 +299,14 @@ impl Host {
         let waiting = self.waiting.get(&member.person);
         let entry = Entry {
             person: member.person,
+            host: core.person,
             term: self.term,
             rate_hz: core.rate_hz,
             applied: waiting.map_or_else(|| core.log.applied(member.person), |w| w.received),
             offer,
             people,
             turns: core.log.turns().to_vec(),
-            succession: (member.role == Role::Sculptor).then_some(succession),
+            group: core.group.as_ref().filter(|_| member.role == Role::Sculptor).map(|g| g.0),
         };
         core.down(to, &mut member.down, &FromHost::Entry(Box::new(entry)));
     }
@@ -360,6 +366,16 @@ impl Host {
                 self.members.remove(&from);
                 core.note(format!("'{name}' leaves"));
             }
+            FromMember::Members(bytes) => {
+                let owner = core.invitation.owner;
+                match SignedMembership::from_bytes(&bytes, &owner) {
+                    Ok(members) => self.take_members(core, members, now_us),
+                    Err(_) => {
+                        self.violation(core, from, "sends a list that is not the owner's", now_us)
+                    }
+                }
+            }
+            FromMember::KnowsMembers(version) => member.knows = member.knows.max(version),
             FromMember::Join { .. } => self.violation(core, from, "joins twice", now_us),
         }
     }
@@ -371,29 +387,7 @@ impl Host {
         }
         let person = member.person;
         let waiting = self.waiting.entry(person).or_default();
-        let mut fault = None;
-        for mut batch in batches {
-            if let Some(what) = crate::policy::refused(&batch) {
-                fault = Some(what);
-                // The number is used up: what follows is not held back.
-                batch.commands.clear();
-                batch.samples.clear();
-            }
-            batch.person = person;
-            let (number, early) = (batch.number, waiting.early.len() + waiting.ready.len());
-            if number > waiting.received && number <= waiting.received + MAX_WAITING as u64 {
-                if let Some(what) = member.limits.excess(&batch, early, now_us) {
-                    fault = Some(what);
-                    break;
-                }
-                waiting.early.insert(number, batch);
-            }
-        }
-        while let Some(batch) = waiting.early.remove(&(waiting.received + 1)) {
-            waiting.received += 1;
-            waiting.ready.push_back(batch);
-        }
-        if let Some(what) = fault {
+        if let Some(what) = waiting.take(batches, &mut member.limits, person, now_us) {
             self.violation(core, from, what, now_us);
         }
     }
@@ -463,8 +457,14 @@ impl Host {
             if now_us >= self.epoch.1 + GONE_US {
                 note_departures(&mut self.arrivals, &self.members, core);
             }
-            core.among_heirs(&mut self.heirs, AmongHeirs::Host { term: self.term });
+            let (challenge, heard) = (0, self.heard.recent(now_us));
+            let word = HeirsWord::Host { term: self.term };
+            core.among_heirs(&mut self.heirs, &AmongHeirs { challenge, heard, word });
         }
+        if now_us >= self.looked_us + MEMBERS_US {
+            self.look_at_members(core, now_us);
+        }
+        self.door.look(core, now_us);
         let due: Vec<Address> =
             self.members.iter().filter(|(_, m)| now_us >= m.next_us).map(|m| *m.0).collect();
         for to in due {

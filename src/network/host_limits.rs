@@ -3,12 +3,21 @@
 /// People in one sculpture at once.
 pub const MAX_MEMBERS: usize = 64;
 /// Bytes that a member may send at once, and a second: a command with a mesh, then strokes.
-pub const BYTES: (f64, f64) = (24e6, 48e3);
+pub const BYTES: (f64, f64) = (24e6, 512e3);
+/// Of these a member uses this share for what is large: the rest is for strokes.
+pub const LARGE_SHARE: f64 = 0.8;
 /// Samples, commands and batches of a member that are taken at once, and a second: what was given
 /// while the network was gone for a while, then a person with several devices.
 pub const ENTRIES: (f64, f64) = (20e3, 2e3);
-/// Greetings that are answered at once, and a second, of all strangers together.
-pub const GREETINGS: (f64, f64) = (64.0, 20.0);
+/// Refusals of greetings that are sent at once, and a second, to all strangers together.
+pub const REFUSALS: (f64, f64) = (64.0, 20.0);
+/// Signatures of greetings that are checked at once, and a second: a tenth of a processor's time.
+pub const CHECKS: (f64, f64) = (500.0, 500.0);
+/// Microseconds between two looks for other hosts of the same name.
+pub const LOOK_US: u64 = 1_000_000;
+/// Microseconds between two looks whether an invitation has ended, and between two words about a
+/// new list of members to one who does not know it.
+pub const MEMBERS_US: u64 = 500_000;
 /// Batches of one person that wait for their ticks.
 pub const MAX_WAITING: usize = 4096;
 /// Violations after which a member is sent away.

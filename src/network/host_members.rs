@@ -4,31 +4,21 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use crate::core::{Core, IDLE_US, RoundTrip, SEND_US};
+use crate::door::Greeted;
 use crate::host_limits::{BYTES, ENTRIES, GONE_US, MAX_WAITING, MAX_WANTED};
-use crate::keyring::Invitation;
+use crate::membership::MemberKey;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
 use crate::wire::frame::{Arrival, Batch, Frame, PersonId, Role};
 use crate::wire::frame_codec::frames_to_bytes;
-use crate::wire::message::{Address, Nonce};
+use crate::wire::message::Address;
 
 /// Frames of one message, and of their input's entries.
 pub const PER_MESSAGE: (usize, usize) = (64, 2048);
 
 /// Samples, commands and batches of one person and one frame; one batch may go beyond.
 const PER_FRAME: usize = 128;
-
-/// A station that has said hello and may join next.
-#[derive(Debug)]
-pub struct Greeted {
-    pub up: Seal,
-    pub down: Seal,
-    pub invitation: Invitation,
-    /// The member's, and the host's.
-    pub nonces: (Nonce, Nonce),
-    pub at_us: u64,
-}
 
 /// Limits of a member's messages.
 #[derive(Debug)]
@@ -60,6 +50,11 @@ impl SenderLimits {
 /// Who joined.
 #[derive(Debug)]
 pub struct JoinedMember {
+    /// Permissions of its key when it joined; the newest list decides.
+    pub member_key: MemberKey,
+    /// Version of the list of members that it has confirmed, and time of the last message about it.
+    pub knows: u64,
+    pub told_members_us: u64,
     pub person: PersonId,
     pub name: String,
     pub role: Role,
@@ -85,6 +80,38 @@ pub struct JoinedMember {
 }
 
 impl JoinedMember {
+    /// A member that has the frames up to `first`, and the list of members of this version.
+    pub fn new(
+        (person, name, role): (PersonId, String, Role),
+        greeted: Greeted,
+        knows: u64,
+        first: u64,
+        now_us: u64,
+    ) -> JoinedMember {
+        JoinedMember {
+            member_key: greeted.member_key,
+            knows,
+            told_members_us: 0,
+            person,
+            name,
+            role,
+            up: greeted.up,
+            down: greeted.down,
+            heard_us: now_us,
+            waits: true,
+            have: None,
+            first,
+            sent: first,
+            progress_us: now_us,
+            wanted: Default::default(),
+            next_us: now_us,
+            trip: RoundTrip::default(),
+            limits: SenderLimits::new(now_us),
+            violations: 0,
+            told_us: 0,
+        }
+    }
+
     /// Chunks of the checkpoint are wanted; of too many the last ones are not sent.
     pub fn want(&mut self, first: u32, count: u32) {
         self.wanted.extend(first..first.saturating_add(count.min(MAX_WANTED)));
@@ -106,6 +133,65 @@ pub struct BatchQueue {
     pub received: u64,
     pub ready: VecDeque<Batch>,
     pub early: BTreeMap<u64, Batch>,
+}
+
+impl BatchQueue {
+    /// Takes a person's batches. Returns why some of them are not taken.
+    pub fn take(
+        &mut self,
+        batches: Vec<Batch>,
+        limits: &mut SenderLimits,
+        person: PersonId,
+        now_us: u64,
+    ) -> Option<&'static str> {
+        let mut fault = None;
+        for mut batch in batches {
+            if let Some(what) = crate::policy::refused(&batch) {
+                fault = Some(what);
+                // The number is used up: what follows is not held back.
+                batch.commands.clear();
+                batch.samples.clear();
+            }
+            batch.person = person;
+            let (number, early) = (batch.number, self.early.len() + self.ready.len());
+            if number > self.received && number <= self.received + MAX_WAITING as u64 {
+                if let Some(what) = limits.excess(&batch, early, now_us) {
+                    fault = Some(what);
+                    break;
+                }
+                self.early.insert(number, batch);
+            }
+        }
+        while let Some(batch) = self.early.remove(&(self.received + 1)) {
+            self.received += 1;
+            self.ready.push_back(batch);
+        }
+        fault
+    }
+}
+
+/// Members that the list does not admit any more, each with the reason.
+pub fn not_admitted(
+    members: &BTreeMap<Address, JoinedMember>,
+    core: &Core,
+    now_us: u64,
+) -> Vec<(Address, String)> {
+    let refused = members.iter().filter_map(|(to, m)| {
+        let key = m.member_key.key.name();
+        Some((*to, core.admits(&key, &m.name, m.role, now_us).err()?))
+    });
+    refused.collect()
+}
+
+/// The number of a person of this name: a known one, or the next that is free. `arrivals`: those
+/// who are not in the log yet.
+pub fn number_for(name: &str, arrivals: &[Arrival], log: &ReplicaLog) -> Option<PersonId> {
+    let waiting = arrivals.iter().find(|a| a.name == name).map(|a| a.person);
+    waiting.or_else(|| {
+        let next = log.number(name)?;
+        let taken = |n: PersonId| arrivals.iter().any(|a| a.person == n);
+        (next..=254).find(|n| !taken(*n) && (*n == next || log.person(*n).is_none()))
+    })
 }
 
 /// Microseconds until the next message to a member who lacks frames, while somebody gives input,

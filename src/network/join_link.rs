@@ -1,5 +1,5 @@
 //! An invitation as a link, to be sent in a message or shown as a QR code:
-//! `sculptd://join/NAME?key=KEY&role=ROLE&as=PERSON&connect=ENDPOINT`.
+//! `sculptd://join/NAME?key=KEY&owner=KEY&role=ROLE&as=PERSON&until=S&connect=ENDPOINT&sum=SUM`.
 //!
 //! Laws kept here:
 //! * Any holder of the link may join, because it contains the key. So no error and no `Debug`
@@ -11,8 +11,9 @@
 use std::fmt::Write;
 
 use crate::keyring::{Invitation, from_hex};
-use crate::seal::KEY;
+use crate::seal::{KEY, hex};
 use crate::wire::frame::{MAX_NAME, Role};
+use crate::wire::keys::PublicKey;
 
 /// Prefix of every link.
 pub const SCHEME: &str = "sculptd://";
@@ -47,6 +48,15 @@ pub enum BadLink {
     /// There is no key, or it is none.
     #[error("the key is missing or cut short: expected key= and {} hexadecimal digits", KEY * 2)]
     Key,
+    /// There is no key of the owner, or it is none.
+    #[error("the owner's key is missing or cut short: ask for a new link")]
+    Owner,
+    /// The time at which it ends is none.
+    #[error("the time at which it ends is not one: expected until= and seconds since 1970")]
+    Until,
+    /// The sum does not fit the rest.
+    #[error("a character of it is wrong or missing: copy the link as a whole")]
+    Sum,
     /// The role is none.
     #[error("the role is unknown: expected role=sculptor, role=viewer or role=device")]
     Role,
@@ -124,27 +134,38 @@ pub fn is_endpoint(text: &str) -> bool {
     parts && is_line(text, 256) && !text.contains(char::is_whitespace)
 }
 
+/// Four digits over a link, so that a wrong character in it is noticed.
+fn sum(link: &str) -> String {
+    hex(&ring::digest::digest(&ring::digest::SHA256, link.as_bytes()).as_ref()[..2])
+}
+
 impl JoinLink {
     /// The link. It holds the key.
     ///
     /// # Errors
     /// What [`JoinLink::read`] would say of it.
     pub fn write(&self) -> Result<String, BadLink> {
-        let Invitation { role, name: person, secret } = &self.invitation;
+        let Invitation { role, name: person, expires_s, secret, owner } = &self.invitation;
         let mut link = format!("{SCHEME}join/");
         encoded(&self.name, &mut link);
         link += "?key=";
         link += &secret.to_hex();
+        link += "&owner=";
+        link += &hex(&owner.0);
         link += "&role=";
         link += role.name();
         if let Some(person) = person {
             link += "&as=";
             encoded(person, &mut link);
         }
+        if let Some(until) = expires_s {
+            link += &format!("&until={until}");
+        }
         for endpoint in &self.connect {
             link += "&connect=";
             encoded(endpoint, &mut link);
         }
+        link += &format!("&sum={}", sum(&link));
         JoinLink::read(&link).map(|_| link)
     }
 
@@ -161,9 +182,14 @@ impl JoinLink {
         let head = text.get(..SCHEME.len()).filter(|h| h.eq_ignore_ascii_case(SCHEME));
         let path = head.and_then(|h| text[h.len()..].strip_prefix("join/"));
         let path = path.ok_or(BadLink::Scheme)?;
+        let (path, stated) = path.rsplit_once("&sum=").ok_or(BadLink::Sum)?;
+        if stated != sum(&format!("{SCHEME}join/{path}")) {
+            return Err(BadLink::Sum);
+        }
         let (name, query) = path.split_once('?').ok_or(BadLink::Key)?;
         let name = sculpture_name(&decoded(name)?).map_err(|_| BadLink::Name)?;
         let (mut key, mut role, mut person, mut connect) = (None, None, None, Vec::new());
+        let (mut owner, mut until) = (None, None);
         for part in query.split('&') {
             let (what, value) = part.split_once('=').ok_or(BadLink::Unknown)?;
             let value = decoded(value)?;
@@ -174,6 +200,8 @@ impl JoinLink {
                     let found = all.into_iter().find(|r| r.name() == value);
                     role.replace(found.ok_or(BadLink::Role)?).is_some()
                 }
+                "owner" => owner.replace(from_hex(&value).ok_or(BadLink::Owner)?).is_some(),
+                "until" => until.replace(value.parse().map_err(|_| BadLink::Until)?).is_some(),
                 "as" if is_line(&value, MAX_NAME) => person.replace(value).is_some(),
                 "as" => return Err(BadLink::Person),
                 "connect" if connect.len() < MAX_CONNECT && is_endpoint(&value) => {
@@ -188,7 +216,9 @@ impl JoinLink {
             }
         }
         let secret = key.ok_or(BadLink::Key)?;
-        let invitation = Invitation { role: role.ok_or(BadLink::Role)?, name: person, secret };
+        let owner = PublicKey(owner.ok_or(BadLink::Owner)?.0);
+        let role = role.ok_or(BadLink::Role)?;
+        let invitation = Invitation { role, name: person, expires_s: until, secret, owner };
         Ok(JoinLink { name, invitation, connect })
     }
 }
@@ -202,7 +232,9 @@ mod tests {
     fn link() -> JoinLink {
         let secret = Secret([0xa7; KEY]);
         let name = Some("Zoë & Bob = 100%".into());
-        let invitation = Invitation { role: Role::Viewer, name, secret };
+        let owner = PublicKey([0xb8; KEY]);
+        let invitation =
+            Invitation { role: Role::Viewer, name, expires_s: Some(99), secret, owner };
         let connect = vec!["tcp/studio.local:7447".into(), "tcp/[2001:db8::1]:7447".into()];
         JoinLink { name: "dragon-2".into(), invitation, connect }
     }
@@ -212,7 +244,8 @@ mod tests {
         let text = link().write().expect("a link");
         assert_eq!(JoinLink::read(&text), Ok(link()));
         assert!(text.starts_with("sculptd://join/dragon-2?key=a7a7"));
-        assert!(text.contains("&role=viewer&as=Zo%C3%AB%20%26%20Bob%20%3D%20100%25&connect=tcp/"));
+        let rest = "&role=viewer&as=Zo%C3%AB%20%26%20Bob%20%3D%20100%25&until=99&connect=tcp/";
+        assert!(text.contains(rest));
         // As a person pastes it.
         assert_eq!(
             JoinLink::read(&format!(" {}\n", text.replace("sculptd", "SCULPTD"))),
@@ -226,7 +259,12 @@ mod tests {
     fn a_broken_link_is_refused_by_what_is_wrong_with_it() {
         let text = link().write().expect("a link");
         let key = "a7".repeat(KEY);
-        let change = |from: &str, to: &str| JoinLink::read(&text.replacen(from, to, 1));
+        // As one who writes links of another kind would send it: with the sum that fits.
+        let summed = |text: &str| {
+            let bare = text.rsplit_once("&sum=").map_or(text, |parts| parts.0);
+            JoinLink::read(&format!("{bare}&sum={}", sum(bare)))
+        };
+        let change = |from: &str, to: &str| summed(&text.replacen(from, to, 1));
         assert_eq!(change("sculptd://join/", "https://join/"), Err(BadLink::Scheme));
         assert_eq!(change("join/", "leave/"), Err(BadLink::Scheme));
         assert_eq!(change("dragon-2", "dra/gon"), Err(BadLink::Name));
@@ -242,7 +280,17 @@ mod tests {
         assert_eq!(change("tcp/studio.local:7447", "studio"), Err(BadLink::Connect));
         assert_eq!(change("&role=", "&wish=1&role="), Err(BadLink::Unknown));
         assert_eq!(change("&role=", "&role=viewer&role="), Err(BadLink::Unknown));
-        assert_eq!(JoinLink::read(&text[..text.find('?').expect("a ?")]), Err(BadLink::Key));
+        assert_eq!(change(&"b8".repeat(KEY), "b8"), Err(BadLink::Owner));
+        assert_eq!(change(&format!("owner={}&", "b8".repeat(KEY)), ""), Err(BadLink::Owner));
+        assert_eq!(change("until=99", "until=soon"), Err(BadLink::Until));
+        assert_eq!(summed(&text[..text.find('?').expect("a ?")]), Err(BadLink::Key));
+        // Any other digit of the keys is noticed before anybody is asked.
+        for at in text.find("key=").expect("a key") + 4..text.find("&role").expect("a role") {
+            let mut wrong = text.clone();
+            let digit = if &text[at..=at] == "0" { "1" } else { "0" };
+            wrong.replace_range(at..=at, digit);
+            assert!(JoinLink::read(&wrong).is_err() || &text[at..=at] == digit, "at {at}");
+        }
         assert_eq!(JoinLink::read(&"x".repeat(MAX_LINK + 1)), Err(BadLink::Long));
         let crowd = JoinLink { connect: vec!["tcp/a:1".into(); MAX_CONNECT + 1], ..link() };
         assert_eq!(crowd.write(), Err(BadLink::Connect));

@@ -1,12 +1,17 @@
-//! Invitations: a key, the role that it gives, and the name that it is for, if for one only. The
-//! host keeps all of them in a folder, a file each, and gives a person the file of theirs.
+//! Invitations: a secret key, the role that it gives, for whom and until when. The owner of a
+//! sculpture keeps all of them in a folder, a file each, beside the owner's own key, and gives a
+//! person the file of theirs. The folder is the truth: a file that is deleted withdraws its
+//! invitation, and the running daemon of the owner signs and sends a new list of members
+//! ([`crate::membership`]).
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::seal::{KEY, Secret};
+use crate::membership::{MAX_KEYS, MemberKey, Membership, SignedMembership};
+use crate::seal::{KEY, Secret, hex};
 use crate::wire::frame::Role;
+use crate::wire::keys::PublicKey;
 
 /// Source of random bytes from outside: this crate has none.
 pub type Entropy = Box<dyn FnMut(&mut [u8]) + Send>;
@@ -18,8 +23,12 @@ pub struct Invitation {
     pub role: Role,
     /// The only name that it is for.
     pub name: Option<String>,
+    /// Seconds since 1970 at which it ends.
+    pub expires_s: Option<u64>,
     /// The key.
     pub secret: Secret,
+    /// The owner's key, by which the guest knows the host.
+    pub owner: PublicKey,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -28,7 +37,11 @@ struct Written {
     role: Role,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     name: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    expires_s: Option<u64>,
     key: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    owner: Option<String>,
 }
 
 /// Why keys cannot be had.
@@ -59,7 +72,14 @@ impl Invitation {
     /// [`KeyError`]
     pub fn read(path: &Path) -> Result<Invitation, KeyError> {
         let (written, secret) = read_key(path, |w: &Written| &w.key)?;
-        Ok(Invitation { role: written.role, name: written.name, secret })
+        let owner = written.owner.as_deref().and_then(from_hex);
+        let owner = owner.ok_or_else(|| {
+            let why = "it does not name the owner's key, as it is damaged or of an older version; \
+                       ask for a new one";
+            key_error(path, why)
+        })?;
+        let Written { role, name, expires_s, .. } = written;
+        Ok(Invitation { role, name, expires_s, secret, owner: PublicKey(owner.0) })
     }
 
     /// Writes a file that only its owner may read.
@@ -67,26 +87,32 @@ impl Invitation {
     /// # Errors
     /// [`KeyError::Io`]
     pub fn write(&self, path: &Path) -> Result<(), KeyError> {
-        let (name, key) = (self.name.clone(), self.secret.to_hex());
         let what = "Whoever holds this file may join. Give it over a channel that you trust.";
-        write_key(path, what, &Written { role: self.role, name, key })
+        let written = Written {
+            role: self.role,
+            name: self.name.clone(),
+            expires_s: self.expires_s,
+            key: self.secret.to_hex(),
+            owner: Some(hex(&self.owner.0)),
+        };
+        write_key(path, what, &written)
     }
 
-    /// Checks that a person of this name may have this role.
+    /// As the list of members has it.
+    pub fn member_key(&self) -> MemberKey {
+        let key = self.secret.public();
+        let person = self.name.as_ref().map(|name| MemberKey::code_of(&key, name));
+        MemberKey { key, role: self.role, person, expires_s: self.expires_s }
+    }
+
+    /// Checks that a person of this name may have this role at this time.
     ///
     /// # Errors
     /// The text gives the reason.
-    pub fn allows(&self, name: &str, role: Role) -> Result<(), String> {
-        if self.role != Role::Sculptor && self.role != role {
-            return Err(format!(
-                "the key is for a {}, and a {} was asked for",
-                self.role.name(),
-                role.name()
-            ));
-        }
+    pub fn allows(&self, name: &str, role: Role, now_s: u64) -> Result<(), String> {
         match &self.name {
             Some(only) if only != name => Err(format!("the key is for '{only}'")),
-            _ => Ok(()),
+            _ => self.member_key().allows(name, role, now_s),
         }
     }
 }
@@ -139,61 +165,186 @@ pub(crate) fn from_hex(text: &str) -> Option<Secret> {
     Some(Secret(secret))
 }
 
-/// All invitations of a sculpture.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Keyring(pub Vec<Invitation>);
+/// The owner's folder: the owner's key, and an invitation a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnerFolder {
+    path: PathBuf,
+    owner: Secret,
+    /// The invitations, in the order of their files' names.
+    pub invitations: Vec<(PathBuf, Invitation)>,
+    version: u64,
+}
 
-/// An invitation as a successor is given it.
+/// The file with the owner's key, and that with the version of the list. They are no invitations.
+const OWNER_FILE: &str = "owner.secret";
+const VERSION_FILE: &str = "members.version";
+
 #[derive(Serialize, Deserialize)]
-struct Carried(Role, Option<String>, [u8; KEY]);
+#[serde(deny_unknown_fields)]
+struct WrittenOwner {
+    key: String,
+}
 
-impl Keyring {
-    /// The invitations of a folder. Where it holds none, one for each role is made there:
-    /// `sculptor.key`, `viewer.key`, `device.key`. The second value says whether that was done.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenVersion {
+    version: u64,
+    digest: String,
+}
+
+impl OwnerFolder {
+    /// Opens a folder. Where there is none, it is made with the owner's key and one invitation for
+    /// each role: `sculptor.key`, `viewer.key`, `device.key`. The second value says whether
+    /// invitations were made.
     ///
     /// # Errors
     /// [`KeyError`]
-    pub fn of_folder(folder: &Path, entropy: &mut Entropy) -> Result<(Keyring, bool), KeyError> {
-        std::fs::create_dir_all(folder).map_err(|source| io(folder, source))?;
-        let entries = std::fs::read_dir(folder).map_err(|source| io(folder, source))?;
-        let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();
-        paths.retain(|p| p.extension().is_some_and(|e| e == "key"));
-        paths.sort();
-        if !paths.is_empty() {
-            let all: Result<Vec<_>, _> = paths.iter().map(|p| Invitation::read(p)).collect();
-            return Ok((Keyring(all?), false));
+    pub fn open(path: &Path, entropy: &mut Entropy) -> Result<(OwnerFolder, bool), KeyError> {
+        std::fs::create_dir_all(path).map_err(|source| io(path, source))?;
+        let own = path.join(OWNER_FILE);
+        let is_new = !own.exists();
+        if is_new {
+            let what = "Whoever holds this file owns the sculpture. Give it to nobody.";
+            write_key(&own, what, &WrittenOwner { key: fresh(entropy).to_hex() })?;
         }
-        let mut keyring = Keyring::default();
-        for role in [Role::Sculptor, Role::Viewer, Role::Device] {
-            let invitation = Invitation { role, name: None, secret: fresh(entropy) };
-            invitation.write(&folder.join(format!("{}.key", role.name())))?;
-            keyring.0.push(invitation);
+        let (_, owner) = read_key(&own, |w: &WrittenOwner| &w.key)?;
+        let public = owner.public();
+        let mut made = false;
+        if is_new {
+            // Files of an older version do not name the owner: the keys in them stay.
+            for file in key_files(path)? {
+                let (written, secret) = read_key(&file, |w: &Written| &w.key)?;
+                let Written { role, name, expires_s, .. } = written;
+                let invitation = Invitation { role, name, expires_s, secret, owner: public };
+                let beside = file.with_extension("key.new");
+                invitation.write(&beside)?;
+                std::fs::rename(&beside, &file).map_err(|source| io(&file, source))?;
+            }
+            if key_files(path)?.is_empty() {
+                made = true;
+                for role in [Role::Sculptor, Role::Viewer, Role::Device] {
+                    let secret = fresh(entropy);
+                    let (name, expires_s) = (None, None);
+                    let invitation = Invitation { role, name, expires_s, secret, owner: public };
+                    invitation.write(&path.join(format!("{}.key", role.name())))?;
+                }
+            }
         }
-        Ok((keyring, true))
+        let mut folder =
+            OwnerFolder { path: path.into(), owner, invitations: Vec::new(), version: 0 };
+        folder.read_invitations()?;
+        Ok((folder, made))
     }
 
-    /// The invitation whose key has this name.
-    pub fn find(&self, name: &[u8; 8]) -> Option<&Invitation> {
-        self.0.iter().find(|i| i.secret.name() == *name)
+    fn read_invitations(&mut self) -> Result<(), KeyError> {
+        let files = key_files(&self.path)?;
+        let read = |file: PathBuf| Invitation::read(&file).map(|invitation| (file, invitation));
+        self.invitations = files.into_iter().map(read).collect::<Result<_, _>>()?;
+        if let Some((file, _)) =
+            self.invitations.iter().find(|(_, i)| i.owner != self.owner.public())
+        {
+            return Err(key_error(file, "it is for the sculpture of another owner"));
+        }
+        if self.invitations.len() > MAX_KEYS {
+            let why = format!("at most {MAX_KEYS} invitations, and here are more");
+            return Err(key_error(&self.path, why));
+        }
+        self.version = self.next_version()?;
+        Ok(())
     }
 
-    /// Returns the invitation with which the host takes part itself: a sculptor's that is for
-    /// nobody by name. One that is for another person would give the host that person's identity.
-    pub fn of_host(&self) -> Option<&Invitation> {
-        self.0.iter().find(|i| i.role == Role::Sculptor && i.name.is_none())
+    /// The version of the list: one more than the last one, if the invitations have changed.
+    fn next_version(&self) -> Result<u64, KeyError> {
+        let path = self.path.join(VERSION_FILE);
+        let unsigned = self.list(0).signed(&self.owner).to_bytes();
+        let digest = hex(ring::digest::digest(&ring::digest::SHA256, &unsigned).as_ref());
+        let old = match std::fs::read_to_string(&path) {
+            Ok(text) => {
+                let read: WrittenVersion =
+                    toml::from_str(&text).map_err(|e| key_error(&path, e.message()))?;
+                Some(read)
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
+            Err(source) => return Err(io(&path, source)),
+        };
+        if let Some(old) = old.as_ref().filter(|old| old.digest == digest) {
+            return Ok(old.version);
+        }
+        let version = old.map_or(1, |old| old.version + 1);
+        let text = toml::to_string(&WrittenVersion { version, digest }).unwrap_or_default();
+        let written =
+            sculptd_geometry::io::write_beside(&path, |out| out.write_all(text.as_bytes()));
+        written.map_err(|e| key_error(&path, e.to_string()))?;
+        Ok(version)
     }
 
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let carried = |i: &Invitation| Carried(i.role, i.name.clone(), i.secret.0);
-        let all: Vec<_> = self.0.iter().map(carried).collect();
-        postcard::to_stdvec(&all).unwrap_or_default()
+    fn list(&self, version: u64) -> Membership {
+        let keys = self.invitations.iter().map(|(_, i)| i.member_key()).collect();
+        Membership { owner: self.owner.public(), version, keys }
     }
 
-    pub(crate) fn from_bytes(bytes: &[u8]) -> Keyring {
-        let all: Vec<Carried> = postcard::from_bytes(bytes).unwrap_or_default();
-        let read = |c: Carried| Invitation { role: c.0, name: c.1, secret: Secret(c.2) };
-        Keyring(all.into_iter().map(read).collect())
+    /// The list of members, signed.
+    pub fn membership(&self) -> SignedMembership {
+        self.list(self.version).signed(&self.owner)
     }
+
+    /// Reads the folder again: the new list, where invitations came, went or changed.
+    ///
+    /// # Errors
+    /// [`KeyError`]: the list stays as it was.
+    pub fn look_again(&mut self) -> Result<Option<SignedMembership>, KeyError> {
+        let mut read = OwnerFolder { invitations: Vec::new(), ..self.clone() };
+        read.read_invitations()?;
+        let changed = read.version != self.version;
+        *self = read;
+        Ok(changed.then(|| self.membership()))
+    }
+
+    /// The key with which the owner takes part.
+    pub fn of_owner(&self) -> Invitation {
+        let (owner, secret) = (self.owner.public(), self.owner.clone());
+        Invitation { role: Role::Sculptor, name: None, expires_s: None, secret, owner }
+    }
+
+    /// Adds an invitation as a file that is named after its role and person.
+    ///
+    /// # Errors
+    /// [`KeyError`]
+    pub fn add(
+        &mut self,
+        role: Role,
+        name: Option<String>,
+        expires_s: Option<u64>,
+        entropy: &mut Entropy,
+    ) -> Result<Invitation, KeyError> {
+        // Whatever the person's name is, the file's is one.
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let stem = match &name {
+            Some(name) => {
+                format!("{}-{}", role.name(), name.chars().map(plain).collect::<String>())
+            }
+            None => role.name().into(),
+        };
+        let free = (0..MAX_KEYS).map(|k| match k {
+            0 => self.path.join(format!("{stem}.key")),
+            k => self.path.join(format!("{stem}-{k}.key")),
+        });
+        let path = free.into_iter().find(|p| !p.exists());
+        let path = path.ok_or_else(|| key_error(&self.path, "it has too many invitations"))?;
+        let (secret, owner) = (fresh(entropy), self.owner.public());
+        let invitation = Invitation { role, name, expires_s, secret, owner };
+        invitation.write(&path)?;
+        self.read_invitations()?;
+        Ok(invitation)
+    }
+}
+
+fn key_files(folder: &Path) -> Result<Vec<PathBuf>, KeyError> {
+    let entries = std::fs::read_dir(folder).map_err(|source| io(folder, source))?;
+    let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();
+    paths.retain(|p| p.extension().is_some_and(|e| e == "key"));
+    paths.sort();
+    Ok(paths)
 }
 
 /// A new key.
@@ -219,57 +370,50 @@ mod tests {
 
     #[test]
     #[allow(clippy::disallowed_methods)] // A broken file is what is wanted.
-    fn a_folder_is_filled_once_and_read_afterwards() {
+    fn a_folder_is_filled_once_and_each_change_of_it_is_a_new_list() {
         let folder = tempfile::tempdir().expect("a folder");
-        let (made, new) = Keyring::of_folder(folder.path(), &mut counting()).expect("made");
-        assert!(new && made.0.len() == 3);
-        let (read, new) = Keyring::of_folder(folder.path(), &mut counting()).expect("read");
-        assert!(!new);
-        for invitation in &made.0 {
-            assert_eq!(read.find(&invitation.secret.name()), Some(invitation));
-        }
-        assert_eq!(Keyring::from_bytes(&read.to_bytes()), read);
+        let entropy = &mut counting();
+        let (mut own, made) = OwnerFolder::open(folder.path(), entropy).expect("made");
+        assert!(made && own.invitations.len() == 3);
+        let first = own.membership();
+        assert_eq!((first.list().version, first.list().keys.len()), (1, 3));
+        let (again, made) = OwnerFolder::open(folder.path(), entropy).expect("read");
+        assert_eq!((&again, made), (&own, false));
+        assert_eq!(own.look_again().expect("read"), None, "nothing has changed");
+        let bob = own.add(Role::Sculptor, Some("Bob".into()), Some(9), entropy).expect("added");
+        let list = own.membership();
+        assert_eq!((list.list().version, list.list().keys.len()), (2, 4));
+        let found = list.list().find(&bob.secret.public().name()).expect("in the list");
+        assert_eq!(found, bob.member_key());
+        std::fs::remove_file(folder.path().join("sculptor-Bob.key")).expect("deleted");
+        let list = own.look_again().expect("read").expect("another list");
+        assert_eq!((list.list().version, list.list().find(&bob.secret.public().name())), (3, None));
         #[cfg(unix)]
-        {
+        for file in ["viewer.key", "owner.secret"] {
             use std::os::unix::fs::PermissionsExt;
-            let file = folder.path().join("viewer.key");
-            let mode = file.metadata().expect("there").permissions().mode();
-            assert_eq!(mode & 0o077, 0, "others cannot read a key");
+            let mode = folder.path().join(file).metadata().expect("there").permissions().mode();
+            assert_eq!(mode & 0o077, 0, "others cannot read {file}");
         }
         std::fs::write(folder.path().join("bad.key"), "role = \"viewer\"\nkey = \"12\"\n")
             .expect("written");
-        let e = Keyring::of_folder(folder.path(), &mut counting()).expect_err("too short");
+        let e = own.look_again().expect_err("too short");
         assert!(e.to_string().contains("64 hexadecimal digits"), "{e}");
+        assert_eq!(own.invitations.len(), 3, "the list stays");
     }
 
     #[test]
-    fn the_host_never_takes_an_invitation_that_names_a_person() {
-        let of = |role, name: Option<&str>, key| Invitation {
-            role,
-            name: name.map(String::from),
-            secret: Secret([key; KEY]),
-        };
-        let named = of(Role::Sculptor, Some("Bob"), 1);
-        let viewer = of(Role::Viewer, None, 2);
-        let anyone = of(Role::Sculptor, None, 3);
-        assert_eq!(Keyring(vec![named.clone(), viewer.clone()]).of_host(), None);
-        let keyring = Keyring(vec![named, viewer, anyone.clone()]);
-        assert_eq!(keyring.of_host(), Some(&anyone));
-    }
-
-    #[test]
-    fn a_key_gives_its_role_and_less_but_never_more() {
-        let of = |role, name: Option<&str>| Invitation {
-            role,
-            name: name.map(String::from),
-            secret: Secret([1; KEY]),
-        };
-        let sculptor = of(Role::Sculptor, None);
-        for role in [Role::Sculptor, Role::Viewer, Role::Device] {
-            assert_eq!(sculptor.allows("Ada", role), Ok(()));
-            assert_eq!(of(Role::Viewer, None).allows("Ada", role).is_ok(), role == Role::Viewer);
-            assert_eq!(of(Role::Device, None).allows("Ada", role).is_ok(), role == Role::Device);
-        }
-        assert!(of(Role::Sculptor, Some("Bob")).allows("Ada", Role::Sculptor).is_err());
+    #[allow(clippy::disallowed_methods)] // A file of an older version is what is wanted.
+    fn a_folder_of_an_older_version_keeps_its_keys_and_gets_an_owner() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let key = "ab".repeat(KEY);
+        let old = format!("role = \"sculptor\"\nname = \"Bob\"\nkey = \"{key}\"\n");
+        std::fs::write(folder.path().join("b.key"), old).expect("written");
+        let e = Invitation::read(&folder.path().join("b.key")).expect_err("it names no owner");
+        assert!(e.to_string().contains("ask for a new one"), "{e}");
+        let (own, made) = OwnerFolder::open(folder.path(), &mut counting()).expect("read");
+        assert!(!made && own.invitations.len() == 1);
+        let (_, bob) = &own.invitations[0];
+        assert_eq!((bob.secret.to_hex(), bob.name.as_deref()), (key, Some("Bob")));
+        assert_eq!(bob.owner, own.of_owner().secret.public());
     }
 }

@@ -28,8 +28,11 @@
 pub mod acknowledgement;
 pub mod comparison;
 pub mod core;
+pub mod door;
 pub mod executor;
 pub mod fleet;
+pub mod handshake;
+pub mod heirs;
 pub mod held_checkpoint;
 pub mod host;
 pub mod host_limits;
@@ -39,7 +42,10 @@ pub mod keyring;
 #[cfg(feature = "zenoh")]
 pub mod live;
 pub mod local_echo;
+#[cfg(feature = "zenoh")]
+mod loop_messages;
 pub mod member;
+pub mod membership;
 pub mod outbox;
 #[cfg(feature = "zenoh")]
 pub mod people_here;
@@ -55,6 +61,8 @@ pub mod shared_error;
 #[cfg(feature = "zenoh")]
 pub mod shared_session;
 pub mod station;
+#[cfg(feature = "zenoh")]
+mod station_thread;
 #[cfg(feature = "zenoh")]
 pub mod transport;
 pub mod wire;

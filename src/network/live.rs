@@ -4,7 +4,7 @@
 //! The tick thread sends its input and steps the returned frames; it waits for neither thread. It
 //! does allocate a little for each of its samples that is shared.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,23 +13,26 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use crate::core::Event;
-use crate::executor::{Asked, Executor, HashView};
+use crate::executor::Executor;
+use crate::host_limits::{BYTES, LARGE_SHARE};
+use crate::keyring::OwnerFolder;
 use crate::local_echo::LocalEcho;
-use crate::people_here::{changes_people, own_input, people_here};
+use crate::loop_messages::{FromLoop, NumberedFrame, ToLoop, Told};
 use crate::policy;
-use crate::replica_worker::{Done, Job, work_on};
+use crate::replica_worker::work_on;
 use crate::shared_error::SharedError;
 use crate::shared_session::SharedSession;
 use crate::station::Station;
+use crate::station_thread::{StationThread, ThreadEnds};
 use crate::transport::Transport;
-use crate::wire::frame::{Frame, Mark, PersonId};
+use crate::wire::frame::{Batch, Frame};
 use crate::wire::samples::rounded;
 use sculptd_daemon::command_queue::QueuedCommand;
-use sculptd_daemon::people::{OwnInput, PeopleHere};
+use sculptd_daemon::people::{OwnInput, PeopleHere, PersonRole, SharedEnd, SharedStanding};
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
 
 /// Greatest number of messages between the threads; local input beyond it is reported as lost.
@@ -38,43 +41,19 @@ const WAITING: usize = 4096;
 const MAX_DEVICES: usize = 16;
 /// Time without an entry after which a host's refusal of the key is accepted.
 const ENOUGH: Duration = Duration::from_secs(3);
-/// Jobs of the worker beyond which no state is hashed: it misses a comparison.
-const MAX_JOBS: usize = 64;
-/// Interval of reports about the local input, in microseconds.
-const TOLD_US: u64 = 100_000;
-/// Compared states that are kept for a dump.
-const KEPT_VIEWS: usize = 8;
-
-/// From the tick thread.
-enum FromLoop {
-    Input(Vec<Sample>, Vec<Command>),
-    Stepped { frame: Arc<Frame>, asked: Box<Asked>, at_rest: bool },
-}
-
-/// To the tick thread.
-enum ToLoop {
-    Frame(Arc<Frame>),
-    World(Box<World>, Executor, Option<SharedJournal>),
-    Entered(PersonId, u32),
-    /// Bytes of a checkpoint that have come.
-    Coming(u64),
-    People(Arc<PeopleHere>),
-    Input(OwnInput),
-}
-
-/// Reports to the run about its shared sculpture.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Told {
-    /// For a person.
-    Note(String),
-    /// The host admits nobody any more.
-    Refused(String),
-    /// The sculpture cannot be recorded.
-    NoSession(String),
-}
-
 /// A world of the others, and the session that records it.
 pub type EnteredWorld = (Box<World>, Option<SharedJournal>);
+
+/// Result of looking for a host.
+#[derive(Debug)]
+pub enum Entered {
+    /// The sculpture of the others, and the host's rate.
+    World(EnteredWorld, u32),
+    /// No world, and the host's rate: a device sees none.
+    Device(u32),
+    /// Nobody hosts: [`Shared::host`] begins to.
+    NobodyHosts,
+}
 
 /// Settings of a shared run.
 #[derive(Debug)]
@@ -85,6 +64,8 @@ pub struct SharedSettings {
     pub dumps: PathBuf,
     /// Recording of each world received as a checkpoint.
     pub session: Option<SharedSession>,
+    /// The invitations, if this daemon's person owns the sculpture.
+    pub folder: Option<OwnerFolder>,
 }
 
 /// The tick thread's end.
@@ -96,7 +77,19 @@ pub struct SharedLink {
     echo: LocalEcho,
     /// The own devices, by their number on the wire.
     devices: Vec<DeviceId>,
-    frames: VecDeque<Arc<Frame>>,
+    frames: VecDeque<NumberedFrame>,
+    /// The number of the next local command.
+    next_command: u64,
+    /// Bytes of large local commands on their way.
+    waiting_bytes: usize,
+    standing: SharedStanding,
+    /// Nobody orders the local input any more: it is stepped as it comes.
+    alone: bool,
+    /// Local input to be stepped alone, with the number of its first command.
+    local: VecDeque<(Vec<Sample>, Vec<Command>, u64)>,
+    /// A tick of the loop is due.
+    due: bool,
+    end: Option<SharedEnd>,
     /// The frame whose own tick is being stepped.
     stepping: Option<Arc<Frame>>,
     hosting: Arc<AtomicBool>,
@@ -106,18 +99,6 @@ pub struct SharedLink {
     sees: bool,
     lost: u64,
     _thread: SharedThread,
-}
-
-impl std::fmt::Debug for ToLoop {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("ToLoop")
-    }
-}
-
-impl std::fmt::Debug for FromLoop {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("FromLoop")
-    }
 }
 
 /// The station's thread; it leaves the sculpture and ends when this is dropped.
@@ -151,13 +132,20 @@ impl Shared {
     /// # Errors
     /// [`SharedError::Start`]
     pub fn start(
-        station: Station,
+        mut station: Station,
         mut transport: Box<dyn Transport>,
         clock: Clock,
         settings: SharedSettings,
     ) -> Result<Shared, SharedError> {
         let failed = |e: std::io::Error| SharedError::Start(format!("no thread: {e}"));
         transport.listen(station.address()).map_err(SharedError::Start)?;
+        if station.hears_greetings() {
+            transport.hosts(true);
+        }
+        if let Some(folder) = &settings.folder {
+            // It may be newer than that of whoever hosts.
+            station.take_members(folder.membership(), clock.now_us());
+        }
         let (to, from_loop) = cc::bounded(WAITING);
         let (to_loop, from) = cc::unbounded();
         let (tell, told) = cc::bounded(1024);
@@ -169,24 +157,10 @@ impl Shared {
             .spawn(move || work_on(&work, &finished, workers, session))
             .map_err(failed)?;
         let (stop, hosting) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
-        let running = Running {
-            station,
-            transport,
-            clock,
-            from_loop,
-            to_loop,
-            tell,
-            jobs,
-            done,
-            restoring: None,
-            came: 0,
-            views: BTreeMap::new(),
-            differs: None,
-            dumps: settings.dumps,
-            hosting: hosting.clone(),
-            told_input: (0, OwnInput::default()),
-            stop: stop.clone(),
-        };
+        let (ended, hosts) = (stop.clone(), hosting.clone());
+        let ends =
+            ThreadEnds { transport, clock, from_loop, to_loop, tell, jobs, done, hosts, ended };
+        let running = StationThread::new(station, ends, settings.dumps, settings.folder);
         let thread = std::thread::Builder::new()
             .name("sculptd-shared".into())
             .spawn(move || running.run())
@@ -198,6 +172,13 @@ impl Shared {
             echo: LocalEcho::new(1, 0),
             devices: Vec::new(),
             frames: VecDeque::new(),
+            next_command: 0,
+            waiting_bytes: 0,
+            standing: SharedStanding::default(),
+            alone: false,
+            local: VecDeque::new(),
+            due: false,
+            end: None,
             stepping: None,
             hosting,
             own_input: OwnInput::default(),
@@ -221,7 +202,7 @@ impl Shared {
         sees: bool,
         patience: Duration,
         mut coming: impl FnMut(u64),
-    ) -> Result<(Option<EnteredWorld>, u32), SharedError> {
+    ) -> Result<Entered, SharedError> {
         let clock = Clock::monotonic();
         let mut last_us = 0;
         let enough = |last: &str, passed| last.starts_with("not let in") && passed > ENOUGH;
@@ -243,10 +224,11 @@ impl Shared {
                     self.link.sees = sees;
                     rate = rate_hz;
                     if !sees {
-                        return Ok((None, rate));
+                        return Ok(Entered::Device(rate));
                     }
                 }
-                Ok(ToLoop::World(world, executor, journal)) => {
+                Ok(ToLoop::NobodyHosts) => return Ok(Entered::NobodyHosts),
+                Ok(ToLoop::World(world, executor, journal, _)) => {
                     // An obstacle to the session was reported before.
                     let told = self.told.try_iter();
                     let no_session =
@@ -255,17 +237,24 @@ impl Shared {
                         return Err(SharedError::Session(why));
                     }
                     self.link.executor = executor;
-                    return Ok((Some((world, journal)), rate));
+                    return Ok(Entered::World((world, journal), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
                 Ok(ToLoop::People(people)) => self.link.people = people,
-                Ok(ToLoop::Input(own)) => self.link.own_input = own,
+                Ok(ToLoop::Input(own, standing, _)) => {
+                    (self.link.own_input, self.link.standing) = (own, standing);
+                }
+                Ok(ToLoop::Alone(_) | ToLoop::Closed(_)) => {}
                 Ok(ToLoop::Coming(bytes)) => {
                     last_us = clock.now_us();
                     coming(bytes);
                 }
                 Err(_) if passed >= patience || enough(&last, passed) => {
-                    return Err(SharedError::Silent { name: name.into(), last });
+                    let name = name.into();
+                    return Err(match last.strip_prefix("not let in: ") {
+                        Some(why) => SharedError::NotLetIn { name, why: why.into() },
+                        None => SharedError::Silent { name, last },
+                    });
                 }
                 Err(_) => {}
             }
@@ -273,19 +262,54 @@ impl Shared {
     }
 }
 
+impl SharedLink {
+    /// Returns the input of one tick as a frame, if no host orders it any more.
+    fn local_frame(&mut self, world: &World) -> Option<NumberedFrame> {
+        let (samples, commands, first) = self.local.pop_front()?;
+        let numbers = (first..first + commands.len() as u64).collect();
+        let person = self.executor.person();
+        let batches = vec![Batch { person, number: 0, samples, commands }];
+        let frame = Frame { tick: world.tick() + 1, batches, ..Frame::default() };
+        Some((Arc::new(frame), numbers, Vec::new()))
+    }
+}
+
+impl Shared {
+    /// After [`Entered::NobodyHosts`]: shares the local world, which is at this tick.
+    pub fn host(&mut self, rate_hz: u32, tick: u64) {
+        let _ = self.link.to.send(FromLoop::Host { rate_hz, tick });
+    }
+}
+
 impl SharedInput for SharedLink {
-    fn refuses(&mut self, command: &QueuedCommand) -> bool {
-        let why = policy::refused_command(&command.command).or_else(|| {
-            let large = command.command.owns_memory() && policy::is_too_large(&command.command);
-            large.then_some("it is larger than what can be shared at once")
-        });
-        if let Some(why) = why {
-            tracing::warn!("not done in a shared sculpture: {why}");
+    fn refusal(&mut self, command: &QueuedCommand) -> Option<SceneError> {
+        let person = self.people.person(self.people.own);
+        if person.is_some_and(|p| p.role == PersonRole::Viewer) {
+            return Some(SceneError::LooksOn);
         }
-        why.is_some()
+        if let Some(why) = policy::refused_command(&command.command) {
+            tracing::warn!("not done in a shared sculpture: {why}");
+            return Some(SceneError::NotShared);
+        }
+        if self.alone || !command.command.owns_memory() {
+            return None;
+        }
+        let Some(bytes) = policy::size(&command.command) else { return Some(SceneError::TooLarge) };
+        self.waiting_bytes += bytes;
+        let is_much = self.waiting_bytes as f64 > BYTES.0 * LARGE_SHARE;
+        is_much.then(|| {
+            self.waiting_bytes -= bytes;
+            SceneError::Congested
+        })
     }
 
-    fn submit(&mut self, world: &World, samples: &mut Vec<Sample>, commands: &mut Vec<Command>) {
+    fn submit(
+        &mut self,
+        world: &World,
+        samples: &mut Vec<Sample>,
+        commands: &mut Vec<Command>,
+    ) -> u64 {
+        self.due = true;
         let mut own = Vec::new();
         for mut sample in samples.drain(..).filter_map(|s| rounded(&s)) {
             let known = self.devices.iter().position(|d| *d == sample.device);
@@ -308,48 +332,79 @@ impl SharedInput for SharedLink {
                 *entry = entry.zip(device).map(|((_, at), n)| (DeviceId(n as u16), at));
             }
         }
+        let first = self.next_command;
+        if self.alone {
+            self.next_command += commands.len() as u64;
+            if !own.is_empty() || !commands.is_empty() {
+                self.local.push_back((own, std::mem::take(commands), first));
+            }
+            return first;
+        }
         if self.sees {
             self.echo.take(world, &own, commands);
         }
         if own.is_empty() && commands.is_empty() {
-            return;
+            return first;
         }
-        let input = FromLoop::Input(own, std::mem::take(commands));
+        self.next_command += commands.len() as u64;
+        let input = FromLoop::Input(own, std::mem::take(commands), first);
         if self.to.try_send(input).is_err() {
             self.lost += 1;
             tracing::warn!("input of {} ticks was lost on its way to the network", self.lost);
         }
+        first
     }
 
     fn next(&mut self, world: &World) -> NextTick {
         loop {
-            if let Some(frame) = self.frames.front() {
+            if self.frames.is_empty() && self.alone {
+                let local = self.local_frame(world);
+                self.frames.extend(local);
+            }
+            if let Some((frame, _, _)) = self.frames.front() {
                 if let Some(tick) = self.executor.empty_ticks(world, frame).next() {
                     return NextTick::Step(SharedTick { tick, ..SharedTick::default() });
                 }
                 let input = self.executor.input(frame, world);
-                self.stepping = self.frames.pop_front();
+                let Some((frame, own, refused)) = self.frames.pop_front() else { continue };
+                self.stepping = Some(frame);
                 return NextTick::Step(SharedTick {
                     tick: input.tick,
                     samples: input.samples,
                     commands: input.commands,
-                    own: input.own,
+                    own: input.own.into_iter().zip(own).collect(),
+                    refused,
                 });
             }
             match self.from.try_recv() {
                 Ok(ToLoop::Frame(frame)) => self.frames.push_back(frame),
                 Ok(ToLoop::People(people)) => self.people = people,
-                Ok(ToLoop::Input(own)) => self.own_input = own,
-                Ok(ToLoop::World(world, executor, journal)) => {
+                Ok(ToLoop::Input(own, standing, bytes)) => {
+                    (self.own_input, self.standing, self.waiting_bytes) = (own, standing, bytes);
+                }
+                Ok(ToLoop::World(world, executor, journal, waiting_from)) => {
                     self.executor = executor;
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
-                    return NextTick::World(world, journal);
+                    return NextTick::World(world, journal, waiting_from);
                 }
                 Ok(ToLoop::Entered(person, rate_hz)) => {
                     self.executor.set_person(person, rate_hz);
                     self.echo.reset(rate_hz, person);
                 }
-                Ok(ToLoop::Coming(_)) => {}
+                Ok(ToLoop::Alone(batches)) => {
+                    self.echo.reset(self.executor.rate_hz(), self.executor.person());
+                    self.alone = true;
+                    for (batch, first) in batches.into_iter().rev() {
+                        self.local.push_front((batch.samples, batch.commands, first));
+                    }
+                }
+                Ok(ToLoop::Closed(end)) => self.end = Some(end),
+                Ok(ToLoop::Coming(_) | ToLoop::NobodyHosts) => {}
+                // One tick for each tick of the loop, as in a sculpture that nobody shares.
+                Err(_) if self.alone && std::mem::take(&mut self.due) => {
+                    let tick = world.tick() + 1;
+                    return NextTick::Step(SharedTick { tick, ..SharedTick::default() });
+                }
                 Err(_) => return NextTick::Wait,
             }
         }
@@ -379,203 +434,20 @@ impl SharedInput for SharedLink {
         self.own_input
     }
 
+    fn standing(&self) -> SharedStanding {
+        self.standing
+    }
+
+    fn close(&mut self) {
+        let _ = self.to.send_timeout(FromLoop::Close, Duration::from_secs(1));
+    }
+
+    fn closed(&self) -> Option<SharedEnd> {
+        let is_done = self.frames.is_empty() && self.local.is_empty() && self.from.is_empty();
+        self.end.clone().filter(|_| is_done)
+    }
+
     fn hosts(&self) -> bool {
         self.hosting.load(Relaxed)
-    }
-}
-
-/// The station's thread.
-struct Running {
-    station: Station,
-    transport: Box<dyn Transport>,
-    clock: Clock,
-    from_loop: cc::Receiver<FromLoop>,
-    to_loop: cc::Sender<ToLoop>,
-    tell: cc::Sender<Told>,
-    jobs: cc::Sender<Job>,
-    done: cc::Receiver<Done>,
-    /// Frames that wait for the world that they follow.
-    restoring: Option<Vec<Arc<Frame>>>,
-    /// Bytes of the newest checkpoint.
-    came: u64,
-    views: BTreeMap<u64, HashView>,
-    /// Frame with a different state: the host's state is written once it arrives.
-    differs: Option<u64>,
-    dumps: PathBuf,
-    hosting: Arc<AtomicBool>,
-    /// Last report to the loop about the local input, and its time.
-    told_input: (u64, OwnInput),
-    stop: Arc<AtomicBool>,
-}
-
-impl Running {
-    fn run(mut self) {
-        let incoming = self.transport.incoming();
-        while !self.stop.load(Relaxed) {
-            let now_us = self.clock.now_us();
-            let wait = self.station.next_us(now_us).saturating_sub(now_us);
-            cc::select! {
-                recv(incoming) -> bytes => if let Ok(bytes) = bytes {
-                    self.station.receive(&bytes, self.clock.now_us());
-                },
-                recv(self.from_loop) -> from => match from {
-                    Ok(from) => self.take(from),
-                    Err(_) => break,
-                },
-                recv(self.done) -> done => if let Ok(done) = done {
-                    self.finished(done);
-                },
-                default(Duration::from_micros(wait.clamp(500, 50_000))) => {}
-            }
-            // A flood must not keep time from passing.
-            incoming.try_iter().take(512).for_each(|b| {
-                self.station.receive(&b, self.clock.now_us());
-            });
-            while let Ok(from) = self.from_loop.try_recv() {
-                self.take(from);
-            }
-            self.station.advance(self.clock.now_us());
-            self.tell_events();
-            self.tell_input();
-            self.send();
-        }
-        self.station.leave();
-        self.send();
-    }
-
-    fn send(&mut self) {
-        while let Some((to, bytes)) = self.station.take_outgoing() {
-            self.transport.send(to, bytes);
-        }
-    }
-
-    fn take(&mut self, from: FromLoop) {
-        match from {
-            FromLoop::Input(samples, commands) => {
-                self.station.submit(samples, commands, self.clock.now_us());
-            }
-            FromLoop::Stepped { frame, asked, at_rest } => {
-                self.station.after_step(at_rest);
-                if let Some(view) = asked.hash.filter(|_| self.jobs.len() < MAX_JOBS) {
-                    let _ = self.jobs.send(Job::Hash(view));
-                }
-                if frame.mark == Mark::Checkpoint && self.station.hosts() {
-                    match asked.captured {
-                        Some(captured) => {
-                            let job = Job::Checkpoint(frame.index, Box::new(captured));
-                            let _ = self.jobs.send(job);
-                        }
-                        None => self.station.checkpoint_failed(frame.index, self.clock.now_us()),
-                    }
-                }
-            }
-        }
-    }
-
-    fn finished(&mut self, done: Done) {
-        match done {
-            Done::Hash(view, hash) => {
-                self.station.own_hash(view.index, hash);
-                self.views.insert(view.index, view);
-                while self.views.len() > KEPT_VIEWS {
-                    self.views.pop_first();
-                }
-            }
-            Done::CheckpointPart(index, part, last) => {
-                self.station.checkpoint_part(index, &part, last);
-            }
-            Done::Restored(None) => {
-                self.note("the checkpoint could not be read: asking for another".into());
-                self.restoring = None;
-                self.station.restore_failed(self.clock.now_us());
-            }
-            Done::Restored(Some((mut world, journal))) => {
-                if let Some(index) = self.differs.take() {
-                    let (scene, active) = (world.scene_view(), world.snapshot());
-                    let view = HashView { index, tick: world.tick(), scene, active };
-                    let name = format!("differs-frame-{index}-host.ply");
-                    let job = Job::Dump(Box::new(view), self.dumps.join(name));
-                    let _ = self.jobs.send(job);
-                }
-                let executor = Executor::new(self.station.rate_hz(), self.station.person());
-                let journal = journal.unwrap_or_else(|why| {
-                    tracing::error!("the sculpture is not recorded from here on: {why}");
-                    let _ = self.tell.try_send(Told::NoSession(why));
-                    None
-                });
-                let _ = self.to_loop.send(ToLoop::World(world, executor, journal));
-                for frame in self.restoring.take().unwrap_or_default() {
-                    let _ = self.to_loop.send(ToLoop::Frame(frame));
-                }
-            }
-        }
-    }
-
-    fn tell_input(&mut self) {
-        let (now_us, own) = (self.clock.now_us(), own_input(&self.station));
-        if own != self.told_input.1 && now_us >= self.told_input.0 + TOLD_US {
-            self.told_input = (now_us, own);
-            let _ = self.to_loop.send(ToLoop::Input(own));
-        }
-    }
-
-    fn note(&self, text: String) {
-        tracing::info!("{text}");
-        let _ = self.tell.try_send(Told::Note(text));
-    }
-
-    fn tell_events(&mut self) {
-        let mut people = false;
-        while let Some(event) = self.station.take_event() {
-            people |= changes_people(&event);
-            match event {
-                Event::Frame(frame) => match &mut self.restoring {
-                    Some(waiting) => waiting.push(frame),
-                    None => {
-                        let _ = self.to_loop.send(ToLoop::Frame(frame));
-                    }
-                },
-                Event::RestorePart { first, bytes } => {
-                    let before = if first { 0 } else { self.came };
-                    self.came = before + bytes.len() as u64;
-                    let _ = self.to_loop.send(ToLoop::Coming(self.came));
-                    let _ = self.jobs.send(Job::RestorePart { first, bytes });
-                }
-                Event::Restore { .. } => {
-                    self.restoring = Some(Vec::new());
-                    let _ = self.jobs.send(Job::Restore(self.station.rate_hz()));
-                }
-                Event::Entered { person, rate_hz } => {
-                    let _ = self.to_loop.send(ToLoop::Entered(person, rate_hz));
-                }
-                Event::Hosting(on) => {
-                    self.transport.hosts(on);
-                    self.hosting.store(on, Relaxed);
-                }
-                Event::Differs { index, hashes: (own, host) } => {
-                    let view = self.views.get(&index);
-                    let tick = view.map_or(0, |v| v.tick);
-                    self.note(format!(
-                        "this replica differs from the host's at tick {tick}: {own:016x} here, \
-                         {host:016x} there; both are written to {} and it joins anew",
-                        self.dumps.display()
-                    ));
-                    if let Some(view) = view {
-                        let name = format!("differs-frame-{index}-own.ply");
-                        let job = Job::Dump(Box::new(view.clone()), self.dumps.join(name));
-                        let _ = self.jobs.send(job);
-                    }
-                    self.differs = Some(index);
-                }
-                Event::Note(text) => self.note(text),
-                Event::Refused(why) => {
-                    tracing::warn!("the host lets this daemon in no more: {why}");
-                    let _ = self.tell.try_send(Told::Refused(why));
-                }
-            }
-        }
-        if people {
-            let _ = self.to_loop.send(ToLoop::People(Arc::new(people_here(&self.station))));
-        }
     }
 }

@@ -4,19 +4,24 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, To, ms};
-use crate::host_limits::HERE_ALREADY;
-use crate::keyring::{Invitation, Keyring};
+use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, ms, short_number};
+use crate::handshake::{HostOffer, OwnHello};
+use crate::host_limits::{BYTES, HERE_ALREADY, LARGE_SHARE, MEMBERS_US};
+use crate::membership::SignedMembership;
+use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::frame_codec::frames_from_bytes;
-use crate::wire::message::{
-    Address, Entry, FromHost, FromMember, Greeting, NOT_ENTERED, Nonce, Term, VERSION,
-};
+use crate::wire::greeting::Greeting;
+use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Term};
 
 /// Between two greetings.
 const GREET_US: u64 = 200_000;
+/// Who joins for the first time waits so long for the answers of other hosts after the first one.
+const COLLECT_US: u64 = 300_000;
+/// Hosts whose answers are kept.
+const MAX_OFFERS: usize = 16;
 /// Chunks that are on their way at once: 8 MiB.
 const WINDOW: u32 = 256;
 /// While a checkpoint comes, a word at least so often, and silence for so long is an end: what
@@ -36,13 +41,20 @@ const MAX_EARLY: usize = 4096;
 #[derive(Debug)]
 enum MemberPhase {
     /// Says hello to whoever hosts.
-    Greets { nonce: Nonce, next_us: u64 },
+    Greets { hello: Box<OwnHello>, next_us: u64, offers: Vec<HostOffer>, decide_us: u64 },
     /// Asks to be let in.
     Joins { next_us: u64, tries: u32 },
     /// Fetches a checkpoint.
     Fetches(Box<Fetch>),
     /// Follows.
     Follows,
+}
+
+impl MemberPhase {
+    fn greets(core: &mut Core, claims: bool, now_us: u64) -> MemberPhase {
+        let hello = Box::new(OwnHello::draw(core, claims));
+        MemberPhase::Greets { hello, next_us: now_us, offers: Vec::new(), decide_us: u64::MAX }
+    }
 }
 
 /// A checkpoint on its way.
@@ -66,8 +78,15 @@ struct Fetch {
 /// A member's state.
 #[derive(Debug)]
 pub struct Member {
-    invitation: Invitation,
     phase: MemberPhase,
+    /// The sculpture that is wanted, as [`short_number`] names it, where several have one name.
+    pub wanted: Option<u32>,
+    /// It hosts unless somebody does.
+    pub claims: bool,
+    /// The version of the host's list of members, and when it was sent a newer one.
+    host_knows: (u64, u64),
+    /// Bytes that the host takes of what is large.
+    budget: RateLimit,
     host: Address,
     /// The host's turn.
     pub term: Term,
@@ -83,8 +102,6 @@ pub struct Member {
     next_us: u64,
     /// The own world is that of the log: it may be continued, and may take over.
     pub level: bool,
-    /// Data that a successor needs.
-    pub succession: Option<(Keyring, Secret)>,
     hashes: BTreeMap<u64, u64>,
     begun_us: u64,
     /// The host has been silent for too long.
@@ -94,10 +111,13 @@ pub struct Member {
 
 impl Member {
     /// A member that greets at once.
-    pub fn new(core: &mut Core, invitation: Invitation, now_us: u64) -> Member {
+    pub fn new(core: &mut Core, now_us: u64) -> Member {
         Member {
-            invitation,
-            phase: MemberPhase::Greets { nonce: core.nonce(), next_us: now_us },
+            phase: MemberPhase::greets(core, false, now_us),
+            wanted: None,
+            claims: false,
+            host_knows: (0, 0),
+            budget: budget(now_us),
             host: 0,
             term: Term::default(),
             seals: None,
@@ -109,7 +129,6 @@ impl Member {
             trip: RoundTrip::default(),
             next_us: now_us,
             level: false,
-            succession: None,
             hashes: BTreeMap::new(),
             begun_us: now_us,
             lost: false,
@@ -120,6 +139,22 @@ impl Member {
     /// Returns true if it follows a host.
     pub fn follows(&self) -> bool {
         matches!(self.phase, MemberPhase::Follows)
+    }
+
+    /// Returns true if a message to the host and its answer take long.
+    pub fn is_far(&self) -> bool {
+        self.trip.is_long()
+    }
+
+    /// Returns true if nobody has answered its greetings.
+    pub fn is_unanswered(&self) -> bool {
+        matches!(&self.phase, MemberPhase::Greets { offers, .. } if offers.is_empty())
+    }
+
+    /// From now on its greetings say that it is about to host.
+    pub fn claim(&mut self, core: &mut Core, now_us: u64) {
+        self.claims = true;
+        self.greet(core, now_us);
     }
 
     /// Returns true if the host is alive for certain: it was heard just now.
@@ -135,7 +170,7 @@ impl Member {
 
     /// Restarts with a greeting.
     pub fn greet(&mut self, core: &mut Core, now_us: u64) {
-        let greets = MemberPhase::Greets { nonce: core.nonce(), next_us: now_us };
+        let greets = MemberPhase::greets(core, self.claims, now_us);
         if let MemberPhase::Fetches(fetch) = std::mem::replace(&mut self.phase, greets) {
             self.broken_off = Some(fetch);
         }
@@ -146,22 +181,82 @@ impl Member {
 
     /// Takes an answer to a greeting.
     pub fn greeting(&mut self, core: &mut Core, from: Address, greeting: &Greeting, now_us: u64) {
-        let MemberPhase::Greets { nonce: own, .. } = self.phase else { return };
+        let MemberPhase::Greets { hello, offers, decide_us, .. } = &mut self.phase else { return };
         match greeting {
-            Greeting::Challenge { to, nonce, term, proof } if *to == own => {
-                if !self.invitation.secret.proves(proof, &own, nonce, term) || *term < self.term {
+            Greeting::Challenge(answer) => {
+                let Some(offer) = hello.check(core, from, answer, now_us) else { return };
+                let is_known = offers.iter().any(|o| o.from == from);
+                if is_known || offers.len() >= MAX_OFFERS {
                     return;
                 }
-                self.seals = Some(self.invitation.secret.seals(&own, nonce));
-                (self.host, self.term) = (from, *term);
-                self.heard_us = now_us;
-                self.phase = MemberPhase::Joins { next_us: now_us, tries: 0 };
-                self.advance(core, now_us);
+                let version = offer.members.list().version;
+                let own = core.sculpture != 0 && core.sculpture == offer.about.sculpture;
+                // Its own sculpture, as far as it knows it or further.
+                let continues = own && (version, offer.term) >= (self.host_knows.0, self.term);
+                if own && !continues {
+                    return;
+                }
+                offers.push(offer);
+                *decide_us = if continues { 0 } else { (*decide_us).min(now_us + COLLECT_US) };
+                self.decide(core, now_us);
             }
             // Not sealed: anybody may have said it, so the greetings go on.
-            Greeting::Refused { to, reason } if *to == own => self.not_let_in(core, reason),
+            Greeting::Refused { to, reason } if hello.is_answered_by(to) => {
+                self.not_let_in(core, reason);
+            }
             _ => {}
         }
+    }
+
+    /// Joins one of the hosts that have answered, once it was waited for others.
+    fn decide(&mut self, core: &mut Core, now_us: u64) {
+        let MemberPhase::Greets { offers, decide_us, .. } = &self.phase else { return };
+        if now_us < *decide_us || offers.is_empty() {
+            return;
+        }
+        let wanted = |o: &&HostOffer| match (core.sculpture, self.wanted) {
+            (0, None) => true,
+            (0, Some(number)) => short_number(o.about.sculpture) == number,
+            (own, _) => o.about.sculpture == own,
+        };
+        let fits: Vec<&HostOffer> = offers.iter().filter(wanted).collect();
+        let Some(first) = fits.first() else {
+            let why = match self.wanted.filter(|_| core.sculpture == 0) {
+                Some(number) => format!("there is no sculpture {number:08x} of this name"),
+                None => "the sculpture that is shared under this name now is another one".into(),
+            };
+            self.not_let_in(core, &why);
+            return self.greet(core, now_us);
+        };
+        if fits.iter().any(|o| o.about.sculpture != first.about.sculpture) {
+            let mut all: Vec<String> = fits.iter().map(|o| o.about.to_string()).collect();
+            all.sort();
+            all.dedup();
+            return core.end(format!(
+                "{} sculptures are shared under this name: {}. Name one with --sculpture NUMBER",
+                all.len(),
+                all.join(", ")
+            ));
+        }
+        let best = fits.into_iter().max_by_key(|o| (o.members.list().version, o.term)).cloned();
+        let greets = MemberPhase::Joins { next_us: now_us, tries: 0 };
+        let MemberPhase::Greets { hello, .. } = std::mem::replace(&mut self.phase, greets) else {
+            return;
+        };
+        let Some((offer, seals)) = best.and_then(|o| Some((o.clone(), hello.accept(&o)?))) else {
+            return self.greet(core, now_us);
+        };
+        self.seals = Some(seals);
+        (self.host, self.term) = (offer.from, offer.term);
+        self.host_knows = (offer.members.list().version, 0);
+        if core.sculpture == 0 {
+            core.sculpture = offer.about.sculpture;
+            core.begun_s = core.now_s(now_us).saturating_sub(u64::from(offer.about.age_s));
+        }
+        core.take_members(offer.members);
+        self.heard_us = now_us;
+        self.claims = false;
+        self.advance(core, now_us);
     }
 
     /// Tells a reason once.
@@ -174,7 +269,7 @@ impl Member {
 
     /// Takes a sealed message of the host.
     pub fn receive(&mut self, core: &mut Core, from: Address, sealed: &[u8], now_us: u64) {
-        let Some((_, down)) = self.seals.as_ref().filter(|_| from == self.host) else { return };
+        let Some((_, down)) = self.seals.as_mut().filter(|_| from == self.host) else { return };
         let Some(plain) = down.open(sealed) else { return };
         let Ok(message) = FromHost::from_bytes(&plain) else {
             return core.note("the host sends what is no message; it is ignored");
@@ -193,7 +288,21 @@ impl Member {
                     self.not_let_in(core, &why);
                     return self.greet(core, now_us);
                 }
-                core.events.push_back(Event::Refused(why));
+                core.end(why);
+            }
+            FromHost::Members { members, group } => {
+                let owner = core.invitation.owner;
+                let Ok(members) = SignedMembership::from_bytes(&members, &owner) else { return };
+                let version = members.list().version;
+                if version < self.host_knows.0 {
+                    return;
+                }
+                self.host_knows = (version, 0);
+                core.take_members(members);
+                core.group = group.map(Secret);
+                if let Some((up, _)) = &mut self.seals {
+                    core.up(self.host, up, &FromMember::KnowsMembers(version));
+                }
             }
             FromHost::Down { received, acknowledged, sent_ms, echo_ms, frames } => {
                 self.trip.take(sent_ms, echo_ms, now_us);
@@ -233,10 +342,7 @@ impl Member {
             core.events.push_back(Event::Entered { person, rate_hz });
         }
         core.person = entry.person;
-        self.succession = entry.succession.as_ref().and_then(|(group, keys)| {
-            let group = Secret(group.as_slice().try_into().ok()?);
-            Some((Keyring::from_bytes(keys), group))
-        });
+        core.group = entry.group.map(Secret);
         match entry.offer {
             None => {
                 if core.role == Role::Device {
@@ -276,6 +382,8 @@ impl Member {
         self.level = core.role != Role::Device;
         self.trip = RoundTrip::default();
         (self.heard_us, self.next_us, self.lost) = (now_us, now_us, false);
+        self.budget = budget(now_us);
+        core.host = entry.host;
         let host = entry.people.iter().map(|p| p.0.name.as_str()).collect::<Vec<_>>().join(", ");
         core.note(format!("joined turn {}; people so far: {host}", entry.term.number));
     }
@@ -350,12 +458,13 @@ impl Member {
     pub fn advance(&mut self, core: &mut Core, now_us: u64) {
         let silent = now_us >= self.heard_us + LOST_US;
         match &mut self.phase {
-            MemberPhase::Greets { nonce, next_us } if now_us >= *next_us => {
-                *next_us = now_us + GREET_US;
-                let (nonce, key) = (*nonce, self.invitation.secret.name());
-                core.greet(To::Host, &Greeting::Hello { version: VERSION, nonce, key });
+            MemberPhase::Greets { hello, next_us, .. } => {
+                if now_us >= *next_us {
+                    *next_us = now_us + GREET_US;
+                    hello.send(core);
+                }
+                self.decide(core, now_us);
             }
-            MemberPhase::Greets { .. } => {}
             MemberPhase::Joins { next_us, tries } => {
                 if now_us < *next_us {
                     return;
@@ -411,11 +520,20 @@ impl Member {
                     return;
                 }
                 let patience = self.trip.patience_us();
-                let batches = core.outbox.due(self.received, now_us, patience);
+                let budget = |bytes| self.budget.take(bytes as f64, now_us);
+                let batches = core.outbox.due(self.received, now_us, patience, budget);
                 let busy = !batches.is_empty() || core.outbox.count_after(self.received) > 0;
                 let behind = !self.early.is_empty();
                 self.next_us = now_us + if busy || behind { SEND_US } else { IDLE_US / 2 };
                 let Some((up, _)) = &mut self.seals else { return };
+                if let Some(members) = &core.members
+                    && members.list().version > self.host_knows.0
+                    && now_us >= self.host_knows.1 + MEMBERS_US
+                {
+                    self.host_knows.1 = now_us;
+                    let newer = FromMember::Members(members.to_bytes());
+                    core.up(self.host, up, &newer);
+                }
                 let message = FromMember::Up {
                     have: if core.role == Role::Device { 0 } else { core.log.last() },
                     after_gap: self.early.keys().next().copied().unwrap_or(0),
@@ -433,6 +551,10 @@ impl Member {
     pub fn hurry(&mut self, now_us: u64) {
         self.next_us = self.next_us.min(now_us + SEND_US);
     }
+}
+
+fn budget(now_us: u64) -> RateLimit {
+    RateLimit::new(BYTES.0 * LARGE_SHARE, BYTES.1 * LARGE_SHARE, now_us)
 }
 
 /// The chunks that were asked for and did not come, up to the newest that did.

@@ -1,9 +1,11 @@
 //! The people who share the sculpture, from the log of arrivals, for the loop and its window.
 
-use crate::core::Event;
+use crate::core::{Event, short_number};
 use crate::station::Station;
 use crate::wire::frame::{Arrival, Role};
-use sculptd_daemon::people::{OwnInput, PeopleHere, Person, PersonRole};
+use sculptd_daemon::people::{
+    OwnInput, PeopleHere, Person, PersonRole, SharedStanding, SharedState,
+};
 
 /// Returns everybody who ever came, and who of them is connected. The successor of a killed host
 /// reports it as gone five seconds after taking over.
@@ -19,7 +21,26 @@ pub fn people_here(station: &Station) -> PeopleHere {
         here: a.here,
     };
     let all = station.log().people().into_iter().map(person).collect();
-    PeopleHere { own: station.person(), all }
+    PeopleHere {
+        own: station.person(),
+        all,
+        sculpture: format!("{:08x}", short_number(station.sculpture())),
+        others: station.others().iter().map(ToString::to_string).collect(),
+        sent_away: None,
+    }
+}
+
+/// Returns the state of the connection; `undelivered`: batches that the others never got.
+pub fn standing(station: &Station, undelivered: u64) -> SharedStanding {
+    let state = match () {
+        () if station.person() == 0 => SharedState::NotShared,
+        () if station.has_ended() => SharedState::SentAway,
+        () if station.hosts() => SharedState::Hosts,
+        () if station.hears_host() => SharedState::Follows,
+        () => SharedState::CutOff,
+    };
+    let (host, waiting) = (station.host_person(), station.waiting());
+    SharedStanding { state, host, since_s: 0, waiting, undelivered }
 }
 
 /// Returns the counts of the local input.
@@ -41,6 +62,6 @@ pub fn changes_people(event: &Event) -> bool {
         Event::Frame(frame) => !frame.arrivals.is_empty(),
         Event::Entered { .. } | Event::Restore { .. } => true,
         Event::RestorePart { .. } | Event::Hosting(_) | Event::Differs { .. } => false,
-        Event::Note(_) | Event::Refused(_) => false,
+        Event::NobodyHosts | Event::Note(_) | Event::Refused(_) => false,
     }
 }

@@ -14,7 +14,7 @@ pub fn refused_command(command: &Command) -> Option<&'static str> {
         Command::Reopened | Command::OnePerson => {
             Some("nobody but the host ends what can be taken back")
         }
-        Command::Cut(_) => Some("a cut is computed for one replica; share the whole object"),
+        Command::Cut(_) => Some("a cut is computed for one replica"),
         Command::OfPerson(_) => Some("whose a command is, the host says"),
         Command::OfClay(of) => match &of.command {
             Command::OfClay(_) | Command::Rebased(_) => Some("it is nested"),
@@ -33,7 +33,8 @@ pub fn refused(batch: &Batch) -> Option<&'static str> {
     batch.commands.iter().find_map(refused_command)
 }
 
-/// Returns true if a command is longer than [`MAX_COMMAND`] bytes.
-pub fn is_too_large(command: &Command) -> bool {
-    postcard::to_stdvec(command).map_or(true, |bytes| bytes.len() > MAX_COMMAND)
+/// Returns the bytes of a command; `None`: more than [`MAX_COMMAND`].
+pub fn size(command: &Command) -> Option<usize> {
+    let bytes = postcard::to_stdvec(command).ok()?.len();
+    (bytes <= MAX_COMMAND).then_some(bytes)
 }

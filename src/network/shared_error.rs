@@ -12,6 +12,14 @@ pub enum SharedError {
     /// The session's file cannot be made.
     #[error("the sculpture cannot be recorded: {0}")]
     Session(String),
+    /// A host answers, and does not know the key, or the wanted sculpture is not there.
+    #[error("not let in to '{name}': {why}")]
+    NotLetIn {
+        /// The sculpture's name.
+        name: String,
+        /// The host's reason.
+        why: String,
+    },
     /// Nobody answers.
     #[error("nobody hosts '{name}' here, or nobody answers: {last}")]
     Silent {

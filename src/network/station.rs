@@ -4,28 +4,39 @@
 //!
 //! **When the host is silent** for [`LOST_US`], the possible successors exchange the ends of their
 //! logs. After [`DECIDE_US`] the one with the longest log (of equals, the one with the lowest
-//! address) hosts in a new term. The others greet it. A host that hears of a greater term becomes a
-//! member again. If the network is split, each part goes on. When it heals, the smaller term's
-//! stations join the greater's, and repeat their input that it lacks.
+//! address) hosts in a new term. The others greet it. If the network is split, each part goes on.
+//! When it heals, the hosts find each other, as each greets whoever hosts: one stays
+//! ([`crate::door`]), the stations of the other join it and repeat their input that it lacks.
+//!
+//! **A word among the successors counts if it answers the receiver's own challenge.** A recorded
+//! one neither stops an election nor wins one.
 
-use crate::core::{Core, DOWN, Event, GREETING, HEIRS, HeirsSeal, LOST_US, To, UP};
+use crate::core::{Core, DOWN, Event, GREETING, HEIRS, LOST_US, OtherSculpture, To, UP};
+use crate::handshake::is_genuine;
+use crate::heirs::{Among, better};
 use crate::host::Host;
-use crate::keyring::{Entropy, Invitation, Keyring, fresh};
+use crate::keyring::{Entropy, Invitation};
 use crate::member::Member;
+use crate::membership::SignedMembership;
 use crate::outbox::Outbox;
 use crate::replica_log::ReplicaLog;
-use crate::seal::Secret;
-use crate::wire::frame::{PersonId, Role};
-use crate::wire::message::{Address, AmongHeirs, Greeting, Reached, Term};
+use crate::wire::frame::{Batch, Frame, PersonId, Role};
+use crate::wire::greeting::Greeting;
+use crate::wire::message::{Address, AmongHeirs, HeirsWord, Reached, Term};
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
 
-/// After the host was found to be gone, candidates are collected for so long.
-pub const DECIDE_US: u64 = 450_000;
+/// After the host was found to be gone, candidates are collected for so long; over a long way
+/// longer, as each has to answer the others' challenges.
+pub const DECIDE_US: (u64, u64) = (450_000, 620_000);
 /// Between two words of a candidate.
 const CANDIDATE_US: u64 = 60_000;
 /// A winner that is not heard of by then did not win.
 const AGAIN_US: u64 = 1_500_000;
+/// Time for which a station that wants to host looks for a host.
+const LOOK_US: u64 = 1_500_000;
+/// Between two questions who hosts.
+const ASK_US: u64 = 200_000;
 
 /// Who somebody is, for a start.
 pub struct Identity {
@@ -33,8 +44,10 @@ pub struct Identity {
     pub name: String,
     /// Role that the person requests.
     pub role: Role,
-    /// The key that the station greets with. A host greets with it once it is no longer the host.
+    /// The key that the station greets and hosts with.
     pub invitation: Invitation,
+    /// Seconds since 1970 at time 0 of the station.
+    pub epoch_s: u64,
     /// Random bytes; the station's address is the first that it draws.
     pub entropy: Entropy,
 }
@@ -61,74 +74,133 @@ struct Election {
     decided: bool,
 }
 
+/// The search of a station that wants to host.
+#[derive(Debug)]
+struct Look {
+    until_us: u64,
+    /// It found nobody, and [`Event::NobodyHosts`] was reported.
+    claimed: bool,
+}
+
 /// One daemon's part in a shared sculpture.
 #[derive(Debug)]
 pub struct Station {
     core: Core,
     phase: StationPhase,
-    invitation: Invitation,
     election: Option<Election>,
-    heirs: Option<HeirsSeal>,
+    among: Among,
+    look: Option<Look>,
     known: u32,
     heard_host_us: u64,
-    ended: bool,
 }
 
 impl Station {
-    fn core(identity: Identity, rate_hz: u32) -> (Core, Invitation) {
-        let Identity { name, role, invitation, mut entropy } = identity;
-        let mut address = [0; 8];
-        entropy(&mut address);
-        let core = Core {
-            address: u64::from_le_bytes(address),
+    fn of(identity: Identity, now_us: u64) -> Station {
+        let Identity { name, role, invitation, epoch_s, entropy } = identity;
+        let mut core = Core {
+            address: 0,
             name,
             role,
             person: 0,
-            rate_hz,
+            invitation,
+            members: None,
+            group: None,
+            sculpture: 0,
+            begun_s: 0,
+            epoch_s,
+            host: 0,
+            others: Vec::new(),
+            rate_hz: 1,
             log: ReplicaLog::default(),
             outbox: Outbox::default(),
             outgoing: Default::default(),
             events: Default::default(),
             entropy,
+            ended: false,
         };
-        (core, invitation)
+        core.address = core.draw();
+        let member = Member::new(&mut core, now_us);
+        Station {
+            core,
+            phase: StationPhase::Follows(Box::new(member)),
+            election: None,
+            among: Among::default(),
+            look: None,
+            known: 1,
+            heard_host_us: 0,
+        }
     }
 
     /// The first host of a sculpture, whose world is at `tick`.
     pub fn host(
         identity: Identity,
-        keyring: Keyring,
+        members: SignedMembership,
         rate_hz: u32,
         tick: u64,
         now_us: u64,
     ) -> Station {
-        let (mut core, invitation) = Station::core(identity, rate_hz);
-        core.log = ReplicaLog::at(0, tick, Vec::new(), Vec::new());
-        let group = fresh(&mut core.entropy);
-        let term = Term { number: 1, base: 0, host: core.address };
-        let host = Host::new(&mut core, keyring, group, term, now_us);
-        Station::of(core, StationPhase::Hosts(Box::new(host)), invitation)
+        let mut station = Station::of(identity, now_us);
+        station.begin_to_host(members, rate_hz, tick, now_us);
+        station
     }
 
-    /// Somebody who joins whoever hosts.
-    pub fn join(identity: Identity, now_us: u64) -> Station {
-        let (mut core, invitation) = Station::core(identity, 1);
-        let member = Member::new(&mut core, invitation.clone(), now_us);
-        Station::of(core, StationPhase::Follows(Box::new(member)), invitation)
-    }
-
-    fn of(core: Core, phase: StationPhase, invitation: Invitation) -> Station {
-        let (election, heirs) = (None, None);
-        Station {
-            core,
-            phase,
-            invitation,
-            election,
-            heirs,
-            known: 1,
-            heard_host_us: 0,
-            ended: false,
+    /// Somebody who joins whoever hosts. `sculpture`: which, where several have one name.
+    pub fn join(identity: Identity, sculpture: Option<u32>, now_us: u64) -> Station {
+        let mut station = Station::of(identity, now_us);
+        if let StationPhase::Follows(member) = &mut station.phase {
+            member.wanted = sculpture;
         }
+        station
+    }
+
+    /// A station of the owner: it joins the host. If there is none, it reports
+    /// [`Event::NobodyHosts`], and [`Station::begin_to_host`] may follow.
+    pub fn join_or_host(identity: Identity, now_us: u64) -> Station {
+        let mut station = Station::of(identity, now_us);
+        station.look = Some(Look { until_us: now_us + LOOK_US, claimed: false });
+        station
+    }
+
+    /// Begins to share a sculpture, whose world is at `tick`.
+    pub fn begin_to_host(
+        &mut self,
+        members: SignedMembership,
+        rate_hz: u32,
+        tick: u64,
+        now_us: u64,
+    ) {
+        self.look = None;
+        let core = &mut self.core;
+        core.take_members(members);
+        (core.rate_hz, core.sculpture, core.begun_s) = (rate_hz, core.draw(), core.now_s(now_us));
+        core.log = ReplicaLog::at(0, tick, Vec::new(), Vec::new());
+        let term = Term { number: 1, base: 0, host: core.address };
+        self.phase = StationPhase::Hosts(Box::new(Host::new(core, term, now_us)));
+    }
+
+    /// Takes a list of members from its owner, and sees that the host has it.
+    pub fn take_members(&mut self, members: SignedMembership, now_us: u64) {
+        match &mut self.phase {
+            StationPhase::Hosts(host) => host.take_members(&mut self.core, members, now_us),
+            StationPhase::Follows(_) => {
+                self.core.take_members(members);
+            }
+        }
+    }
+
+    /// Other sculptures that are shared under the same name.
+    pub fn others(&self) -> &[OtherSculpture] {
+        &self.core.others
+    }
+
+    /// The number of the sculpture; 0: not known yet.
+    pub fn sculpture(&self) -> u64 {
+        self.core.sculpture
+    }
+
+    /// Returns true if greetings to whoever hosts are for this station too.
+    pub fn hears_greetings(&self) -> bool {
+        self.hosts() || self.look.is_some()
     }
 
     /// The own name on the network.
@@ -170,13 +242,72 @@ impl Station {
     /// commands that may be shared ([`crate::policy`]). Input before the first entry, and that of a
     /// viewer, is dropped.
     pub fn submit(&mut self, samples: Vec<Sample>, commands: Vec<Command>, now_us: u64) {
+        let first = self.core.outbox.next_command();
+        self.submit_numbered(samples, commands, first, now_us);
+    }
+
+    /// As [`Station::submit`]; the commands are numbered from `first` on.
+    pub fn submit_numbered(
+        &mut self,
+        samples: Vec<Sample>,
+        commands: Vec<Command>,
+        first: u64,
+        now_us: u64,
+    ) {
         if self.core.person == 0 || self.core.role == Role::Viewer {
             return;
         }
-        self.core.outbox.push(samples, commands);
+        self.core.outbox.push(samples, commands, first);
         if let StationPhase::Follows(member) = &mut self.phase {
             member.hurry(now_us);
         }
+    }
+
+    /// Returns the numbers of the local commands in a frame that is about to be stepped, and of
+    /// those that the host refused.
+    pub fn own_commands(&mut self, frame: &Frame) -> (Vec<u64>, Vec<u64>) {
+        let (mut own, mut refused) = (Vec::new(), Vec::new());
+        for batch in frame.batches.iter().filter(|b| b.person == self.core.person) {
+            let numbers = self.core.outbox.take_numbers(batch.number);
+            let is_whole = numbers.end - numbers.start == batch.commands.len() as u64;
+            if is_whole { &mut own } else { &mut refused }.extend(numbers);
+        }
+        (own, refused)
+    }
+
+    /// Own commands with lower numbers are stepped, or lost.
+    pub fn waiting_from(&mut self) -> u64 {
+        let applied = self.core.log.applied(self.core.person);
+        self.core.outbox.waiting_from(applied)
+    }
+
+    /// The number of local batches that no host is known to have ordered.
+    pub fn waiting(&self) -> u64 {
+        let outbox = &self.core.outbox;
+        match self.core.role {
+            Role::Device => outbox.len() as u64,
+            _ => outbox.last().saturating_sub(self.core.log.applied(self.core.person)),
+        }
+    }
+
+    /// Takes the local batches that no host has ordered, each with the number of its first command.
+    pub fn take_undelivered(&mut self) -> Vec<(Batch, u64)> {
+        self.core.outbox.take_undelivered(self.core.log.applied(self.core.person))
+    }
+
+    /// The person whose daemon hosts; 0: unknown.
+    pub fn host_person(&self) -> PersonId {
+        self.core.host
+    }
+
+    /// Returns true if the station was sent away.
+    pub fn has_ended(&self) -> bool {
+        self.core.ended
+    }
+
+    /// Returns true if the host is heard.
+    pub fn hears_host(&self) -> bool {
+        matches!(&self.phase, StationPhase::Follows(m) if m.follows() && !m.lost)
     }
 
     /// Takes a datagram; whatever its bytes are.
@@ -184,7 +315,7 @@ impl Station {
         let Some((kind, rest)) = bytes.split_first() else { return };
         let Some((from, body)) = rest.split_first_chunk::<8>() else { return };
         let from = Address::from_le_bytes(*from);
-        if from == self.core.address || self.ended {
+        if from == self.core.address || self.core.ended {
             return;
         }
         match (*kind, &mut self.phase) {
@@ -192,9 +323,14 @@ impl Station {
                 let Ok(greeting) = Greeting::from_bytes(body) else { return };
                 match phase {
                     StationPhase::Hosts(host) => {
-                        host.greeting(&mut self.core, from, &greeting, now_us)
+                        if host.greeting(&mut self.core, from, &greeting, now_us) {
+                            self.step_down(now_us);
+                        }
                     }
-                    StationPhase::Follows(m) => m.greeting(&mut self.core, from, &greeting, now_us),
+                    StationPhase::Follows(m) => {
+                        m.greeting(&mut self.core, from, &greeting, now_us);
+                        self.greeted_while_looking(from, &greeting, now_us);
+                    }
                 }
             }
             (UP, StationPhase::Hosts(host)) => host.receive(&mut self.core, from, body, now_us),
@@ -204,61 +340,92 @@ impl Station {
             (HEIRS, _) => self.among_heirs(body, now_us),
             _ => {}
         }
-        let refused = |e: &Event| matches!(e, Event::Refused(_));
-        self.ended |= self.core.events.back().is_some_and(refused);
     }
 
-    fn group(&self) -> Option<(Keyring, Secret)> {
-        match &self.phase {
-            StationPhase::Hosts(host) => Some(host.succession()),
-            StationPhase::Follows(member) => member.succession.clone(),
+    /// Another host of the same sculpture stays: this one joins it, and sends its members there.
+    fn step_down(&mut self, now_us: u64) {
+        let core = &mut self.core;
+        core.note("another host of this sculpture stays: joining it");
+        if let StationPhase::Hosts(host) = &mut self.phase {
+            host.step_down(core);
+        }
+        core.events.push_back(Event::Hosting(false));
+        let mut member = Member::new(core, now_us);
+        member.level = true;
+        self.phase = StationPhase::Follows(Box::new(member));
+        self.election = None;
+    }
+
+    /// Who looks for a host hears of another who does: one of them hosts.
+    fn greeted_while_looking(&mut self, from: Address, greeting: &Greeting, now_us: u64) {
+        let (Some(look), core) = (&mut self.look, &mut self.core) else { return };
+        match greeting {
+            Greeting::Hello(hello) if !look.claimed => {
+                let own = Invitation::member_key(&core.invitation);
+                let is_own = hello.key == own.key.name() && is_genuine(hello, from, &own);
+                if is_own && (hello.claims || from < core.address) {
+                    look.until_us = now_us + LOOK_US;
+                }
+            }
+            Greeting::Refused { reason, .. } if reason == crate::door::NOT_IN_LIST => {
+                core.end(
+                    "a sculpture of this name is shared on this network already, and the keys in \
+                     the folder are not for it: choose another name, or join it with an invitation",
+                );
+            }
+            _ => {}
         }
     }
 
     fn among_heirs(&mut self, sealed: &[u8], now_us: u64) {
-        let Some((_, group)) = self.group() else { return };
+        let Some(group) = &self.core.group else { return };
         let opened = sealed.split_first_chunk::<8>().and_then(|(stream, sealed)| {
             group.heirs_seal(u64::from_le_bytes(*stream)).open(sealed)
         });
         let Some(Ok(message)) = opened.map(|p| AmongHeirs::from_bytes(&p)) else { return };
-        match message {
-            AmongHeirs::Host { term } => {
-                self.known = self.known.max(term.number);
-                match &mut self.phase {
-                    StationPhase::Hosts(host) if term > host.term => {
-                        self.core.note("another host has a later turn: joining it");
-                        self.core.events.push_back(Event::Hosting(false));
-                        let mut member =
-                            Member::new(&mut self.core, self.invitation.clone(), now_us);
-                        (member.level, member.term) = (true, term);
-                        member.succession = Some(host.succession());
-                        self.phase = StationPhase::Follows(Box::new(member));
-                        self.election = None;
-                    }
-                    StationPhase::Follows(member) if term >= member.term => {
-                        self.heard_host_us = now_us;
-                        member.vouched(now_us);
-                        if term > member.term && (member.follows() || self.election.is_some()) {
-                            member.greet(&mut self.core, now_us);
+        self.among.heard.take(message.challenge, now_us);
+        let own = self.among.challenge;
+        let is_answer = own != 0 && message.heard.contains(&own);
+        let core = &mut self.core;
+        match (message.word, &mut self.phase) {
+            (HeirsWord::Candidate { .. } | HeirsWord::Who, StationPhase::Hosts(host)) => {
+                host.present(message.challenge, now_us);
+            }
+            (HeirsWord::Host { .. }, StationPhase::Hosts(_)) => {}
+            (HeirsWord::Host { term }, StationPhase::Follows(member)) => {
+                if !is_answer {
+                    // It may be a recorded one: it is asked.
+                    let is_news = self.election.is_some() || term > member.term;
+                    if is_news && now_us >= self.among.asked_us + ASK_US {
+                        self.among.asked_us = now_us;
+                        if self.election.is_none() {
+                            self.among.challenge = core.draw();
                         }
-                        self.election = None;
+                        self.among.say(core, HeirsWord::Who, now_us);
                     }
-                    _ => {}
+                    return;
+                }
+                self.known = self.known.max(term.number);
+                if term >= member.term {
+                    self.heard_host_us = now_us;
+                    member.vouched(now_us);
+                    if term > member.term && (member.follows() || self.election.is_some()) {
+                        member.greet(core, now_us);
+                    }
+                    self.election = None;
                 }
             }
-            AmongHeirs::Candidate { known, reached, by } => {
-                self.known = self.known.max(known);
-                match &mut self.phase {
-                    StationPhase::Hosts(host) => host.present(),
-                    // One way of several stands still: who hears the host vouches for it.
-                    StationPhase::Follows(member) if member.hears_host(now_us) => {
-                        let term = member.term;
-                        let core = &mut self.core;
-                        let heirs = self.heirs.get_or_insert_with(|| HeirsSeal::new(&group, core));
-                        core.among_heirs(heirs, AmongHeirs::Host { term });
-                    }
-                    StationPhase::Follows(_) => {}
+            (HeirsWord::Who, StationPhase::Follows(_)) => {}
+            (HeirsWord::Candidate { known, reached, by }, StationPhase::Follows(member)) => {
+                // One way of several stands still: who hears the host vouches for it.
+                if member.hears_host(now_us) {
+                    let term = member.term;
+                    self.among.say(core, HeirsWord::Host { term }, now_us);
                 }
+                if !is_answer {
+                    return;
+                }
+                self.known = self.known.max(known);
                 if let Some(election) = self.election.as_mut().filter(|e| !e.decided)
                     && better((reached, by), election.best)
                 {
@@ -270,14 +437,15 @@ impl Station {
 
     /// Passes time: frames are made, datagrams sent, a silent host is replaced.
     pub fn advance(&mut self, now_us: u64) {
-        if self.ended {
+        if self.core.ended {
             return;
         }
+        self.look_for_host(now_us);
         match &mut self.phase {
             StationPhase::Hosts(host) => host.advance(&mut self.core, now_us),
             StationPhase::Follows(member) => {
                 member.advance(&mut self.core, now_us);
-                let may = member.level && member.succession.is_some();
+                let may = member.level && self.core.group.is_some() && self.core.members.is_some();
                 if member.lost && self.core.role != Role::Sculptor {
                     member.greet(&mut self.core, now_us);
                     member.lost = false;
@@ -302,23 +470,43 @@ impl Station {
         self.elect(now_us);
     }
 
+    /// Who looks for a host and finds none may host.
+    fn look_for_host(&mut self, now_us: u64) {
+        let (Some(look), StationPhase::Follows(member)) = (&mut self.look, &mut self.phase) else {
+            return;
+        };
+        if !member.is_unanswered() {
+            if self.core.person != 0 {
+                self.look = None;
+                self.core.events.push_back(Event::Hosting(false));
+            }
+        } else if now_us >= look.until_us && !look.claimed {
+            look.claimed = true;
+            member.claim(&mut self.core, now_us);
+            self.core.events.push_back(Event::NobodyHosts);
+        }
+    }
+
     fn begin_election(&mut self, now_us: u64) {
         let best = (self.core.log.reached(), self.core.address);
-        let until_us = now_us + DECIDE_US;
+        let mut is_long = false;
+        if let StationPhase::Follows(member) = &self.phase {
+            is_long = member.is_far();
+            self.known = self.known.max(member.term.number);
+        }
+        let until_us = now_us + if is_long { DECIDE_US.1 } else { DECIDE_US.0 };
         self.heard_host_us = now_us;
+        self.among.challenge = self.core.draw();
         self.election = Some(Election { until_us, next_us: now_us, best, decided: false });
     }
 
     fn elect(&mut self, now_us: u64) {
-        let Some((keyring, group)) = self.group() else { return };
         let Some(election) = &mut self.election else { return };
         if now_us >= election.next_us && !election.decided {
             election.next_us = now_us + CANDIDATE_US;
-            let address = self.core.address;
-            let core = &mut self.core;
-            let heirs = self.heirs.get_or_insert_with(|| HeirsSeal::new(&group, core));
-            let (known, reached) = (self.known, core.log.reached());
-            core.among_heirs(heirs, AmongHeirs::Candidate { known, reached, by: address });
+            let (known, reached) = (self.known, self.core.log.reached());
+            let word = HeirsWord::Candidate { known, reached, by: self.core.address };
+            self.among.say(&mut self.core, word, now_us);
         }
         if now_us < election.until_us {
             return;
@@ -337,7 +525,7 @@ impl Station {
         let (number, base) = (self.known, self.core.log.last());
         let term = Term { number, base, host: self.core.address };
         self.core.note(format!("takes over as the host of turn {number}, after frame {base}"));
-        let host = Host::new(&mut self.core, keyring, group, term, now_us);
+        let host = Host::new(&mut self.core, term, now_us);
         self.phase = StationPhase::Hosts(Box::new(host));
         if let StationPhase::Hosts(host) = &mut self.phase {
             host.advance(&mut self.core, now_us);
@@ -407,9 +595,4 @@ impl Station {
             _ => now_us + (LOST_US / 50).min(2 * tick),
         }
     }
-}
-
-/// Returns true if candidate `a` is better: it has more of the log; of equals, the lower address.
-fn better(a: (Reached, Address), b: (Reached, Address)) -> bool {
-    a.0 > b.0 || a.0 == b.0 && a.1 < b.1
 }

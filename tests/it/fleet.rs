@@ -90,7 +90,9 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
 
     // Requests.
     let (code, said) = staff.ask(&["message", "The lights, please", "hall", "tower"]);
-    assert_eq!((code, said["answers"][0]["outcome"].as_str()), (Some(0), Some("done")));
+    // They have no screen, and say so; the log has the message.
+    assert_eq!((code, said["answers"][0]["outcome"].as_str()), (Some(1), Some("refused")));
+    assert!(said["answers"][0].to_string().contains("it has no screen"), "{said}");
     assert_eq!(staff.ask(&["restart-visit", "hall"]).0, Some(0));
     let (_, logs) = staff.ask(&["logs", "hall", "--lines", "50"]);
     let lines = logs["answers"][0]["lines"].as_array().cloned().unwrap_or_default();

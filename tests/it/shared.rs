@@ -5,9 +5,10 @@ use std::path::Path;
 
 use std::process::{Command, Output, Stdio};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::daemon_process::{Daemon, free_endpoint};
+use crate::seeded::Random;
 use crate::waiting::{comes, until};
 
 impl Daemon {
@@ -101,7 +102,9 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     until("the wall is there", || wall.hash().is_some());
     wall.follows(&ada, "");
     let bad = folder.path().join("bad.key");
-    let text = format!("role = \"sculptor\"\nkey = \"{}\"\n", "07".repeat(32));
+    let text = std::fs::read_to_string(keys.join("sculptor.key")).expect("an invitation");
+    let line = text.lines().find(|l| l.starts_with("key = ")).expect("a key");
+    let text = text.replace(line, &format!("key = \"{}\"", "07".repeat(32)));
     sculptd_geometry::io::write_beside(&bad, |out| out.write_all(text.as_bytes()))
         .expect("written");
     let bad = bad.display().to_string();
@@ -118,6 +121,132 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
     bob.stroke(0.6);
     assert!(comes(|| bob.hash().is_some_and(|h| h != before)));
     bob.follows(&wall, &before);
+}
+
+/// Sends a request: its reply, or the reason for its refusal.
+fn ask(of: &Daemon, method: &str, params: &str) -> Result<Value, String> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
+    command.args(["--json", "ctl", method, params]);
+    let out = command.env("XDG_RUNTIME_DIR", of.home.path()).output().expect("runs");
+    match out.status.success() {
+        true => Ok(serde_json::from_slice(&out.stdout).expect("JSON")),
+        false => Err(String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned()),
+    }
+}
+
+const STROKE: &str =
+    r#"{"space":"view","points":[[0.45,0.5,0.7,0],[0.5,0.5,0.7,80],[0.55,0.5,0.7,160]]}"#;
+
+fn link_of(of: &Daemon) -> Value {
+    ask(of, "people", "{}").expect("people")["link"].clone()
+}
+
+#[test]
+fn what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let keys = folder.path().join("keys");
+    let (keys_text, at) = (keys.display().to_string(), free_endpoint());
+    let name = format!("truth-{}", std::process::id());
+    let host = ["--host", &*name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
+    let mut ada = Daemon::run(&host);
+    until("the host answers", || ada.hash().is_some());
+    // Invited while the host runs.
+    let bobs =
+        invite(folder.path(), &[&*name, "--as", "Bob", "--keys", &keys_text, "--connect", &at]);
+    let file = folder.path().join("bob.sculpt");
+    let file_text = file.display().to_string();
+    let link = bobs["link"].as_str().expect("a link");
+    let mut bob = Daemon::run(&["--join", link, "--session", &file_text]);
+    until("Bob is there", || bob.hash().is_some());
+    // The invitation says the role.
+    let viewer = key(&keys, "viewer");
+    let wall = Daemon::run(&join(&name, &viewer, &at, "Wall"));
+    until("the wall is there", || wall.hash().is_some());
+    for (method, params) in
+        [("stroke", STROKE), ("layers.add", "{}"), ("undo", "{}"), ("brush", r#"{"radius":0.1}"#)]
+    {
+        let why = ask(&wall, method, params).expect_err(method);
+        assert!(why.contains("a viewer of a shared sculpture changes nothing"), "{method}: {why}");
+    }
+    assert_eq!(link_of(&ada)["state"], "hosts");
+    until("Bob follows Ada", || {
+        let link = link_of(&bob);
+        link["state"] == "follows" && link["host"] == "Ada" && link["waiting"] == 0
+    });
+    // An answered stroke is in everybody's order: the host has it as soon as it hears of it.
+    let before = ada.hash().expect("a hash");
+    ask(&bob, "stroke", STROKE).expect("made");
+    assert_ne!(bob.hash().as_deref(), Some(&*before), "it is made when the answer comes");
+    bob.follows(&ada, &before);
+    let both = ada.hash().expect("a hash");
+
+    // Bob is withdrawn: he gets the reason, goes on alone, keeps that, and the exit code is 1.
+    let out =
+        sculptd(folder.path(), &["invite", &name, "--withdraw", "Bob", "--keys", &keys_text], "");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    until("Bob is sent away", || link_of(&bob)["state"] == "sent-away");
+    assert!(link_of(&bob)["reason"].as_str().is_some_and(|r| r.contains("withdrawn")));
+    ask(&bob, "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made alone");
+    let alone = bob.hash().expect("a hash");
+    assert_ne!(alone, both, "he goes on alone");
+    assert_eq!(ada.hash(), Some(both.clone()));
+    assert_eq!(ask(&bob, "status", "{}").expect("status")["shared"]["state"], "sent-away");
+    assert_eq!(end(&mut bob), Some(1));
+    assert!(bob.has_told("was sent away: the invitation was withdrawn"));
+    assert_eq!(replayed(&file), Some(alone), "his own file has it");
+    let mut again = Daemon::run(&["--join", link]);
+    until("Bob is turned away", || again.child.try_wait().expect("waited for").is_some());
+    assert!(again.has_told("was withdrawn"), "{:?}", again.told.lock().expect("no panic"));
+    assert_eq!(end(&mut ada), Some(0));
+}
+
+#[test]
+fn the_same_command_again_joins_the_sculpture_that_is_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let keys = folder.path().join("keys");
+    let (keys_text, at) = (keys.display().to_string(), free_endpoint());
+    let name = format!("again-{}", std::process::id());
+    let host = ["--host", &*name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
+    let mut ada = Daemon::run(&host);
+    until("the host answers", || ada.hash().is_some());
+    let at_bob = free_endpoint();
+    let sculptor = key(&keys, "sculptor");
+    let mut of_bob = join(&name, &sculptor, &at, "Bob");
+    of_bob.extend(["--listen", &at_bob]);
+    let bob = Daemon::run(&of_bob);
+    until("Bob is there", || bob.hash().is_some());
+    ask(&bob, "stroke", STROKE).expect("made");
+    bob.follows(&ada, "");
+    ada.child.kill().expect("killed");
+    until("Bob takes over", || link_of(&bob)["state"] == "hosts");
+    ask(&bob, "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made");
+    let mut again = host.to_vec();
+    again.extend(["--connect", &at_bob]);
+    let ada = Daemon::run(&again);
+    until("Ada is back", || ada.hash().is_some());
+    assert!(ada.has_told("is shared already"), "{:?}", ada.told.lock().expect("no panic"));
+    ada.follows(&bob, "");
+    assert_eq!(
+        (&link_of(&ada)["state"], &link_of(&ada)["host"]),
+        (&"follows".into(), &"Bob".into())
+    );
+    // Another owner does not get the name.
+    let other = folder.path().join("other").display().to_string();
+    let others = ["--host", &*name, "--keys", &other, "--connect", &at_bob, "--as", "Eve"];
+    let mut eve = Daemon::run(&others);
+    until("Eve is turned away", || eve.child.try_wait().expect("waited for").is_some());
+    assert!(eve.has_told("choose another name"), "{:?}", eve.told.lock().expect("no panic"));
+}
+
+/// Ends a daemon as a person does; its exit code.
+fn end(daemon: &mut Daemon) -> Option<i32> {
+    ask(daemon, "shutdown", "{}").expect("it ends");
+    let mut code = None;
+    until("it has ended", || {
+        code = daemon.child.try_wait().expect("waited for");
+        code.is_some()
+    });
+    code.and_then(|status| status.code())
 }
 
 /// The hash that a session's file gives.
@@ -253,7 +382,8 @@ fn guests_join_by_a_link_see_each_other_and_take_back_their_own_steps() {
     ada.stroke(0.35);
     bob.follows(&ada, &both);
     let over = ada.hash().expect("a hash");
-    bob.ctl("undo", None).expect("sent");
+    let why = ask(&bob, "undo", "{}").expect_err("Ada's step is in the way");
+    assert!(why.contains("somebody else changed the same place since"), "{why}");
     until("Bob is told whose step is in the way", || people(&bob)["undo_refused"]["by"] == 1);
     assert_eq!((bob.hash(), ada.hash()), (Some(over.clone()), Some(over)));
 
@@ -282,9 +412,12 @@ fn a_broken_link_is_refused_by_what_is_wrong_and_nothing_of_it_is_shown() {
     };
     let cut = &link[..link.find(&key[40..]).expect("there")];
     let king = link.replace("role=sculptor", "role=king");
+    let digit = if key.starts_with('0') { "1" } else { "0" };
+    let wrong = link.replacen(key, &format!("{digit}{}", &key[1..]), 1);
     let broken = [
-        (cut, "expected key= and 64 hexadecimal digits"),
-        (&king, "expected role=sculptor, role=viewer or role=device"),
+        (cut, "copy the link as a whole"),
+        (&king, "copy the link as a whole"),
+        (&wrong, "copy the link as a whole"),
         ("https://join/dragon?key=00", "expected a link that begins with sculptd://join/"),
     ];
     for (link, why) in broken {
@@ -327,4 +460,89 @@ fn a_broken_link_is_refused_by_what_is_wrong_and_nothing_of_it_is_shown() {
     // Without --json: the link alone, where nobody looks at a terminal.
     let out = sculptd(home.path(), &["invite", "dragon", "--keys", &keys], "");
     assert_eq!(String::from_utf8_lossy(&out.stdout).trim(), link);
+}
+
+/// One of the commands that change a sculpture, with parameters that mean something mostly.
+fn any_command(r: &mut Random, of: &Daemon, file: &Path) -> (&'static str, Value) {
+    let of_list = |method: &str, list: &str| {
+        let reply = ask(of, method, "{}").unwrap_or_default();
+        let all = reply[list].as_array().cloned().unwrap_or_default();
+        all.into_iter().map(|o| o["id"].clone()).collect::<Vec<_>>()
+    };
+    let objects = of_list("scene.list", "objects");
+    let one = objects.get(r.below(objects.len().max(1) as u64) as usize).cloned();
+    let other = objects.get(r.below(objects.len().max(1) as u64) as usize).cloned();
+    let layer = of_list("layers.list", "layers").pop().unwrap_or(json!(0));
+    let (x, y) = (0.4 + 0.1 * r.part(), 0.4 + 0.2 * r.part());
+    match r.below(20) {
+        0..4 => {
+            ("stroke", json!({ "space": "view", "points": [[x, y, 1, 0], [x + 0.1, y, 1, 60]] }))
+        }
+        4 => ("undo", json!({})),
+        5 => ("redo", json!({})),
+        6 => ("brush", json!({ "radius": 0.1 + 0.3 * r.part(), "kind": r.of(&["draw", "clay"]) })),
+        7 => ("mask", json!({ "action": r.of(&["clear", "fill", "invert"]) })),
+        8 => ("mask-region", json!({ "region": { "box": [0.3, 0.3, 0.6, 0.6] }, "mask": 0.7 })),
+        9 => ("camera", json!({ "yaw": 3.0 * r.part() })),
+        10 => ("remesh", json!({ "voxel": 0.06 + 0.05 * r.part() })),
+        11 => ("decimate", json!({ "triangles": 1500 })),
+        12 => ("trim", json!({ "part": { "box": [0.0, 0.0, 0.4, 1.0] } })),
+        13 => {
+            ("boolean", json!({ "operation": "union", "path": file, "at": [r.part(), 0.9, 0.0] }))
+        }
+        14 => ("scene.add", json!({ "primitive": { "ball": 0.4 }, "edge": 0.1 })),
+        15 => ("scene.mirror", json!({ "id": one, "axis": "x" })),
+        16 => ("scene.boolean", json!({ "operation": "union", "a": one, "b": other })),
+        17 => ("layers.add", json!({})),
+        18 => ("layers.set", json!({ "layer": layer, "intensity": r.part() })),
+        _ => ("load", json!({ "path": file })),
+    }
+}
+
+/// After each command of each person all have one clay, and in the end every file gives it,
+/// replayed and opened. `SCULPTD_SHARED_STEPS`: how many commands.
+#[test]
+fn every_command_of_each_gives_one_clay_here_there_and_in_every_file() {
+    let steps = std::env::var("SCULPTD_SHARED_STEPS").ok().and_then(|t| t.parse().ok());
+    let folder = tempfile::tempdir().expect("a folder");
+    let keys = folder.path().join("keys");
+    let (keys_text, at) = (keys.display().to_string(), free_endpoint());
+    let name = format!("commands-{}", std::process::id());
+    let small = folder.path().join("small.ply");
+    let ball = sculptd_geometry::shapes::sphere_of_about(800);
+    sculptd_geometry::io::write_mesh(&small, &ball.to_poly()).expect("written");
+    let files = ["ada", "bob"].map(|who| folder.path().join(format!("{who}.sculpt")));
+    let texts = files.each_ref().map(|f| f.display().to_string());
+    let host = ["--host", &*name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
+    let mut ada = Daemon::run(&[&host[..], &["--session", &texts[0]]].concat());
+    until("the host answers", || ada.hash().is_some());
+    ask(&ada, "load", &json!({ "path": small }).to_string()).expect("loaded");
+    let sculptor = key(&keys, "sculptor");
+    let of_bob = [&join(&name, &sculptor, &at, "Bob")[..], &["--session", &texts[1]]].concat();
+    let mut bob = Daemon::run(&of_bob);
+    until("Bob is there", || bob.hash().is_some());
+    let mut r = Random(0x9e37_79b9_7f4a_7c15);
+    let mut refused = 0;
+    let steps = steps.unwrap_or(24);
+    for step in 0..steps {
+        let by = if r.below(2) == 0 { &ada } else { &bob };
+        let (method, params) = any_command(&mut r, by, &small);
+        let done = ask(by, method, &params.to_string());
+        refused += usize::from(done.is_err());
+        until(&format!("step {step}, {method} {params}: one clay ({done:?})"), || {
+            let (a, b) = (ada.hash(), bob.hash());
+            a.is_some() && a == b
+        });
+    }
+    assert!(refused < steps / 2, "{refused} of {steps} commands were refused");
+    let clay = ada.hash();
+    for daemon in [&mut bob, &mut ada] {
+        assert_eq!(end(daemon), Some(0), "{:?}", daemon.told.lock().expect("no panic"));
+    }
+    for (file, text) in files.iter().zip(&texts) {
+        assert_eq!(replayed(file), clay, "replay of {text}");
+        let again = Daemon::run(&["--session", text]);
+        until("it opens", || again.hash().is_some());
+        assert_eq!(again.hash(), clay, "{text}, opened");
+    }
 }

@@ -1,8 +1,8 @@
 //! The reply of `people`.
 
 use crate::Published;
-use crate::people::{Person, PersonRole, colour_of};
-use sculptd_control::people::{self, PeopleReply, PersonInfo, PersonPen, UndoRefused};
+use crate::people::{Person, PersonRole, SharedState, colour_of};
+use sculptd_control::people::{self, PeopleReply, PersonInfo, PersonPen, SharedLink, UndoRefused};
 use sculptd_engine::world::OthersPen;
 
 pub(super) fn people(shown: &Published) -> PeopleReply {
@@ -30,6 +30,7 @@ pub(super) fn people(shown: &Published) -> PeopleReply {
         shared,
         own: known.own,
         people: known.all.iter().map(info).collect(),
+        link: link(shown),
         own_input: shared.then_some(people::OwnInput {
             transitions: input.transitions,
             batches: input.batches,
@@ -40,6 +41,28 @@ pub(super) fn people(shown: &Published) -> PeopleReply {
         }),
         undo_refused: refused.map(|r| UndoRefused { tick: r.tick, redo: r.redo, by: r.by }),
     }
+}
+
+/// The connection to the others; `None` if nothing is shared.
+pub(super) fn link(shown: &Published) -> Option<SharedLink> {
+    let (known, standing) = (shown.people.as_ref()?, shown.standing);
+    let state = match standing.state {
+        SharedState::NotShared => return None,
+        SharedState::Hosts => people::SharedState::Hosts,
+        SharedState::Follows => people::SharedState::Follows,
+        SharedState::CutOff => people::SharedState::CutOff,
+        SharedState::SentAway => people::SharedState::SentAway,
+    };
+    Some(SharedLink {
+        state,
+        host: known.person(standing.host).map(|p| p.name.clone()),
+        since_s: standing.since_s,
+        waiting: standing.waiting,
+        undelivered: standing.undelivered,
+        reason: known.sent_away.clone(),
+        sculpture: known.sculpture.clone(),
+        others: known.others.clone(),
+    })
 }
 
 fn pen(pen: &OthersPen) -> PersonPen {

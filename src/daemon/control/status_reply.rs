@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::host::{Host, failed};
+use super::people_reply;
 use crate::Published;
 use crate::window_link::WindowStanding;
 use sculptd_control::RpcError;
@@ -72,6 +73,7 @@ pub(super) fn status(
         redo_steps: shown.redo_steps as u64,
         brush: convert(shown.brush)?,
         curve_points: shown.draft.points().len() as u64,
+        shared: people_reply::link(&shown),
         journal: host.journal.as_ref().map(|h| status::JournalStatus {
             written: h.written.load(Relaxed),
             lost: h.lost.load(Relaxed),

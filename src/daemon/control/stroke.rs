@@ -10,17 +10,22 @@ use glam::{Vec2, Vec3};
 use super::loop_link::LoopLink;
 use crate::Published;
 use crate::adaptors::CONTROL_PEN_ID;
+use crate::people::SharedState;
 use sculptd_clay::brush::{BrushSettings, Picture};
 use sculptd_control::RpcError;
 use sculptd_control::brush::{StrokeParams, StrokePoint, StrokeReply};
 use sculptd_devices::queue::{Sender, SenderFactory};
 use sculptd_devices::{Body, Clock, Pen, Sample, Tool};
 use sculptd_engine::command::Command;
+use sculptd_engine::scene::SceneError;
 
 /// Size of the virtual pen's active area, mm: the view's height, and its width by the aspect.
 const AREA_MM: f32 = 200.0;
 /// Longest wait for the loop to take what was sent and to lay every dab of it.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// Longest wait for a daemon that is cut off from a shared sculpture: longer than a successor of a
+/// lost host needs.
+const CUT_OFF: Duration = Duration::from_secs(5);
 /// Between two looks at the loop.
 const LOOK: Duration = Duration::from_millis(1);
 /// A point in space is seen where the first surface on the line of sight is no further from it than
@@ -68,6 +73,9 @@ impl VirtualPen {
         brush: Option<LentBrush>,
     ) -> Result<StrokeReply, RpcError> {
         let shown = link.published.load_full();
+        if shown.looks_on() {
+            return Err(RpcError::failed(SceneError::LooksOn.to_string()));
+        }
         let points = in_view(&shown, stroke)?;
         if let Some(lent) = &brush {
             if let Some(picture) = &lent.picture {
@@ -131,7 +139,14 @@ impl VirtualPen {
             }
             let _ = quiet.recv_timeout(LOOK);
         }
-        let tick = self.await_tick(link)?;
+        let mut tick = self.await_tick(link)?;
+        let shown = link.published.load_full();
+        if shown.standing.state != SharedState::NotShared {
+            // In the order of everybody's input the command comes after the stroke: once it is
+            // carried out, the stroke is made.
+            link.carry_out(Command::Brush(shown.brush))?;
+            tick = link.effect.load(Relaxed);
+        }
         Ok(StrokeReply { samples: points.len() as u64 + 1, tick })
     }
 
@@ -139,6 +154,7 @@ impl VirtualPen {
     fn await_tick(&self, link: LoopLink<'_>) -> Result<u64, RpcError> {
         let quiet = crossbeam_channel::never::<()>();
         let give_up = self.clock.now_us() + PATIENCE.as_micros() as u64;
+        let cut_off = self.clock.now_us() + CUT_OFF.as_micros() as u64;
         // The tick under way may have looked already.
         let by = link.published.load().tick + 2;
         loop {
@@ -148,8 +164,14 @@ impl VirtualPen {
                 link.effect.store(shown.tick, Relaxed);
                 return Ok(shown.tick);
             }
-            if link.stopped() || self.clock.now_us() > give_up {
+            let now_us = self.clock.now_us();
+            if link.stopped() || now_us > give_up {
                 return Err(not_taken());
+            }
+            if shown.standing.state == SharedState::CutOff && now_us > cut_off {
+                let text = "cut off from the others: the stroke waits, and is made as soon as the \
+                            host or a successor is heard; `people` says what waits";
+                return Err(RpcError::failed(text));
             }
             let _ = quiet.recv_timeout(LOOK);
         }

@@ -165,7 +165,8 @@ impl GuestList {
     fn show(&self, list: &List) {
         let all: Vec<Person> =
             list.entries.iter().filter(|e| e.away.is_none()).map(person).collect();
-        let people = (!all.is_empty()).then(|| Arc::new(PeopleHere { own: 0, all }));
+        let people =
+            (!all.is_empty()).then(|| Arc::new(PeopleHere { all, ..PeopleHere::default() }));
         self.shown.store(people);
     }
 

@@ -313,4 +313,13 @@ pub enum SceneError {
     /// A command that cannot be shared with others.
     #[error("this cannot be shared with the others at this sculpture")]
     NotShared,
+    /// A command of somebody who only looks on.
+    #[error("a viewer of a shared sculpture changes nothing: join as a sculptor")]
+    LooksOn,
+    /// A command with more data than can be shared at once.
+    #[error("this is larger than the 8 MiB that can be shared at once")]
+    TooLarge,
+    /// Too much of this daemon's input is on its way to the others.
+    #[error("too much is still on its way to the others: try again when less waits")]
+    Congested,
 }

@@ -123,9 +123,6 @@ impl FleetConsole {
                     _ => self.forged += 1,
                 }
             }
-            StaffMessage::TokenEnded { name, run } => {
-                self.registry.token_ended(&name, &run, now_us);
-            }
             StaffMessage::Answer { name, sealed } => {
                 let secret = self.key.secret_of(&name);
                 let plain = secret.and_then(|s| open_sealed(&s, FleetWay::Answer, &sealed));

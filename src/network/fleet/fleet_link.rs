@@ -1,14 +1,12 @@
 //! The messages of a fleet over Zenoh: the keys that [`super`] lists.
 //!
-//! A link that is silent is given up after [`LEASE_MS`], so that a computer whose cable was pulled
-//! is lost from the list in time; one whose program has ended is at once.
+//! A link that is silent is given up after [`LEASE_MS`].
 
 use crossbeam_channel as cc;
 use zenoh::Wait;
-use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::{Publisher, Subscriber};
 use zenoh::qos::CongestionControl;
-use zenoh::sample::{Sample, SampleKind};
+use zenoh::sample::Sample;
 
 use super::KEY_ROOT;
 use super::state::fleet_name;
@@ -31,13 +29,6 @@ pub enum StaffMessage {
         /// [`super::access::state_tag`].
         tag: Vec<u8>,
     },
-    /// A run has ended.
-    TokenEnded {
-        /// The installation's name.
-        name: String,
-        /// The run.
-        run: String,
-    },
     /// A sealed answer.
     Answer {
         /// The installation's name.
@@ -59,19 +50,17 @@ pub struct InstallationLink {
     /// Sealed requests.
     pub requests: cc::Receiver<Vec<u8>>,
     _requests: Subscriber<()>,
-    _token: LivelinessToken,
     _session: zenoh::Session,
 }
 
 impl InstallationLink {
-    /// Opens a session and announces the run.
+    /// Opens a session.
     ///
     /// # Errors
     /// An endpoint cannot be used; the text says why.
     pub fn open(
         fleet: &str,
         name: &str,
-        run: &str,
         endpoints: &Endpoints,
     ) -> Result<InstallationLink, String> {
         let session = open_session(endpoints, LEASE_MS)?;
@@ -89,16 +78,7 @@ impl InstallationLink {
             publisher.congestion_control(CongestionControl::Drop).wait().map_err(failed)
         };
         let (state, answers) = (publisher("state")?, publisher("answer")?);
-        let alive = format!("{}/{run}", key(fleet, "alive", name));
-        let token = session.liveliness().declare_token(alive).wait().map_err(failed)?;
-        Ok(InstallationLink {
-            state,
-            answers,
-            requests,
-            _requests: subscriber,
-            _token: token,
-            _session: session,
-        })
+        Ok(InstallationLink { state, answers, requests, _requests: subscriber, _session: session })
     }
 
     /// Publishes a state with its tag.
@@ -123,7 +103,7 @@ pub struct StaffLink {
     fleet: String,
     /// Received messages.
     pub incoming: cc::Receiver<StaffMessage>,
-    _subscribers: [Subscriber<()>; 3],
+    _subscribers: [Subscriber<()>; 2],
 }
 
 impl StaffLink {
@@ -146,18 +126,7 @@ impl StaffLink {
             subscriber.callback(callback).wait().map_err(failed)
         };
         let (states, answers) = (subscribe("state")?, subscribe("answer")?);
-        let sender = sender.clone();
-        let tokens = session.liveliness().declare_subscriber(key(fleet, "alive", "*/*"));
-        let tokens = tokens.callback(move |sample: Sample| {
-            if let [.., name, run] = parts(&sample)[..]
-                && sample.kind() == SampleKind::Delete
-            {
-                let (name, run) = (name.to_owned(), run.to_owned());
-                let _ = sender.try_send(StaffMessage::TokenEnded { name, run });
-            }
-        });
-        let tokens = tokens.wait().map_err(failed)?;
-        let (fleet, _subscribers) = (fleet.to_owned(), [states, answers, tokens]);
+        let (fleet, _subscribers) = (fleet.to_owned(), [states, answers]);
         Ok(StaffLink { session, fleet, incoming, _subscribers })
     }
 

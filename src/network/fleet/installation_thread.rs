@@ -28,7 +28,7 @@ use sculptd_daemon::adaptors::{Adaptors, DeviceStanding, StandingKind};
 use sculptd_daemon::disk_space::free_bytes;
 use sculptd_daemon::kiosk::Stage;
 use sculptd_daemon::kiosk::desk::KioskDesk;
-use sculptd_daemon::window_link::WindowLink;
+use sculptd_daemon::window_link::{WindowLink, WindowStanding};
 use sculptd_devices::Clock;
 
 /// Interval at which changes are measured.
@@ -107,7 +107,7 @@ pub fn start(mut part: FleetPart, run: RunInSight) -> Result<JoinHandle<()>, Str
     let mut id = [0; 8];
     (part.entropy)(&mut id);
     let id: String = id.iter().map(|b| format!("{b:02x}")).collect();
-    let link = InstallationLink::open(&part.fleet, &part.name, &id, &part.endpoints)?;
+    let link = InstallationLink::open(&part.fleet, &part.name, &part.endpoints)?;
     let clock = Clock::monotonic();
     let identity = InstallationIdentity {
         name: part.name.clone(),
@@ -226,6 +226,9 @@ impl InstallationPort for DaemonPort {
         let text: String = text.chars().filter(|c| !c.is_control() || *c == '\n').collect();
         if !text.is_empty() {
             tracing::info!("a message of the fleet's staff: {text}");
+            if self.run.window.standing() != WindowStanding::Open {
+                return Err("it has no screen: the message is in its log only".into());
+            }
         }
         let mut shown = self.run.desk.message.lock().unwrap_or_else(PoisonError::into_inner);
         let (what, text) = match text.is_empty() {

@@ -9,7 +9,6 @@
 //!
 //! ```text
 //! sculptd/fleet/1/FLEET/state/INSTALLATION     state, JSON, in the clear; attached: its tag
-//! sculptd/fleet/1/FLEET/alive/INSTALLATION/RUN liveliness token
 //! sculptd/fleet/1/FLEET/request/INSTALLATION   requests of staff, sealed
 //! sculptd/fleet/1/FLEET/answer/INSTALLATION    answers to them, sealed
 //! ```
@@ -17,6 +16,7 @@
 //! Laws kept here:
 //! * State says nothing of visitors. Anybody on the network can read it; only a holder of the
 //!   installation's key can publish an accepted one.
+//! * Whether an installation is online follows from its signed states alone.
 //! * Only holders of the staff's key can send requests, and no request is carried out twice.
 //! * A lost network stops no installation. The installation itself reverts settings on trial unless
 //!   a request keeps them.

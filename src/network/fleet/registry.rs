@@ -1,7 +1,8 @@
 //! The list of a fleet: the newest state of each installation, and whether it is online.
 //!
 //! An installation is online while its publications arrive. One that is silent for [`LOST_US`] is
-//! lost, and one whose liveliness token ends is lost at once. A returning one is online with its
+//! lost. No other message ends it, because anybody on the network could send that. A returning one
+//! is online with its
 //! next publication: nothing has to be caught up, because each publication is complete.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -119,17 +120,6 @@ impl FleetRegistry {
         true
     }
 
-    /// The liveliness token of a run has ended.
-    pub fn token_ended(&mut self, name: &str, run: &str, now_us: u64) {
-        if let Some(entry) = self.entries.get_mut(name)
-            && entry.here
-            && entry.state.run == run
-        {
-            (entry.here, entry.since_us) = (false, now_us);
-            self.changes.push_back(FleetChange::Lost(name.into()));
-        }
-    }
-
     /// Passes time: who has been silent for too long is lost.
     pub fn advance(&mut self, now_us: u64) {
         if now_us < self.look_us {
@@ -187,14 +177,10 @@ mod tests {
         assert!(!list.observe(state("0", 50, 9), 4), "one before that, which nobody heard");
         assert_eq!(list.refused, 4);
         // A lost installation restarts with a clock that was set back; an old run stays an old run.
-        list.token_ended("hall", "a", 5);
-        assert!(
-            list.get("hall").is_some_and(RegistryEntry::is_here),
-            "the token of the run before"
-        );
-        list.token_ended("hall", "b", 5);
-        assert!(!list.observe(state("a", 100, 10), 6));
-        assert!(list.observe(state("c", 50, 1), 6));
+        list.advance(LOST_US + 3);
+        let later = LOST_US + 4;
+        assert!(!list.observe(state("a", 100, 10), later));
+        assert!(list.observe(state("c", 50, 1), later));
     }
 
     #[test]

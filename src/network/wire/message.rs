@@ -1,18 +1,17 @@
-//! The messages. Those of [`Greeting`] go in the clear and only lead to a key; all others are
-//! sealed ([`crate::seal`]): whoever holds no key can neither read nor write one.
+//! The sealed messages ([`crate::seal`]): whoever holds no key can neither read nor write one.
+//! The messages before there is a key: [`super::greeting`].
 
 use super::bytes::{BadBytes, ByteReader, put_bytes, put_number};
 use super::frame::{Arrival, Batch, MAX_NAME, PersonId, Role};
 use super::frame_codec::{put_batches, take_batches};
+use super::keys::MAX_MEMBERSHIP;
 
-/// The version of the messages; a host refuses others by name.
-pub const VERSION: u16 = 4;
 /// Bytes of one chunk of a checkpoint.
 pub const CHUNK: usize = 32 << 10;
 /// Bytes of a reason.
-const MAX_REASON: usize = 512;
-/// Bytes of the keys that a successor is given.
-const MAX_KEYRING: usize = 64 << 10;
+pub(super) const MAX_REASON: usize = 512;
+/// Challenges that one message among the heirs answers.
+pub const MAX_HEARD: usize = 64;
 /// Chunks of a checkpoint: 8 GiB.
 const MAX_CHUNKS: u64 = 1 << 18;
 
@@ -34,51 +33,19 @@ pub struct Term {
 }
 
 impl Term {
-    fn put(&self, out: &mut Vec<u8>) {
+    pub(super) fn put(&self, out: &mut Vec<u8>) {
         put_number(out, u64::from(self.number));
         put_number(out, self.base);
         out.extend(self.host.to_le_bytes());
     }
 
-    fn take(bytes: &mut ByteReader<'_>) -> Result<Term, BadBytes> {
+    pub(super) fn take(bytes: &mut ByteReader<'_>) -> Result<Term, BadBytes> {
         Ok(Term {
             number: bytes.at_most(u64::from(u32::MAX - 1))? as u32,
             base: bytes.at_most(u64::MAX >> 1)?,
             host: u64::from_le_bytes(bytes.array()?),
         })
     }
-}
-
-/// In the clear: how a key is agreed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Greeting {
-    /// To whoever hosts: somebody wants to join, with the key of this name.
-    Hello {
-        /// [`VERSION`].
-        version: u16,
-        /// Drawn for this greeting.
-        nonce: Nonce,
-        /// The name of the key, no secret.
-        key: [u8; 8],
-    },
-    /// The host's answer, with the proof that it has the key too.
-    Challenge {
-        /// Of the greeting that is answered.
-        to: Nonce,
-        /// Drawn for this answer.
-        nonce: Nonce,
-        /// The host's turn.
-        term: Term,
-        /// A code of both nonces and the turn under the key.
-        proof: [u8; 32],
-    },
-    /// The host refuses the greeting.
-    Refused {
-        /// Of the greeting that is answered.
-        to: Nonce,
-        /// For a person.
-        reason: String,
-    },
 }
 
 /// End of a log that a station already has: the term of its last frame, and its index.
@@ -88,11 +55,13 @@ pub type Reached = (Term, u64);
 /// may be had while the last ones are still made.
 pub type Offer = u64;
 
-/// Terms of an admission.
+/// Terms of an member_key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
     /// The number of the person that joins.
     pub person: PersonId,
+    /// The person whose daemon hosts.
+    pub host: PersonId,
     /// The host's turn.
     pub term: Term,
     /// Ticks a second.
@@ -106,8 +75,8 @@ pub struct Entry {
     pub people: Vec<(Arrival, u64)>,
     /// The turns of the log, and the first frame of each.
     pub turns: Vec<(Term, u64)>,
-    /// For those who may take over: the key of the group, and everybody's keys.
-    pub succession: Option<(Vec<u8>, Vec<u8>)>,
+    /// For those who may take over: the key of the group.
+    pub group: Option<[u8; 32]>,
 }
 
 /// In the place of [`FromMember::Up::have`]: the member still waits for its [`Entry`].
@@ -156,6 +125,10 @@ pub enum FromMember {
     },
     /// The person goes.
     Leave,
+    /// A list of members, signed by the owner: the sender is the owner, or knows a newer one.
+    Members(Vec<u8>),
+    /// The list of this version is known.
+    KnowsMembers(u64),
 }
 
 /// From the host to a member.
@@ -189,6 +162,13 @@ pub enum FromHost {
         /// At most [`CHUNK`].
         bytes: Vec<u8>,
     },
+    /// A new list of members, and for possible successors a new key of the group.
+    Members {
+        /// Signed by the owner.
+        members: Vec<u8>,
+        /// As in [`Entry::group`].
+        group: Option<[u8; 32]>,
+    },
     /// The worlds differ after a frame: the member must rejoin.
     Differs {
         /// The frame's index.
@@ -198,9 +178,21 @@ pub enum FromHost {
     },
 }
 
-/// Among those who may take over.
+/// Among those who may take over. A message counts only if it answers a challenge of the receiver:
+/// one that was recorded is not taken for a living sender's.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AmongHeirs {
+    /// The sender's own challenge; 0: none.
+    pub challenge: u64,
+    /// The challenges that the sender heard within the last seconds, at most [`MAX_HEARD`].
+    pub heard: Vec<u64>,
+    /// The message.
+    pub word: HeirsWord,
+}
+
+/// See [`AmongHeirs`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AmongHeirs {
+pub enum HeirsWord {
     /// The host is alive.
     Host {
         /// Its turn.
@@ -215,57 +207,8 @@ pub enum AmongHeirs {
         /// The sender.
         by: Address,
     },
-}
-
-impl Greeting {
-    /// As bytes.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut out = Vec::new();
-        match self {
-            Greeting::Hello { version, nonce, key } => {
-                out.push(0);
-                put_number(&mut out, u64::from(*version));
-                out.extend(nonce);
-                out.extend(key);
-            }
-            Greeting::Challenge { to, nonce, term, proof } => {
-                out.push(1);
-                out.extend(to);
-                out.extend(nonce);
-                term.put(&mut out);
-                out.extend(proof);
-            }
-            Greeting::Refused { to, reason } => {
-                out.push(2);
-                out.extend(to);
-                put_bytes(&mut out, reason.as_bytes());
-            }
-        }
-        out
-    }
-
-    /// # Errors
-    /// [`BadBytes`] where they are no greeting.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Greeting, BadBytes> {
-        let mut b = ByteReader::new(bytes);
-        let read = match b.byte()? {
-            0 => Greeting::Hello {
-                version: b.at_most(u64::from(u16::MAX))? as u16,
-                nonce: b.array()?,
-                key: b.array()?,
-            },
-            1 => Greeting::Challenge {
-                to: b.array()?,
-                nonce: b.array()?,
-                term: Term::take(&mut b)?,
-                proof: b.array()?,
-            },
-            2 => Greeting::Refused { to: b.array()?, reason: b.text(MAX_REASON)? },
-            _ => return Err(BadBytes),
-        };
-        b.end()?;
-        Ok(read)
-    }
+    /// Who hosts?
+    Who,
 }
 
 impl FromMember {
@@ -301,6 +244,14 @@ impl FromMember {
                 out.extend(hash.to_le_bytes());
             }
             FromMember::Leave => out.push(4),
+            FromMember::Members(members) => {
+                out.push(5);
+                put_bytes(&mut out, members);
+            }
+            FromMember::KnowsMembers(version) => {
+                out.push(6);
+                put_number(&mut out, *version);
+            }
         }
         out
     }
@@ -334,6 +285,8 @@ impl FromMember {
             },
             3 => FromMember::Hash { index: b.number()?, hash: u64::from_le_bytes(b.array()?) },
             4 => FromMember::Leave,
+            5 => FromMember::Members(b.bytes(MAX_MEMBERSHIP)?.to_vec()),
+            6 => FromMember::KnowsMembers(b.number()?),
             _ => return Err(BadBytes),
         };
         b.end()?;
@@ -343,7 +296,7 @@ impl FromMember {
 
 impl Entry {
     fn put(&self, out: &mut Vec<u8>) {
-        out.push(self.person);
+        out.extend([self.person, self.host]);
         self.term.put(out);
         put_number(out, u64::from(self.rate_hz));
         put_number(out, self.applied);
@@ -361,15 +314,11 @@ impl Entry {
             term.put(out);
             put_number(out, *first);
         }
-        out.push(u8::from(self.succession.is_some()));
-        if let Some((group, keys)) = &self.succession {
-            put_bytes(out, group);
-            put_bytes(out, keys);
-        }
+        put_group(out, self.group.as_ref());
     }
 
     fn take(b: &mut ByteReader<'_>) -> Result<Entry, BadBytes> {
-        let person = b.byte()?;
+        let (person, host) = (b.byte()?, b.byte()?);
         let term = Term::take(b)?;
         let rate_hz = b.at_most(1000)? as u32;
         let applied = b.at_most(u64::MAX >> 1)?;
@@ -385,11 +334,20 @@ impl Entry {
         for _ in 0..b.count(1 << 16)? {
             turns.push((Term::take(b)?, b.at_most(u64::MAX >> 1)?));
         }
-        let succession = match b.byte()? {
-            0 => None,
-            _ => Some((b.bytes(64)?.to_vec(), b.bytes(MAX_KEYRING)?.to_vec())),
-        };
-        Ok(Entry { person, term, rate_hz, applied, offer, people, turns, succession })
+        let group = take_group(b)?;
+        Ok(Entry { person, host, term, rate_hz, applied, offer, people, turns, group })
+    }
+}
+
+fn put_group(out: &mut Vec<u8>, group: Option<&[u8; 32]>) {
+    out.push(u8::from(group.is_some()));
+    out.extend(group.into_iter().flatten());
+}
+
+fn take_group(b: &mut ByteReader<'_>) -> Result<Option<[u8; 32]>, BadBytes> {
+    match b.byte()? {
+        0 => Ok(None),
+        _ => Ok(Some(b.array()?)),
     }
 }
 
@@ -426,6 +384,11 @@ impl FromHost {
                 put_number(&mut out, *index);
                 out.extend(hash.to_le_bytes());
             }
+            FromHost::Members { members, group } => {
+                out.push(5);
+                put_bytes(&mut out, members);
+                put_group(&mut out, group.as_ref());
+            }
         }
         out
     }
@@ -451,6 +414,10 @@ impl FromHost {
                 bytes: b.bytes(CHUNK)?.to_vec(),
             },
             4 => FromHost::Differs { index: b.number()?, hash: u64::from_le_bytes(b.array()?) },
+            5 => {
+                let members = b.bytes(MAX_MEMBERSHIP)?.to_vec();
+                FromHost::Members { members, group: take_group(&mut b)? }
+            }
             _ => return Err(BadBytes),
         };
         b.end()?;
@@ -460,20 +427,23 @@ impl FromHost {
 
 impl AmongHeirs {
     /// As bytes.
-    pub fn to_bytes(self) -> Vec<u8> {
-        let mut out = Vec::new();
-        match self {
-            AmongHeirs::Host { term } => {
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut out = self.challenge.to_le_bytes().to_vec();
+        put_number(&mut out, self.heard.len() as u64);
+        self.heard.iter().for_each(|h| out.extend(h.to_le_bytes()));
+        match self.word {
+            HeirsWord::Host { term } => {
                 out.push(0);
                 term.put(&mut out);
             }
-            AmongHeirs::Candidate { known, reached, by } => {
+            HeirsWord::Candidate { known, reached, by } => {
                 out.push(1);
                 put_number(&mut out, u64::from(known));
                 reached.0.put(&mut out);
                 put_number(&mut out, reached.1);
                 out.extend(by.to_le_bytes());
             }
+            HeirsWord::Who => out.push(2),
         }
         out
     }
@@ -482,17 +452,23 @@ impl AmongHeirs {
     /// [`BadBytes`] where they are no such message.
     pub fn from_bytes(bytes: &[u8]) -> Result<AmongHeirs, BadBytes> {
         let mut b = ByteReader::new(bytes);
-        let read = match b.byte()? {
-            0 => AmongHeirs::Host { term: Term::take(&mut b)? },
-            1 => AmongHeirs::Candidate {
+        let challenge = u64::from_le_bytes(b.array()?);
+        let mut heard = Vec::new();
+        for _ in 0..b.count(MAX_HEARD)? {
+            heard.push(u64::from_le_bytes(b.array()?));
+        }
+        let word = match b.byte()? {
+            0 => HeirsWord::Host { term: Term::take(&mut b)? },
+            1 => HeirsWord::Candidate {
                 known: b.at_most(u64::from(u32::MAX - 1))? as u32,
                 reached: (Term::take(&mut b)?, b.number()?),
                 by: u64::from_le_bytes(b.array()?),
             },
+            2 => HeirsWord::Who,
             _ => return Err(BadBytes),
         };
         b.end()?;
-        Ok(read)
+        Ok(AmongHeirs { challenge, heard, word })
     }
 }
 
@@ -507,13 +483,14 @@ mod tests {
         let frames = vec![9; 40];
         let entry = Entry {
             person: 2,
+            host: 1,
             term,
             rate_hz: 120,
             applied: 9,
             offer: Some(4),
             people: vec![(person, 8)],
             turns: vec![(term, 1)],
-            succession: Some((vec![1; 32], vec![2; 90])),
+            group: Some([1; 32]),
         };
         let [sent_ms, echo_ms] = [5, 6];
         vec![
@@ -522,6 +499,7 @@ mod tests {
             FromHost::Down { received: 1, acknowledged: 2, sent_ms, echo_ms, frames }.to_bytes(),
             FromHost::Chunk { index: 4, number: 1, last: true, bytes: vec![3; 99] }.to_bytes(),
             FromHost::Differs { index: 4, hash: 5 }.to_bytes(),
+            FromHost::Members { members: vec![4; 50], group: Some([5; 32]) }.to_bytes(),
         ]
     }
 
@@ -542,13 +520,12 @@ mod tests {
         #[test]
         fn any_bytes_are_read_without_a_panic(
             bytes in proptest::collection::vec(any::<u8>(), 0..300),
-            kind in 0u8..5,
+            kind in 0u8..8,
         ) {
             let mut bytes = bytes;
             if let Some(first) = bytes.first_mut() {
                 *first = kind;
             }
-            let _ = Greeting::from_bytes(&bytes);
             let _ = FromMember::from_bytes(&bytes);
             let _ = FromHost::from_bytes(&bytes);
             let _ = AmongHeirs::from_bytes(&bytes);
@@ -556,7 +533,7 @@ mod tests {
 
         #[test]
         fn a_message_with_wrong_bytes_is_read_without_a_panic(
-            which in 0usize..5,
+            which in 0usize..6,
             changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         ) {
             let mut bytes = messages()[which].clone();

@@ -5,7 +5,9 @@
 pub mod bytes;
 pub mod frame;
 pub mod frame_codec;
+pub mod greeting;
 pub mod hands;
+pub mod keys;
 pub mod message;
 pub mod range_coder;
 pub mod samples;

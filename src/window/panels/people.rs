@@ -9,7 +9,10 @@ use super::state::View;
 use super::theme;
 use crate::language::tr;
 use sculptd_daemon::Published;
-use sculptd_daemon::people::{PeopleHere, Person, PersonRole, colour_of};
+use sculptd_daemon::people::{PeopleHere, Person, PersonRole, SharedState, colour_of};
+
+/// Batches of the own input on their way beyond which their number is shown: half a second's.
+const MANY_WAITING: u64 = 60;
 
 fn colour(number: u8) -> Color32 {
     let [r, g, b] = colour_of(number);
@@ -26,6 +29,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
     ui.strong(tr!("people-heading"));
     if let Some(people) = &view.state.people {
         list(ui, people);
+        link(ui, view.state, people);
     }
     if let Some(invitation) = view.invitation {
         egui::CollapsingHeader::new(tr!("people-invite")).id_salt("invitation").show(ui, |ui| {
@@ -46,6 +50,31 @@ fn list(ui: &mut egui::Ui, people: &PeopleHere) {
     let gone: Vec<&str> = people.all.iter().filter(|p| !p.here).map(|p| &*p.name).collect();
     if !gone.is_empty() {
         ui.colored_label(theme::quiet(ui), tr!("people-gone", names = gone.join(", ")));
+    }
+}
+
+/// The connection to the others: nothing where nothing is shared.
+fn link(ui: &mut egui::Ui, state: &Published, people: &PeopleHere) {
+    let standing = state.standing;
+    let (seconds, waiting) = (standing.since_s.to_string(), standing.waiting.to_string());
+    let (text, is_trouble) = match standing.state {
+        SharedState::NotShared => return,
+        SharedState::Hosts => (tr!("people-hosts"), false),
+        SharedState::Follows if standing.waiting > MANY_WAITING => {
+            (tr!("people-waiting", waiting = waiting), false)
+        }
+        SharedState::Follows => (tr!("people-follows", host = people.name(standing.host)), false),
+        SharedState::CutOff => (tr!("people-cut-off", seconds = seconds, waiting = waiting), true),
+        SharedState::SentAway => {
+            let reason = people.sent_away.as_deref().unwrap_or_default();
+            (tr!("people-sent-away", reason = reason), true)
+        }
+    };
+    let colour = if is_trouble { theme::alarm(ui) } else { theme::quiet(ui) };
+    ui.add(egui::Label::new(egui::RichText::new(text).color(colour)).wrap());
+    for which in &people.others {
+        let text = tr!("people-other", which = &**which);
+        ui.add(egui::Label::new(egui::RichText::new(text).color(theme::alarm(ui))).wrap());
     }
 }
 

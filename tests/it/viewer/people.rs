@@ -50,7 +50,7 @@ fn shared() -> Published {
         person(5, "Eve", PersonRole::Device, false),
     ];
     let mut state = super::published(&mut world);
-    state.people = Some(Arc::new(PeopleHere { own: 1, all }));
+    state.people = Some(Arc::new(PeopleHere { own: 1, all, ..PeopleHere::default() }));
     state
 }
 

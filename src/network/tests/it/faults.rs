@@ -3,7 +3,7 @@
 use crate::simulated::{BAD, Faults, GOOD, Random, Simulation, ball, undo};
 
 /// Returns the length of a long run, in seconds, or the short default of every test run.
-fn long(name: &str, short: u64) -> u64 {
+pub fn long(name: &str, short: u64) -> u64 {
     std::env::var(name).ok().and_then(|t| t.parse().ok()).unwrap_or(short)
 }
 
@@ -111,7 +111,7 @@ fn a_host_that_dies_is_followed_within_two_seconds_and_nothing_acknowledged_is_l
             s.verify_worlds()
         }
         // The old host returns under its old name, as a replica.
-        let key = s.keyring.0[0].clone();
+        let key = s.invitations[0].clone();
         let name = format!("person {host}");
         let back = s.join(&name, sculptd_network::wire::frame::Role::Sculptor, key);
         s.run(5.0, |_| true);
@@ -158,7 +158,7 @@ fn what_each_part_of_a_split_network_acknowledged_is_in_the_one_sculpture() {
 fn who_was_killed_and_is_back_at_once_is_let_in() {
     let mut s = together(3, GOOD, 1.0, 12);
     s.replicas[2].alive = false;
-    let key = s.keyring.0[0].clone();
+    let key = s.invitations[0].clone();
     let back = s.join("person 2", sculptd_network::wire::frame::Role::Sculptor, key);
     // Until the host is sure that the first is gone.
     s.run(1.0, |i| i < 2);

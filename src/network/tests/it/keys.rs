@@ -14,7 +14,7 @@ fn noted(s: &Simulation, i: usize, what: &str) -> bool {
 fn a_stranger_is_not_let_in_and_both_are_told() {
     let mut s = Simulation::new(21, GOOD);
     let secret = fresh(&mut Random::entropy(99));
-    let wrong = Invitation { role: Role::Sculptor, name: None, secret };
+    let wrong = Invitation { secret, ..s.invitations[0].clone() };
     let stranger = s.join("stranger", Role::Sculptor, wrong);
     s.run(3.0, |_| true);
     assert!(!s.replicas[stranger].station.follows() && s.replicas[stranger].world.is_none());
@@ -25,7 +25,7 @@ fn a_stranger_is_not_let_in_and_both_are_told() {
 #[test]
 fn a_key_for_viewers_lets_nobody_sculpt() {
     let mut s = Simulation::new(22, GOOD);
-    let viewers = s.keyring.0[1].clone();
+    let viewers = s.invitations[1].clone();
     let would = s.join("would sculpt", Role::Sculptor, viewers.clone());
     let views = s.join("wall", Role::Viewer, viewers);
     s.run(3.0, |i| i == 0);
@@ -43,7 +43,7 @@ fn a_key_for_viewers_lets_nobody_sculpt() {
 #[test]
 fn a_device_sends_and_is_sent_no_frames() {
     let mut s = Simulation::new(23, GOOD);
-    let key = s.keyring.0[2].clone();
+    let key = s.invitations[2].clone();
     let device = s.join("tablet", Role::Device, key);
     s.run(1.0, |_| false);
     let before = s.replicas[0].world.as_ref().map(|w| w.hash());
@@ -57,7 +57,7 @@ fn a_device_sends_and_is_sent_no_frames() {
 #[test]
 fn a_name_is_had_by_one_at_a_time() {
     let mut s = Simulation::new(24, GOOD);
-    let key = s.keyring.0[0].clone();
+    let key = s.invitations[0].clone();
     let first = s.join("Ada", Role::Sculptor, key.clone());
     s.run(2.0, |_| false);
     let second = s.join("Ada", Role::Sculptor, key);

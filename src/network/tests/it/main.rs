@@ -8,6 +8,7 @@ mod faults;
 mod fleet;
 mod fleet_simulated;
 mod keys;
+mod members;
 mod people;
 mod replay;
 mod simulated;

@@ -29,7 +29,7 @@ fn everybody_knows_who_is_here_and_who_has_gone() {
     assert_eq!(here(&s, bob), here(&s, 0));
     assert!(rests(&s), "a pen that is gone is lifted");
     // The same person comes back.
-    let key = s.keyring.0[0].clone();
+    let key = s.invitations[0].clone();
     let again = s.join("person 2", sculptd_network::wire::frame::Role::Sculptor, key);
     s.run(2.0, |_| false);
     for replica in [0, bob, again] {

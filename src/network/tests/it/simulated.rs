@@ -16,13 +16,17 @@ use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 use sculptd_network::core::{Event, To};
 use sculptd_network::executor::Executor;
-use sculptd_network::keyring::{Entropy, Invitation, Keyring, fresh};
+use sculptd_network::keyring::{Entropy, Invitation, fresh};
 use sculptd_network::local_echo::LocalEcho;
+use sculptd_network::membership::{Membership, SignedMembership};
+use sculptd_network::seal::Secret;
 use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::{Batch, Frame, Mark, Role};
 use sculptd_network::wire::samples::rounded;
 
 pub const RATE: u32 = 120;
+/// Seconds since 1970 at the beginning.
+pub const EPOCH_S: u64 = 1_800_000_000;
 /// Microseconds that a step of the simulation takes.
 pub const STEP_US: u64 = 4_000;
 
@@ -101,11 +105,15 @@ pub struct Simulation {
     pub replicas: Vec<Replica>,
     pub now_us: u64,
     pub faults: Faults,
-    pub keyring: Keyring,
+    pub owner: Secret,
+    /// One for each role: sculptor, viewer, device.
+    pub invitations: Vec<Invitation>,
     random: Random,
     seed: u64,
     air: BTreeMap<(u64, u64), (usize, Vec<u8>)>,
     sent: u64,
+    /// Every datagram that was sent, and to whom, while it is `Some`.
+    pub tape: Option<Vec<(usize, Vec<u8>)>>,
     /// Transitions that were stepped, by person, on the log of the first replica that stepped them.
     pub stroke_s: f64,
 }
@@ -121,24 +129,31 @@ impl Simulation {
     /// A host, and nobody else yet.
     pub fn new(seed: u64, faults: Faults) -> Simulation {
         let mut entropy = Random::entropy(seed ^ 0xabcd);
-        let of =
-            |role, entropy: &mut Entropy| Invitation { role, name: None, secret: fresh(entropy) };
-        let roles = [Role::Sculptor, Role::Viewer, Role::Device];
-        let keyring = Keyring(roles.map(|r| of(r, &mut entropy)).to_vec());
+        let owner = fresh(&mut entropy);
+        let of = |role| Invitation {
+            role,
+            name: None,
+            expires_s: None,
+            secret: fresh(&mut entropy),
+            owner: owner.public(),
+        };
+        let invitations = [Role::Sculptor, Role::Viewer, Role::Device].map(of).to_vec();
         let mut simulation = Simulation {
             replicas: Vec::new(),
             now_us: 1_000_000,
             faults,
-            keyring: keyring.clone(),
+            owner: owner.clone(),
+            invitations,
             random: Random(seed),
             seed,
             air: BTreeMap::new(),
             sent: 0,
+            tape: None,
             stroke_s: 0.8,
         };
-        let identity = simulation.identity("person 0", Role::Sculptor, keyring.0[0].clone());
-        let world = ball();
-        let station = Station::host(identity, keyring, RATE, world.tick(), simulation.now_us);
+        let identity = simulation.identity("person 0", Role::Sculptor, simulation.of_owner());
+        let (world, members) = (ball(), simulation.members(1));
+        let station = Station::host(identity, members, RATE, world.tick(), simulation.now_us);
         simulation.add(station, Some(world));
         simulation
     }
@@ -146,7 +161,19 @@ impl Simulation {
     pub fn identity(&self, name: &str, role: Role, invitation: Invitation) -> Identity {
         let entropy =
             Random::entropy(self.seed.wrapping_mul(1000) + self.replicas.len() as u64 + 1);
-        Identity { name: name.into(), role, invitation, entropy }
+        Identity { name: name.into(), role, invitation, epoch_s: EPOCH_S, entropy }
+    }
+
+    /// The owner's own key.
+    pub fn of_owner(&self) -> Invitation {
+        let (secret, owner) = (self.owner.clone(), self.owner.public());
+        Invitation { role: Role::Sculptor, name: None, expires_s: None, secret, owner }
+    }
+
+    /// The list of all invitations, signed.
+    pub fn members(&self, version: u64) -> SignedMembership {
+        let keys = self.invitations.iter().map(Invitation::member_key).collect();
+        Membership { owner: self.owner.public(), version, keys }.signed(&self.owner)
     }
 
     fn add(&mut self, station: Station, world: Option<World>) -> usize {
@@ -176,13 +203,37 @@ impl Simulation {
     }
 
     pub fn join(&mut self, name: &str, role: Role, invitation: Invitation) -> usize {
-        let station = Station::join(self.identity(name, role, invitation), self.now_us);
+        let station = Station::join(self.identity(name, role, invitation), None, self.now_us);
         self.add(station, None)
     }
 
     pub fn join_sculptor(&mut self) -> usize {
-        let key = self.keyring.0[0].clone();
+        let key = self.invitations[0].clone();
         self.join(&format!("person {}", self.replicas.len()), Role::Sculptor, key)
+    }
+
+    /// Another sculpture of the same owner under the same name.
+    pub fn host_another(&mut self, name: &str) -> usize {
+        let identity = self.identity(name, Role::Sculptor, self.of_owner());
+        let (world, members) = (ball(), self.members(1));
+        let station = Station::host(identity, members, RATE, world.tick(), self.now_us);
+        self.add(station, Some(world))
+    }
+
+    /// The owner, who joins whoever hosts and else hosts.
+    pub fn join_or_host(&mut self, name: &str) -> usize {
+        let identity = self.identity(name, Role::Sculptor, self.of_owner());
+        let station = Station::join_or_host(identity, self.now_us);
+        self.add(station, None)
+    }
+
+    /// An invitation for one person, which is in the list from its next version on.
+    pub fn invite(&mut self, name: &str, role: Role, expires_s: Option<u64>) -> Invitation {
+        let secret = fresh(&mut Random::entropy(self.seed ^ self.invitations.len() as u64 ^ 0x77));
+        let (name, owner) = (Some(name.into()), self.owner.public());
+        let invitation = Invitation { role, name, expires_s, secret, owner };
+        self.invitations.push(invitation.clone());
+        invitation
     }
 
     pub fn host(&self) -> Option<usize> {
@@ -277,6 +328,7 @@ impl Simulation {
 
     fn events(&mut self, i: usize) {
         let now_us = self.now_us;
+        let members = self.members(1);
         let replica = &mut self.replicas[i];
         if let Some((index, part, last)) = replica.making.pop_front() {
             replica.station.checkpoint_part(index, &part, last);
@@ -343,6 +395,12 @@ impl Simulation {
                     replica.notes.push(format!("{:.3} {text}", now_us as f64 / 1e6));
                 }
                 Event::Refused(why) => replica.refused = Some(why),
+                Event::NobodyHosts => {
+                    let members = members.clone();
+                    let world = ball();
+                    replica.station.begin_to_host(members, RATE, world.tick(), now_us);
+                    replica.world = Some(world);
+                }
             }
         }
     }
@@ -352,7 +410,7 @@ impl Simulation {
         let all: Vec<usize> = (0..self.replicas.len())
             .filter(|&k| k != from && self.replicas[k].part == self.replicas[from].part)
             .filter(|&k| match to {
-                To::Host => self.replicas[k].station.hosts(),
+                To::Host => self.replicas[k].station.hears_greetings(),
                 To::Heirs => true,
                 To::Peer(address) | To::Bulk(address) => {
                     self.replicas[k].station.address() == address
@@ -363,6 +421,9 @@ impl Simulation {
             return;
         }
         for to in all {
+            if let Some(tape) = &mut self.tape {
+                tape.push((to, bytes.to_vec()));
+            }
             let copies = 1 + usize::from(self.random.share() < self.faults.twice);
             for _ in 0..copies {
                 if self.random.share() < self.faults.loss {
