@@ -64,11 +64,12 @@ pub fn checked(
     let (scale, orient) = (request.scale, request.orient);
     #[allow(clippy::disallowed_methods)] // The answer states its duration.
     let began = Instant::now();
-    let seconds = || began.elapsed().as_secs_f64();
-    watched(py, progress, |job| {
+    let seconds = move || began.elapsed().as_secs_f64();
+    let poly = mesh.poly().clone();
+    watched(py, progress, move |job| {
         check_part(
             "",
-            mesh.poly(),
+            &poly,
             scale,
             &settings,
             CheckRequest { orient, ..Default::default() },

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyList;
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
@@ -129,8 +129,8 @@ impl Thickness {
         Ok((area, if all > 0.0 { area / all } else { 0.0 }))
     }
 
-    /// The thinnest regions below `limit`, the worst first: dicts with `position`, `thickness`,
-    /// `area`.
+    /// The thinnest regions below `limit`, the worst first: named tuples `ThinPlace` of `position`,
+    /// `thickness` and `area`.
     #[pyo3(signature = (limit, count=10))]
     fn worst<'py>(
         &self,
@@ -138,21 +138,21 @@ impl Thickness {
         limit: f32,
         count: usize,
     ) -> PyResult<Bound<'py, PyList>> {
+        let kind = py.import("sculptd.convert")?.getattr("ThinPlace")?;
         let out = PyList::empty(py);
         let found = self.against(py, limit)?;
         for spot in found.worst(limit, 0.0, count) {
-            let d = PyDict::new(py);
-            d.set_item("position", self.part.to_file(spot.position.into()).to_array())?;
-            d.set_item("thickness", spot.thickness)?;
-            d.set_item("area", spot.area)?;
-            out.append(d)?;
+            let position: (f64, f64, f64) = self.part.to_file(spot.position.into()).into();
+            out.append(kind.call1((position, spot.thickness, spot.area))?)?;
         }
         Ok(out)
     }
 
     fn __repr__(&self) -> String {
         let s = &self.summary;
-        format!("<sculptd.Thickness min {:?}, median {:?}, max {:?}>", s.min, s.median, s.max)
+        let text = |v: Option<f32>| v.map_or("none".into(), |v| v.to_string());
+        let [min, median, max] = [s.min, s.median, s.max].map(text);
+        format!("<sculptd.Thickness min {min}, median {median}, max {max}>")
     }
 }
 
@@ -166,7 +166,7 @@ impl Thickness {
         let query =
             WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
         let part = self.part.clone();
-        watched(py, &None, |job| {
+        watched(py, &None, move |job| {
             thickness::measure_at_places(&part.mesh, None, &settings, query, job)
         })?
         .map(Arc::new)
@@ -225,7 +225,7 @@ fn thickness_of(
         ..ThicknessSettings::default()
     };
     let poly = mesh.get().poly().clone();
-    let found = watched(py, &progress, |job| {
+    let found = watched(py, &progress, move |job| {
         if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
             return Ok(None);
         }

@@ -210,7 +210,7 @@ class Questions(unittest.TestCase):
         self.assertAlmostEqual(area / share, 960.0, delta=2.0)
         self.assertEqual(walls.below(0.5), (0.0, 0.0))
         worst = walls.worst(3.0)[0]
-        self.assertLess(worst["thickness"], 3.0)
+        self.assertLess(worst.thickness, 3.0)
         self.assertEqual(set(walls.summary()) & {"min", "histogram"}, {"min", "histogram"})
         balls = sculptd.thickness(plate, method="sphere")
         self.assertAlmostEqual(balls.median, 2.0, delta=0.05)
