@@ -109,6 +109,10 @@ class _Method:
 class _Protocol:
     """The methods of the protocol, over `call` of the class that has a connection."""
 
+    def call(self, method, params=None, patience=None):
+        """Calls a method by its name and returns its reply."""
+        raise NotImplementedError
+
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
@@ -166,12 +170,10 @@ class Client(_Protocol):
         self._sent = 0
         self._subscribed = False
         self._events = deque(maxlen=KEPT_EVENTS)
-        self._socket = None
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._connect()
 
     def _connect(self):
-        #: A message may have been sent or read in part: the connection is good for nothing more.
-        self._torn = True
         self.close()
         self._read = b""
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -188,9 +190,9 @@ class Client(_Protocol):
 
     def close(self):
         """Closes the connection; the next call opens another."""
-        if self._socket is not None:
-            self._torn = True
-            self._socket.close()
+        #: A message may have been sent or read in part: the connection is good for nothing more.
+        self._torn = True
+        self._socket.close()
 
     def __enter__(self):
         return self
@@ -300,7 +302,7 @@ class AsyncClient(_Protocol):
         self._event_came = asyncio.Event()
         self._turn = asyncio.Lock()
         self._receiver = None
-        self._writer = None
+        self._writer: asyncio.StreamWriter
 
     async def __aenter__(self):
         await self._connect()

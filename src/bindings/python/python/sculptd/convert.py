@@ -93,7 +93,7 @@ def to_pyvista(mesh: Mesh) -> Any:
 
     whole = mesh.triangulated()
     made = pyvista.PolyData.from_regular_faces(
-        np.array(whole.vertices), np.array(whole.faces, dtype=np.int64)
+        np.array(whole.vertices), whole.faces.astype(int)
     )
     if whole.colours is not None:
         made.point_data["colours"] = np.array(whole.colours)
