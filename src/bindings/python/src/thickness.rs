@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use sculptd_geometry::CentredMesh;
+use sculptd_geometry::thickness::check::{ThicknessLimits, check};
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
@@ -18,6 +19,7 @@ use crate::errors;
 use crate::job::{Progress, watched};
 use crate::measure::plain;
 use crate::mesh::Mesh;
+use crate::part_check::wall_limits;
 
 /// The thickness of the walls of a part, one value a vertex of the mesh, in the mesh's unit.
 #[pyclass(frozen, module = "sculptd")]
@@ -146,6 +148,43 @@ impl Thickness {
             out.append(kind.call1((position, spot.thickness, spot.area))?)?;
         }
         Ok(out)
+    }
+
+    /// Judges the walls as `sculptd thickness --json` does: a dict with `verdict` ('pass', 'warn',
+    /// 'fail', 'undecided' or 'unjudged'), `statement`, `least`, `worst` and the figures behind
+    /// them. `preset`: a process or a material, such as 'fdm', 'sla' or 'abs'; the other limits, in
+    /// mm, replace its own.
+    #[pyo3(signature = (preset=None, *, fail_below=None, warn_below=None, fail_above=None,
+                        progress=None))]
+    fn judge<'py>(
+        &self,
+        py: Python<'py>,
+        preset: Option<&str>,
+        fail_below: Option<f32>,
+        warn_below: Option<f32>,
+        fail_above: Option<f32>,
+        progress: Progress,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let own = preset.map(wall_limits).transpose()?.unwrap_or_default();
+        let limits = ThicknessLimits {
+            fail_below: fail_below.or(own.fail_below),
+            warn_below: warn_below.or(own.warn_below),
+            fail_above: fail_above.or(own.fail_above),
+            ..own
+        };
+        let all = [limits.fail_below, limits.warn_below, limits.fail_above];
+        if all.iter().flatten().any(|l| !(*l > 0.0 && l.is_finite())) {
+            return Err(PyValueError::new_err("limits: expected numbers above 0"));
+        }
+        let (part, settings) = (self.part.clone(), self.measured.settings);
+        #[allow(clippy::disallowed_methods)] // The answer states its duration.
+        let began = std::time::Instant::now();
+        let seconds = move || began.elapsed().as_secs_f64();
+        let found = watched(py, &progress, move |job| {
+            check("", &part, None, &settings, limits, job, seconds)
+        })?
+        .map_err(|e| errors::thickness(&e))?;
+        plain(py, &found.answer)
     }
 
     fn __repr__(&self) -> String {

@@ -21,7 +21,7 @@ class RunningDaemon:
             self.environment.pop(name, None)
         self.log = open(home / "log", "wb")
         self.process = subprocess.Popen(
-            [BINARY, "run", "--headless", "--for", "120"],
+            [BINARY, "run", "--headless", "--for", "120", "--session", str(home / "session")],
             env=self.environment,
             stdout=self.log,
             stderr=self.log,

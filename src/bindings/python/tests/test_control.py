@@ -60,6 +60,31 @@ class Daemon(unittest.TestCase):
             made = sculptd.read(path)
             self.assertGreater(len(made), 1000)
 
+    def test_reads_after_undo_redo_and_jump_are_current(self):
+        with control.Client(self.socket) as daemon:
+            states, nodes = [daemon.hash()["hash"]], [daemon.history()["here"]]
+            for y in (0.35, 0.5, 0.65):
+                daemon.stroke([(0.4, y, 0.9, 0), (0.6, y, 0.9, 300)], kind="clay", radius=0.1)
+                states.append(daemon.hash()["hash"])
+                nodes.append(daemon.history()["here"])
+            self.assertEqual(len(set(states)), 4)
+            path = pathlib.Path(self.daemon.folder.name) / "state.ply"
+            meshes, now = {}, 3
+            for to in (2, 3, 2, 1, 2, 0, 3, 1, 0, 1, 3, 0):
+                if to == now - 1:
+                    daemon.undo()
+                elif to == now + 1:
+                    daemon.redo()
+                else:
+                    daemon.jump(node=nodes[to])
+                now = to
+                self.assertEqual(daemon.hash()["hash"], states[to])
+                self.assertEqual(daemon.history()["here"], nodes[to])
+                daemon.export(path)
+                mesh = sculptd.read(path)
+                self.assertEqual(meshes.setdefault(to, mesh), mesh)
+            self.assertEqual(len(set(meshes.values())), 4)
+
     def test_a_refusal_names_the_field(self):
         with control.Client(self.socket) as daemon:
             with self.assertRaises(control.DaemonRefused) as caught:

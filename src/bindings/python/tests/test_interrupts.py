@@ -32,8 +32,8 @@ def interrupted(work, after):
         os.kill(os.getpid(), signal.SIGINT)
 
     timer = threading.Timer(after, send)
-    timer.start()
     try:
+        timer.start()
         work()
         timer.cancel()
         timer.join()

@@ -7,12 +7,13 @@ trimesh and pyvista. These libraries hold triangles here: polygons are cut.
 
 import base64
 import html as escaping
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from . import Mesh
+from . import LossWarning, Mesh
 
 if TYPE_CHECKING:
     import pandas
@@ -118,12 +119,17 @@ def from_pyvista(mesh: Any) -> Mesh:
 
 
 def to_open3d(mesh: Mesh) -> Any:
-    """An `open3d.geometry.TriangleMesh` with the colours. It has no place for opacity and groups."""
+    """An `open3d.geometry.TriangleMesh` with the colours. It has no place for opacity and groups;
+    a `LossWarning` says so.
+    """
     import open3d
 
     whole = mesh.triangulated()
+    if whole.groups is not None or whole.colours is not None and whole.colours[:, 3].min() < 255:
+        text = "groups and the opacity of colours are left out: Open3D has no place for them"
+        warnings.warn(text, LossWarning, stacklevel=2)
     made = open3d.geometry.TriangleMesh(
-        open3d.utility.Vector3dVector(whole.vertices),
+        open3d.utility.Vector3dVector(np.array(whole.vertices)),
         open3d.utility.Vector3iVector(whole.faces.astype(np.int32)),
     )
     if whole.colours is not None:
