@@ -35,8 +35,8 @@ impl Job {
         if self.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// `done` from 0 to 1, of the whole or of the part that [`Job::part`] named. What was reported
-    /// never falls: a step that knows only its own progress does not take back that of others.
+    /// Reports progress, from 0 to 1, of the whole or of the part that [`Job::part`] named. Progress
+    /// never falls: a smaller value than an earlier one changes nothing.
     pub fn progress(&self, done: f32) {
         let part = 1000 - self.beside.load(Relaxed).min(1000);
         let own = (done.clamp(0.0, 1.0) * part as f32) as u32;

@@ -25,8 +25,8 @@ enum Place<'py> {
 }
 
 impl<'py> Place<'py> {
-    /// `verb` is the method that makes an object a file. The name of an object is its own, or
-    /// stands for the format.
+    /// Returns the place that `file` stands for. An object with the method `verb` is a file; its
+    /// name gives the format, unless `format` does.
     fn of(file: &Bound<'py, PyAny>, verb: &str, format: Option<&str>) -> PyResult<Place<'py>> {
         if !file.hasattr(verb)? {
             return Ok(Place::Path(file.extract()?));
@@ -40,7 +40,7 @@ impl<'py> Place<'py> {
     }
 }
 
-/// Warns of what is lost; `strict` makes an error of it.
+/// Warns with a LossWarning for each sentence; with `strict` raises the first.
 pub fn tell(py: Python<'_>, sentences: &[String], strict: bool) -> PyResult<()> {
     let category = py.get_type::<LossWarning>();
     for text in sentences {

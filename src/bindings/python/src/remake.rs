@@ -36,7 +36,7 @@ fn remesh(
 }
 
 /// The surface at `distance` from that of `mesh`, and nowhere nearer; negative shrinks. Raises
-/// EmptyResult where shrinking leaves nothing. It has no colours; a LossWarning says so.
+/// EmptyResult where shrinking leaves nothing. It has no colours: a LossWarning names those of `mesh`.
 #[pyfunction]
 #[pyo3(signature = (mesh, distance, *, side=256, progress=None))]
 fn offset(

@@ -288,8 +288,8 @@ class Client(_Protocol):
 class AsyncClient(_Protocol):
     """A connection to a running daemon for asyncio. Its methods are those of `Client`, awaited.
 
-    Tasks may share a client; each gets its own answer. A task that is cancelled, or whose
-    ``patience`` ends, gives up its answer; the others keep theirs.
+    Tasks may share a client; each gets the answer to its request. Cancelling a task, or the end of
+    its ``patience``, drops the answer of that task only.
     """
 
     def __init__(self, path=None, patience=120.0):
