@@ -46,7 +46,7 @@ def interrupted(work, after):
 class Interrupts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        ball = Mesh.sphere(50.0, 240 if LONG else 80)
+        ball = Mesh.sphere(50.0, 240 if LONG else 60)
         v = ball.vertices
         bumps = 1 + 0.05 * np.sin(v[:, :1] * 0.7) * np.cos(v[:, 1:2] * 0.9)
         cls.part = Mesh(v * bumps, ball.faces)
@@ -107,9 +107,9 @@ class Interrupts(unittest.TestCase):
         for name, work in {
             "decimate": lambda: sculptd.decimate(part, 1000),
             "repair": lambda: sculptd.repair(self.holed, weld=1e-6),
-            "remesh": lambda: sculptd.remesh(part, side=160, sharp=True),
-            "hollow": lambda: sculptd.hollow(part, 2.0, side=150),
-            "offset": lambda: sculptd.offset(part, 2.0, side=150),
+            "remesh": lambda: sculptd.remesh(part, side=128, sharp=True),
+            "hollow": lambda: sculptd.hollow(part, 2.0, side=128),
+            "offset": lambda: sculptd.offset(part, 2.0, side=128),
             "subdivide": lambda: sculptd.subdivide(part, 2),
             "boolean": lambda: sculptd.boolean(part, tool),
             "boolean of a list": lambda: sculptd.boolean(part, [tool, tool], "difference"),
