@@ -35,7 +35,7 @@ impl Job {
         if self.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Reports progress, from 0 to 1, of the whole or of the part that [`Job::part`] named. Progress
+    /// Reports progress, from 0 to 1, of the whole or of the part that [`Job::part`] named. It
     /// never falls: a smaller value than an earlier one changes nothing.
     pub fn progress(&self, done: f32) {
         let part = 1000 - self.beside.load(Relaxed).min(1000);

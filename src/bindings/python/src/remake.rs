@@ -36,7 +36,8 @@ fn remesh(
 }
 
 /// The surface at `distance` from that of `mesh`, and nowhere nearer; negative shrinks. Raises
-/// EmptyResult where shrinking leaves nothing. It has no colours: a LossWarning names those of `mesh`.
+/// EmptyResult where shrinking leaves nothing. The result has no colours; if `mesh` has some, this
+/// warns with a LossWarning.
 #[pyfunction]
 #[pyo3(signature = (mesh, distance, *, side=256, progress=None))]
 fn offset(
