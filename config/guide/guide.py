@@ -52,6 +52,7 @@ CHAPTERS = [
     ]),
     ("Programs", [
         ("Python", "python.md"),
+        ("Python cookbook", "cookbook.md"),
         ("C and C++", "c.md"),
         ("The control protocol", "protocol.md"),
         ("Session files", "sessions.md"),

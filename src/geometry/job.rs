@@ -35,11 +35,12 @@ impl Job {
         if self.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// `done` from 0 to 1, of the whole or of the part that [`Job::part`] named.
+    /// Reports progress, from 0 to 1, of the whole or of the part that [`Job::part`] named. It
+    /// never falls: a smaller value than an earlier one changes nothing.
     pub fn progress(&self, done: f32) {
         let part = 1000 - self.beside.load(Relaxed).min(1000);
         let own = (done.clamp(0.0, 1.0) * part as f32) as u32;
-        self.per_mille.store((self.before.load(Relaxed) + own).min(1000), Relaxed);
+        self.per_mille.fetch_max((self.before.load(Relaxed) + own).min(1000), Relaxed);
     }
 
     /// Makes what is reported from now on a part of the whole: step `step` of `steps`, from 0 on.
@@ -51,7 +52,7 @@ impl Job {
         self.beside.store(1000 - (at(step + 1) - at(step)), Relaxed);
     }
 
-    /// The progress last reported, 0 to 1 in steps of a thousandth.
+    /// The furthest progress reported, 0 to 1 in steps of a thousandth.
     pub fn done(&self) -> f32 {
         self.per_mille.load(Relaxed) as f32 / 1000.0
     }
@@ -75,6 +76,6 @@ mod tests {
         assert_eq!(last, 1.0);
         job.part(0, 1);
         job.progress(0.25);
-        assert_eq!(job.done(), 0.25);
+        assert_eq!(job.done(), 1.0);
     }
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::problem::ParseError;
 use super::write_packed::base64;
-use super::{LoadedMesh, parse};
+use super::{LoadedMesh, encode, lost, parse};
 use crate::job::Job;
 
 fn read(name: &str, bytes: &[u8]) -> LoadedMesh {
@@ -165,4 +165,22 @@ fn a_gltf_of_another_version_is_refused() {
         let told = refused("a.gltf", other.as_bytes());
         assert!(told.contains("glTF version 2"), "{version}: {told}");
     }
+}
+
+#[test]
+fn every_byte_of_a_colour_comes_back() {
+    let mut mesh = crate::shapes::icosphere(1.0, 6).to_poly();
+    let byte = |v: usize, by: usize| (v * by % 256) as u8;
+    let colours = (0..mesh.positions.len()).map(|v| [1, 7, 13, 3].map(|by| byte(v, by)));
+    mesh.colours = Some(colours.collect());
+    for kind in ["glb", "gltf", "ply", "off", "3mf"] {
+        let mut bytes = Vec::new();
+        encode(kind, &mesh, &mut bytes).expect("written");
+        let name = format!("ball.{kind}");
+        let again = parse(&bytes, Path::new(&name), &Job::default()).expect("read").mesh;
+        assert_eq!(again.colours, mesh.colours, "{kind}");
+        assert_eq!(lost(kind, &mesh), Vec::<String>::new(), "{kind}");
+    }
+    assert!(lost("obj", &mesh)[0].contains("opacity"));
+    assert!(lost("stl", &mesh)[0].contains("colours"));
 }

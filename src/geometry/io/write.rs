@@ -48,9 +48,26 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
     }
 }
 
-/// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.
+/// Returns the parts of `mesh` that a file of the ending `kind` does not hold or holds otherwise,
+/// one sentence each.
 pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
+    let mut out = lost(kind, mesh);
+    if matches!(kind, "stl" | "glb" | "gltf" | "3mf") && mesh.faces().any(|f| f.len() > 3) {
+        out.push(format!("the polygons are cut: .{kind} holds triangles alone"));
+    }
+    out
+}
+
+/// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.
+/// The surface is the same, so polygons that are cut into triangles are none of them.
+pub fn lost(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     let mut out = Vec::new();
+    let clear = |colours: &Vec<[u8; 4]>| colours.iter().any(|c| c[3] != 255);
+    if kind == "obj" && mesh.colours.as_ref().is_some_and(clear) {
+        out.push(
+            "the opacity of the vertices' colours is left out: .obj has no place for it".into(),
+        );
+    }
     if mesh.colours.is_some() && kind == "stl" {
         out.push(format!("the vertices' colours are left out: .{kind} is written without"));
     }
@@ -62,9 +79,6 @@ pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     }
     if mesh.uvs().is_some() && kind != "obj" {
         out.push(format!("the texture coordinates are left out: .{kind} is written without"));
-    }
-    if matches!(kind, "stl" | "glb" | "gltf" | "3mf") && mesh.faces().any(|f| f.len() > 3) {
-        out.push(format!("the polygons are cut: .{kind} holds triangles alone"));
     }
     out
 }

@@ -28,7 +28,8 @@ impl<'a> GltfMesh<'a> {
     }
 }
 
-/// Meshes as glTF has them: single precision, colours as bytes of linear light (the format's own).
+/// Meshes as glTF has them: single precision, colours as linear light (the format's own) of
+/// 16 bits, which every byte of sRGB survives.
 struct GltfScene<'a> {
     json: Value,
     parts: Vec<GltfPart<'a>>,
@@ -77,10 +78,10 @@ fn scene<'a>(meshes: &[GltfMesh<'a>]) -> GltfScene<'a> {
         }));
         let mut attributes = json!({"POSITION": first});
         if let Some(colours) = &one.mesh.colours {
-            let colour = view(colours.len() * 4, 34962);
+            let colour = view(colours.len() * 8, 34962);
             attributes["COLOR_0"] = accessors.len().into();
             accessors.push(json!({
-                "bufferView": colour, "componentType": 5121, "normalized": true,
+                "bufferView": colour, "componentType": 5123, "normalized": true,
                 "count": points.len(), "type": "VEC4",
             }));
         }
@@ -159,9 +160,11 @@ impl GltfPart<'_> {
             let linear = |v: u8| {
                 let v = v as f64 / 255.0;
                 let l = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-                (l * 255.0).round() as u8
+                (l * 65535.0).round() as u16
             };
-            out.write_all(&[linear(c[0]), linear(c[1]), linear(c[2]), c[3]])?;
+            let [r, g, b] = [linear(c[0]), linear(c[1]), linear(c[2])];
+            let all = [r, g, b, u16::from(c[3]) * 257].map(u16::to_le);
+            out.write_all(bytemuck::bytes_of(&all))?;
         }
         for target in self.targets {
             let mut offsets = target.offsets.iter().peekable();

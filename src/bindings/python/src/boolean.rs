@@ -161,13 +161,14 @@ fn computed(
     a: &Mesh,
     b: &Mesh,
     operations: &[Operation],
-    options: &BooleanOptions,
+    options: BooleanOptions,
     progress: &Progress,
 ) -> PyResult<Vec<BooleanResult>> {
-    let operands = [a.poly().as_ref(), b.poly().as_ref()];
-    let (solids, report) =
-        watched(py, progress, |job| compute(operands, operations, options, job, || 0.0))?
-            .map_err(|e| errors::boolean(py, &e))?;
+    let (a, b, operations) = (a.poly().clone(), b.poly().clone(), operations.to_vec());
+    let (solids, report) = watched(py, progress, move |job| {
+        compute([a.as_ref(), b.as_ref()], &operations, &options, job, || 0.0)
+    })?
+    .map_err(|e| errors::boolean(py, &e))?;
     let report = Arc::new(report);
     let result = |s: sculptd_geometry::boolean::BooleanSolid| {
         Ok(BooleanResult {
@@ -185,20 +186,20 @@ fn computed(
 /// One operation with each mesh of a list in turn.
 fn chained(
     py: Python<'_>,
-    meshes: &[Arc<PolyMesh>],
+    meshes: Vec<Arc<PolyMesh>>,
     operation: Operation,
     options: BooleanOptions,
     progress: &Progress,
 ) -> PyResult<BooleanResult> {
-    let Some((first, tools)) = meshes.split_first() else {
+    if meshes.is_empty() {
         return Err(PyValueError::new_err("expected at least one mesh"));
-    };
-    if operation == Operation::ReverseDifference && tools.len() > 1 {
+    }
+    if operation == Operation::ReverseDifference && meshes.len() > 2 {
         return Err(PyValueError::new_err("reverse-difference: expected one mesh, not a list"));
     }
-    let (solid, report) = watched(py, progress, |job| {
-        let mut chain = BooleanChain::new(first, tools.len(), options);
-        for tool in tools {
+    let (solid, report) = watched(py, progress, move |job| {
+        let mut chain = BooleanChain::new(&meshes[0], meshes.len() - 1, options);
+        for tool in &meshes[1..] {
             chain.step(operation, tool, None, job, || 0.0)?;
         }
         chain.finish(job)
@@ -222,7 +223,7 @@ pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResul
     {
         return Ok(mesh);
     }
-    let made = computed(py, a, b, &[operation], &options, &None)?.into_iter().next();
+    let made = computed(py, a, b, &[operation], options, &None)?.into_iter().next();
     let made = made.ok_or_else(|| PyValueError::new_err("no result"))?;
     Ok(made.mesh.get().__copy__())
 }
@@ -242,7 +243,7 @@ fn from_state(
         Before::State(state) => (Some(state.clone()), None),
     };
     let tool = b.poly().clone();
-    let made = watched(py, &None, |job| {
+    let made = watched(py, &None, move |job| {
         let begun = match (state, &whole) {
             (None, Some(mesh)) => SolidState::new(mesh, options, job)?,
             (state, _) => state,
@@ -287,12 +288,12 @@ fn boolean(
     })?;
     let options = options(tolerance, faces, keep_contact)?;
     if let Ok(b) = b.cast::<Mesh>() {
-        let made = computed(py, a.get(), b.get(), &[wanted], &options, &progress)?;
+        let made = computed(py, a.get(), b.get(), &[wanted], options, &progress)?;
         return made.into_iter().next().ok_or_else(|| PyValueError::new_err("no result"));
     }
     let mut all = vec![a.get().poly().clone()];
     all.append(&mut surfaces(b)?);
-    chained(py, &all, wanted, options, &progress)
+    chained(py, all, wanted, options, &progress)
 }
 
 /// The surfaces of a list of meshes.
@@ -316,7 +317,7 @@ fn union(
     progress: Progress,
 ) -> PyResult<BooleanResult> {
     let options = options(tolerance, faces, false)?;
-    chained(py, &surfaces(meshes)?, Operation::Union, options, &progress)
+    chained(py, surfaces(meshes)?, Operation::Union, options, &progress)
 }
 
 /// All four results from one arrangement: a dict by the names of the operations.
@@ -334,7 +335,7 @@ fn boolean_all<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = options(tolerance, faces, keep_contact)?;
     let out = PyDict::new(py);
-    for result in computed(py, a.get(), b.get(), &Operation::ALL, &options, &progress)? {
+    for result in computed(py, a.get(), b.get(), &Operation::ALL, options, &progress)? {
         out.set_item(result.operation.name(), result)?;
     }
     Ok(out)
@@ -400,10 +401,10 @@ fn cut(
     progress: &Progress,
 ) -> PyResult<Vec<Section>> {
     let finite = offsets.iter().all(|o| o.is_finite());
-    let mesh = mesh.get().poly().clone();
-    watched(py, progress, |job| {
+    let (mesh, offsets) = (mesh.get().poly().clone(), offsets.to_vec());
+    watched(py, progress, move |job| {
         let slicer = Slicer::new(&mesh, glam::DVec3::from(normal)).filter(|_| finite)?;
-        Some(slicer.all(offsets, job))
+        Some(slicer.all(&offsets, job))
     })?
     .ok_or_else(|| {
         PyValueError::new_err("normal, offsets: expected finite numbers, the normal not zero")

@@ -1,6 +1,6 @@
 //! Failures as Python exceptions: the text for people, place and reason as attributes for programs.
 
-use pyo3::exceptions::{PyException, PyOSError, PyValueError};
+use pyo3::exceptions::{PyException, PyOSError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 use pyo3::{IntoPyObjectExt, create_exception};
@@ -38,6 +38,13 @@ create_exception!(
     "The work was cancelled by an exception of the progress function or by a signal."
 );
 
+create_exception!(
+    sculptd,
+    LossWarning,
+    PyUserWarning,
+    "A file does not hold all of a mesh, or a mesh not all of a file."
+);
+
 /// Adds the exceptions under the names that Python sees.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     let add = |name: &str, of: Bound<'_, PyType>| m.add(name, of);
@@ -46,7 +53,8 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     add("FileFormatError", py.get_type::<FileFormatError>())?;
     add("BooleanFailed", py.get_type::<BooleanFailed>())?;
     add("EmptyResult", py.get_type::<EmptyResult>())?;
-    add("JobCancelled", py.get_type::<JobCancelled>())
+    add("JobCancelled", py.get_type::<JobCancelled>())?;
+    add("LossWarning", py.get_type::<LossWarning>())
 }
 
 /// `e` with attributes; where one can't be set, that error instead.

@@ -13,6 +13,7 @@ mod boolean;
 #[path = "../../../cli/embedded_presets.rs"]
 mod embedded_presets;
 mod errors;
+mod file;
 mod job;
 mod measure;
 mod mesh;
@@ -31,6 +32,7 @@ fn _native(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(m)?;
     mesh::register(m)?;
+    file::register(m)?;
     boolean::register(m)?;
     thickness::register(m)?;
     measure::register(m)?;

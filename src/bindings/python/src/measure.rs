@@ -27,7 +27,7 @@ pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<B
 fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py, PyDict>> {
     let poly = mesh.get().poly().clone();
     let none: Progress = None;
-    let m = watched(py, &none, |_| measures_of(&poly.positions, &poly.triangles().0))?;
+    let m = watched(py, &none, move |_| measures_of(&poly.positions, &poly.triangles().0))?;
     let out = PyDict::new(py);
     out.set_item("volume", m.volume)?;
     out.set_item("area", m.area)?;
@@ -63,7 +63,7 @@ fn check_mesh<'py>(
         return plain(py, &checked(py, mesh.get(), &request, &progress)?);
     }
     let poly = mesh.get().poly().clone();
-    let report = watched(py, &progress, |job| check::report(&poly, crossings, job))?
+    let report = watched(py, &progress, move |job| check::report(&poly, crossings, job))?
         .map_err(errors::cancelled)?;
     plain(py, &report)
 }
@@ -121,7 +121,7 @@ fn project(
     let plane = ProjectionPlane::along(DVec3::from(direction), 0.0)
         .ok_or_else(|| PyValueError::new_err("direction: expected a vector that is not zero"))?;
     let poly = mesh.get().poly().clone();
-    let regions = watched(py, &progress, |_| {
+    let regions = watched(py, &progress, move |_| {
         // In the frame of the part, then moved to where the part is.
         let part = CentredMesh::new(&poly, 1.0);
         let mut regions = outline(&Topology::build(&part.mesh), &plane);

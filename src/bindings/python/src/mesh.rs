@@ -1,33 +1,29 @@
 //! Meshes: made from arrays, read from files, written, and shared with NumPy.
 
 use std::hash::{DefaultHasher, Hasher};
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use glam::{DMat4, DVec3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::{PyBytes, PyDict, PyType};
 use sculptd_geometry::boolean::{Operation, SolidState};
-use sculptd_geometry::face_attributes::FaceAttributes;
-use sculptd_geometry::io::{LoadedMesh, read_mesh, write_mesh};
-use sculptd_geometry::job::Job;
 use sculptd_geometry::measure::{Measures, measures_of};
 use sculptd_geometry::repair::flip;
-use sculptd_geometry::{PolyMesh, TriMesh, check, shapes, written};
+use sculptd_geometry::{FaceAttributes, GroupName, PolyMesh, TriMesh, check, shapes, written};
 use serde::{Deserialize, Serialize};
 
 use crate::array::{integers, points, shared};
-use crate::errors;
-use crate::job::{Progress, watched};
-use crate::{boolean, picture, pool};
+use crate::job::watched;
+use crate::{boolean, errors, file, picture};
 
 /// A surface of polygons in double precision. It never changes: every operation gives a new one.
 ///
 /// Arguments: `vertices`, (n, 3) numbers in mm; `faces`, (m, k) vertex numbers, k = 3 for
 /// triangles, counter-clockwise seen from outside; or, with `face_starts` of m + 1 numbers, the
 /// corners of all faces in one flat array, where face f owns
-/// `faces[face_starts[f]:face_starts[f + 1]]`. `colours`: (n, 4) RGBA, 0 to 255.
+/// `faces[face_starts[f]:face_starts[f + 1]]`. `colours`: (n, 4) RGBA, 0 to 255. `groups`: the
+/// group of each face, a number; `group_names`: the names of the groups 0, 1 and so on.
 ///
 /// The arrays are copied once, into memory that the mesh owns. The attributes `vertices`, `faces`,
 /// `corners` and `face_starts` are read-only arrays over that memory: no copy is made.
@@ -75,6 +71,11 @@ fn are_starts(starts: &[u32], corners: usize) -> bool {
         && starts.windows(2).all(|w| w[0].checked_add(3).is_some_and(|least| least <= w[1]))
 }
 
+/// The name of a group, else of its object, else of its material.
+fn shown_name(g: &GroupName) -> &str {
+    [&g.group, &g.object, &g.material].into_iter().find(|n| !n.is_empty()).map_or("", |n| n)
+}
+
 impl From<PolyMesh> for Mesh {
     fn from(poly: PolyMesh) -> Self {
         Mesh::warned(poly, Vec::new())
@@ -85,6 +86,11 @@ impl Mesh {
     /// With sentences for the caller.
     pub fn warned(poly: PolyMesh, warnings: Vec<String>) -> Mesh {
         Mesh { poly: Arc::new(poly).into(), before: Before::Other, format: None, warnings }
+    }
+
+    /// From a file.
+    pub fn read(poly: PolyMesh, format: &str, warnings: Vec<String>) -> Mesh {
+        Mesh { format: Some(format.into()), ..Mesh::warned(poly, warnings) }
     }
 
     /// The result of a Boolean.
@@ -112,9 +118,9 @@ impl Mesh {
         poly.into()
     }
 
-    fn sizes(&self, py: Python<'_>) -> Measures {
-        let sizes = || measures_of(&self.poly().positions, &self.poly().triangles().0);
-        py.detach(|| pool::here(sizes))
+    fn sizes(&self, py: Python<'_>) -> PyResult<Measures> {
+        let poly = self.poly().clone();
+        watched(py, &None, move |_| measures_of(&poly.positions, &poly.triangles().0))
     }
 
     fn regular(&self) -> Option<usize> {
@@ -128,12 +134,15 @@ impl Mesh {
 #[pymethods]
 impl Mesh {
     #[new]
-    #[pyo3(signature = (vertices, faces, face_starts=None, colours=None))]
+    #[pyo3(signature = (vertices, faces, face_starts=None, colours=None, groups=None,
+                        group_names=None))]
     fn new(
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         face_starts: Option<&Bound<'_, PyAny>>,
         colours: Option<&Bound<'_, PyAny>>,
+        groups: Option<&Bound<'_, PyAny>>,
+        group_names: Option<Vec<String>>,
     ) -> PyResult<Mesh> {
         let positions = points(vertices, "vertices")?;
         if let Some(at) = positions.iter().position(|p| !p.is_finite()) {
@@ -169,7 +178,25 @@ impl Mesh {
                 Some(bytes.as_chunks::<4>().0.to_vec())
             }
         };
-        Ok(PolyMesh { positions, face_starts: starts, corners, colours, ..PolyMesh::new() }.into())
+        let groups = groups.map(|g| integers(g, "groups", u32::MAX as usize)).transpose()?;
+        if groups.as_ref().is_some_and(|(_, shape)| *shape != [starts.len() - 1]) {
+            let text = format!("groups: expected shape ({},)", starts.len() - 1);
+            return Err(PyValueError::new_err(text));
+        }
+        let named = |group| GroupName { group, ..GroupName::default() };
+        let attributes = group_names.map(|names| {
+            let groups = names.into_iter().map(named).collect();
+            Arc::new(FaceAttributes { groups, ..FaceAttributes::default() })
+        });
+        Ok(PolyMesh {
+            positions,
+            face_starts: starts,
+            corners,
+            colours,
+            groups: groups.map(|(groups, _)| groups),
+            attributes,
+        }
+        .into())
     }
 
     /// (n, 3) float64, read-only, shared with the mesh.
@@ -219,6 +246,14 @@ impl Mesh {
         shared(py, self.poly().clone(), groups, vec![groups.len()]).map(Some)
     }
 
+    /// The names of the groups 0, 1 and so on: that of the group, else of its object, else of its
+    /// material. None where the file has none.
+    #[getter]
+    fn group_names(&self) -> Option<Vec<&str>> {
+        let groups = &self.poly().attributes.as_deref()?.groups;
+        (!groups.is_empty()).then(|| groups.iter().map(shown_name).collect())
+    }
+
     /// The format of the file, e.g. 'STL (binary)'; None for a mesh that came from no file.
     #[getter]
     fn format(&self) -> Option<&str> {
@@ -232,8 +267,9 @@ impl Mesh {
     }
 
     /// The same surface with every polygon cut into triangles; vertices keep their numbers.
-    fn triangulated(&self, py: Python<'_>) -> Mesh {
-        py.detach(|| pool::here(|| written::triangulated(self.poly()))).into()
+    fn triangulated(&self, py: Python<'_>) -> PyResult<Mesh> {
+        let poly = self.poly().clone();
+        watched(py, &None, move |_| written::triangulated(&poly)).map(Mesh::from)
     }
 
     /// The mesh with every vertex multiplied by `scale`, then moved by `offset`, then mapped by
@@ -273,19 +309,19 @@ impl Mesh {
     /// has none.
     #[getter]
     fn volume(&self, py: Python<'_>) -> PyResult<f64> {
-        if !self.is_closed(py) {
+        if !self.is_closed(py)? {
             return Err(PyValueError::new_err(
                 "the mesh is not closed, so it has no volume; check() names its faults and \
                  repair() closes holes",
             ));
         }
-        Ok(self.sizes(py).volume)
+        Ok(self.sizes(py)?.volume)
     }
 
     /// The sum of the areas of all faces.
     #[getter]
-    fn area(&self, py: Python<'_>) -> f64 {
-        self.sizes(py).area
+    fn area(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.sizes(py)?.area)
     }
 
     /// The lowest and the highest corner of the box around all faces; None without faces.
@@ -298,10 +334,10 @@ impl Mesh {
 
     /// True if each edge has exactly two faces, which run along it in opposite directions.
     #[getter]
-    fn is_closed(&self, py: Python<'_>) -> bool {
-        let poly = self.poly();
-        let report = py.detach(|| pool::here(|| check::report(poly, false, &Job::default())));
-        report.is_ok_and(|r| r.closed)
+    fn is_closed(&self, py: Python<'_>) -> PyResult<bool> {
+        let poly = self.poly().clone();
+        let report = watched(py, &None, move |job| check::report(&poly, false, job))?;
+        Ok(report.map_err(errors::cancelled)?.closed)
     }
 
     fn __sub__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
@@ -393,15 +429,39 @@ impl Mesh {
 
     /// The picture that a notebook shows.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let png = picture::drawn(py, self.poly(), (480, 360))?;
+        let png = picture::drawn(py, self.poly().clone(), (480, 360))?;
         Ok(PyBytes::new(py, &png))
     }
 
-    /// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf. The
-    /// file is written beside and renamed, so a file that stood there stays whole if this fails.
-    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| pool::here(|| write_mesh(&path, self.poly())));
-        written.map_err(|e| errors::write(&e))
+    /// The picture and the facts that a notebook shows.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("sculptd.convert")?.call_method1("html", (slf,))
+    }
+
+    /// Shows the mesh in a window or a notebook, by pyvista, which must be installed. The
+    /// arguments are those of `pyvista.PolyData.plot`.
+    #[pyo3(signature = (**settings))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("sculptd.convert")?.call_method("plot", (slf,), settings)
+    }
+
+    /// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf; or
+    /// in `format` ('stl'). `path`: a path, or a binary file object. A path is written beside and
+    /// renamed, so a file that stood there stays whole if this fails. What the format does not
+    /// hold, such as colours in STL, is a LossWarning; with `strict` it is raised and nothing is
+    /// written.
+    #[pyo3(signature = (path, format=None, *, strict=false))]
+    fn write(
+        &self,
+        py: Python<'_>,
+        path: &Bound<'_, PyAny>,
+        format: Option<&str>,
+        strict: bool,
+    ) -> PyResult<()> {
+        file::write(py, self.poly().clone(), path, format, strict)
     }
 
     /// A box between two corners, of six quadrilaterals.
@@ -447,21 +507,7 @@ impl Mesh {
     }
 }
 
-/// Reads a mesh file: OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
-///
-/// Raises OSError (FileNotFoundError and others) if the file can't be opened. Raises
-/// FileFormatError, with the line or byte, if the content violates the format.
-#[pyfunction]
-#[pyo3(signature = (path, progress=None))]
-fn read(py: Python<'_>, path: PathBuf, progress: Progress) -> PyResult<Mesh> {
-    let path: &Path = &path;
-    let LoadedMesh { mesh, format, warnings, .. } =
-        watched(py, &progress, |job| read_mesh(path, job))?.map_err(|e| errors::read(py, &e))?;
-    Ok(Mesh { format: Some(format.name().into()), ..Mesh::warned(mesh, warnings) })
-}
-
 /// Adds what this file defines.
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add_class::<Mesh>()?;
-    m.add_function(wrap_pyfunction!(read, m)?)
+    m.add_class::<Mesh>()
 }

@@ -7,6 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use sculptd_check::preset::CheckPreset;
 use sculptd_check::{CheckAnswer, CheckRequest, CheckSettings, PresetLibrary, check_part};
+use sculptd_geometry::thickness::check::ThicknessLimits;
 use sculptd_geometry::thickness::preset::Preset;
 
 use crate::embedded_presets::{CHECKS, WALLS};
@@ -33,12 +34,22 @@ fn bad(e: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(e.to_string())
 }
 
-fn settings(request: &PartRequest<'_>) -> PyResult<CheckSettings> {
+/// The presets that come with the module.
+fn library() -> PyResult<PresetLibrary> {
     let read = |(name, text): &(&str, &str)| CheckPreset::read(name, text).map_err(bad);
     let checks = CHECKS.iter().map(read).collect::<PyResult<Vec<_>>>()?;
     let read = |(name, text): &(&str, &str)| Preset::read(name, text).map_err(bad);
     let walls = WALLS.iter().map(read).collect::<PyResult<Vec<_>>>()?;
-    let library = PresetLibrary { checks, walls };
+    Ok(PresetLibrary { checks, walls })
+}
+
+/// The limits of walls by the name of a process or a material.
+pub fn wall_limits(name: &str) -> PyResult<ThicknessLimits> {
+    library()?.walls(name).map(ThicknessLimits::from).map_err(bad)
+}
+
+fn settings(request: &PartRequest<'_>) -> PyResult<CheckSettings> {
+    let library = library()?;
     let printer = request.printer.map(|name| library.printer(name)).transpose().map_err(bad)?;
     let usual = printer.map_or("fdm", |p| p.process.as_str());
     let process = library.process(request.process.unwrap_or(usual)).map_err(bad)?;
@@ -64,11 +75,12 @@ pub fn checked(
     let (scale, orient) = (request.scale, request.orient);
     #[allow(clippy::disallowed_methods)] // The answer states its duration.
     let began = Instant::now();
-    let seconds = || began.elapsed().as_secs_f64();
-    watched(py, progress, |job| {
+    let seconds = move || began.elapsed().as_secs_f64();
+    let poly = mesh.poly().clone();
+    watched(py, progress, move |job| {
         check_part(
             "",
-            mesh.poly(),
+            &poly,
             scale,
             &settings,
             CheckRequest { orient, ..Default::default() },

@@ -1,5 +1,7 @@
 //! Pictures of meshes without a display: drawn on the processor, the same bytes everywhere.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -36,7 +38,7 @@ fn picture<'py>(
     if measured.as_ref().is_some_and(|m| m.values.len() != poly.positions.len()) {
         return Err(PyValueError::new_err("thickness: expected that of the same mesh"));
     }
-    let png = watched(py, &None, |_| {
+    let png = watched(py, &None, move |_| {
         let part = CentredMesh::new(&poly, 1.0);
         let aspect = width as f32 / height as f32;
         let camera = match eye {
@@ -58,11 +60,11 @@ fn picture<'py>(
 /// Draws a mesh from a corner above, as a PNG file's bytes of this width and height.
 pub fn drawn(
     py: Python<'_>,
-    poly: &PolyMesh,
+    poly: Arc<PolyMesh>,
     (width, height): (usize, usize),
 ) -> PyResult<Vec<u8>> {
-    watched(py, &None, |_| {
-        let part = CentredMesh::new(poly, 1.0);
+    watched(py, &None, move |_| {
+        let part = CentredMesh::new(&poly, 1.0);
         let camera = Camera::whole(&part.mesh, width as f32 / height as f32);
         draw(&part.mesh, None, &camera, width, height).png()
     })?

@@ -10,10 +10,10 @@ use sculptd_geometry::offset::{self as offsets};
 use sculptd_geometry::remesh::{self as remeshing, RemeshSettings};
 use sculptd_geometry::{repair as repairs, subdivide as subdivision};
 
-use crate::errors;
 use crate::job::{Progress, watched};
 use crate::mesh::Mesh;
 use crate::solid::prepared;
+use crate::{errors, file};
 
 /// One closed surface of even triangles around everything that is inside `mesh`, closed or not,
 /// crossed or not. `side`: samples along the longest side, 8 to 1024. `sharp`: keep sharp edges.
@@ -27,14 +27,17 @@ fn remesh(
     progress: Progress,
 ) -> PyResult<Mesh> {
     let (part, solid) = prepared(py, mesh.get(), &None)?;
+    let centre = part.centre;
     let settings = RemeshSettings { side, sharp };
-    let made = watched(py, &progress, |job| remeshing::remesh(&part.mesh, &solid, settings, job))?
-        .map_err(|e| errors::remesh(&e))?;
-    Ok(Mesh::at(&made.mesh, part.centre))
+    let made =
+        watched(py, &progress, move |job| remeshing::remesh(&part.mesh, &solid, settings, job))?
+            .map_err(|e| errors::remesh(&e))?;
+    Ok(Mesh::at(&made.mesh, centre))
 }
 
 /// The surface at `distance` from that of `mesh`, and nowhere nearer; negative shrinks. Raises
-/// EmptyResult where shrinking leaves nothing.
+/// EmptyResult where shrinking leaves nothing. The result has no colours; if `mesh` has some, this
+/// warns with a LossWarning.
 #[pyfunction]
 #[pyo3(signature = (mesh, distance, *, side=256, progress=None))]
 fn offset(
@@ -47,8 +50,11 @@ fn offset(
     if !distance.is_finite() {
         return Err(PyValueError::new_err("distance: expected a finite length"));
     }
+    if mesh.get().poly().colours.is_some() {
+        file::tell(py, &["the vertices' colours are left out: an offset has none".into()], false)?;
+    }
     let (part, solid) = prepared(py, mesh.get(), &None)?;
-    let made = watched(py, &progress, |job| offsets::offset(&solid, distance, side, job))?
+    let made = watched(py, &progress, move |job| offsets::offset(&solid, distance, side, job))?
         .map_err(|e| errors::remesh(&e))?;
     Ok(Mesh::at(&made.mesh, part.centre))
 }
@@ -69,9 +75,11 @@ fn hollow(
         return Err(PyValueError::new_err("wall: expected a length above 0"));
     }
     let (part, solid) = prepared(py, mesh.get(), &None)?;
-    let made = watched(py, &progress, |job| offsets::hollow(&part.mesh, &solid, wall, side, job))?
-        .map_err(|e| errors::remesh(&e))?;
-    Ok(Mesh::at(&made.mesh, part.centre))
+    let centre = part.centre;
+    let made =
+        watched(py, &progress, move |job| offsets::hollow(&part.mesh, &solid, wall, side, job))?
+            .map_err(|e| errors::remesh(&e))?;
+    Ok(Mesh::at(&made.mesh, centre))
 }
 
 /// Fewer triangles for nearly the same surface: edges are collapsed where the quadric error is
@@ -90,8 +98,8 @@ fn decimate(
     }
     let poly = mesh.get().poly().clone();
     let target = DecimationTarget { triangles, error, single: false };
-    let made =
-        watched(py, &progress, |job| quadric(&poly, target, job))?.map_err(errors::cancelled)?;
+    let made = watched(py, &progress, move |job| quadric(&poly, target, job))?
+        .map_err(errors::cancelled)?;
     Ok(made.into())
 }
 
@@ -116,9 +124,9 @@ fn subdivide(
         )));
     }
     let made = match scheme {
-        "loop" => watched(py, &progress, |job| subdivision::loop_(&poly, levels, job))?,
+        "loop" => watched(py, &progress, move |job| subdivision::loop_(&poly, levels, job))?,
         "catmull-clark" => {
-            watched(py, &progress, |job| subdivision::catmull_clark(&poly, levels, job))?
+            watched(py, &progress, move |job| subdivision::catmull_clark(&poly, levels, job))?
         }
         other => {
             return Err(PyValueError::new_err(format!(
@@ -150,7 +158,10 @@ fn repaired(
     job.check()?;
     let filled = repairs::fill_holes(&mut mesh, longest);
     tell(filled.holes, "holes closed");
-    tell(filled.left, "open edges left as they are");
+    tell(
+        filled.left,
+        "open edges left as they are: they bound no simple hole of longest_hole edges",
+    );
     if oriented.crossing + oriented.nested > 0 && filled.left == 0 {
         tell(oriented.crossing, "pairs of shells that cross made one solid");
         tell(oriented.nested, "shells within others made one solid with them");
@@ -161,9 +172,10 @@ fn repaired(
 
 /// The mesh made sound: vertices within `weld` become one, faces without extent go, neighbours
 /// agree on their side, holes of at most `longest_hole` edges are closed, shells that cross become
-/// one solid. `warnings` of the result say what was done.
+/// one solid. `warnings` of the result say what was done. A longer rim is rather the edge of an
+/// open surface, such as a bowl without a wall, than a fault; it stays open unless you allow it.
 #[pyfunction]
-#[pyo3(signature = (mesh, *, weld=0.0, longest_hole=usize::MAX, progress=None))]
+#[pyo3(signature = (mesh, *, weld=0.0, longest_hole=64, progress=None))]
 fn repair(
     py: Python<'_>,
     mesh: &Bound<'_, Mesh>,
@@ -175,9 +187,10 @@ fn repair(
         return Err(PyValueError::new_err("weld: expected a length of 0 or more"));
     }
     let poly = mesh.get().poly().clone();
-    let (made, told) =
-        watched(py, &progress, |job| repaired(PolyMesh::clone(&poly), weld, longest_hole, job))?
-            .map_err(|e| errors::boolean(py, &e))?;
+    let (made, told) = watched(py, &progress, move |job| {
+        repaired(PolyMesh::clone(&poly), weld, longest_hole, job)
+    })?
+    .map_err(|e| errors::boolean(py, &e))?;
     Ok(Mesh::warned(made, told))
 }
 

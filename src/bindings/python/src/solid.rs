@@ -6,6 +6,7 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::distance::{DistanceSolid, Sign};
 
@@ -33,7 +34,7 @@ pub fn prepared(
     progress: &Progress,
 ) -> PyResult<(CentredMesh, DistanceSolid)> {
     let poly = mesh.poly().clone();
-    watched(py, progress, |job| {
+    watched(py, progress, move |job| {
         let part = CentredMesh::new(&poly, 1.0);
         let solid = DistanceSolid::build(&part.mesh, job)?;
         Ok((part, solid))
@@ -73,7 +74,8 @@ impl Solid {
         progress: Progress,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let moved = self.moved(at)?;
-        let found = watched(py, &progress, |job| self.solid.signed_distances(&moved, job))?
+        let solid = self.solid.clone();
+        let found = watched(py, &progress, move |job| solid.signed_distances(&moved, job))?
             .map_err(errors::cancelled)?;
         Ok(PyArray1::from_vec(py, found))
     }
@@ -90,7 +92,8 @@ impl Solid {
         progress: Progress,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<u32>>)> {
         let moved = self.moved(at)?;
-        let found = watched(py, &progress, |job| self.solid.nearest(&moved, job))?
+        let solid = self.solid.clone();
+        let found = watched(py, &progress, move |job| solid.nearest(&moved, job))?
             .map_err(errors::cancelled)?;
         let place = |n: &Option<sculptd_geometry::bvh::NearestPoint>| {
             n.map_or(DVec3::NAN, |n| n.point + self.part.centre)
@@ -108,9 +111,12 @@ impl Solid {
         at: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let moved = self.moved(at)?;
-        let found = watched(py, &None, |_| {
-            moved.iter().map(|&p| self.solid.winding(p)).collect::<Vec<f64>>()
-        })?;
+        let solid = self.solid.clone();
+        let found = watched(py, &None, move |job| {
+            let one = |p: &DVec3| job.check().map(|()| solid.winding(*p));
+            moved.par_iter().map(one).collect::<Result<Vec<f64>, _>>()
+        })?
+        .map_err(errors::cancelled)?;
         Ok(PyArray1::from_vec(py, found))
     }
 }
@@ -119,6 +125,11 @@ impl Solid {
     /// The points in the part's own frame.
     fn moved(&self, at: &Bound<'_, PyAny>) -> PyResult<Vec<DVec3>> {
         let mut at = points(at, "points")?;
+        if let Some(bad) = at.iter().position(|p| !p.is_finite()) {
+            return Err(PyValueError::new_err(format!(
+                "points: entry {bad} is not finite: a distance needs numbers; leave such points out"
+            )));
+        }
         at.iter_mut().for_each(|p| *p -= self.part.centre);
         Ok(at)
     }

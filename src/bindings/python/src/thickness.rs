@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyList;
 use sculptd_geometry::CentredMesh;
+use sculptd_geometry::thickness::check::{ThicknessLimits, check};
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
@@ -18,6 +19,7 @@ use crate::errors;
 use crate::job::{Progress, watched};
 use crate::measure::plain;
 use crate::mesh::Mesh;
+use crate::part_check::wall_limits;
 
 /// The thickness of the walls of a part, one value a vertex of the mesh, in the mesh's unit.
 #[pyclass(frozen, module = "sculptd")]
@@ -129,8 +131,8 @@ impl Thickness {
         Ok((area, if all > 0.0 { area / all } else { 0.0 }))
     }
 
-    /// The thinnest regions below `limit`, the worst first: dicts with `position`, `thickness`,
-    /// `area`.
+    /// The thinnest regions below `limit`, the worst first: named tuples `ThinPlace` of `position`,
+    /// `thickness` and `area`.
     #[pyo3(signature = (limit, count=10))]
     fn worst<'py>(
         &self,
@@ -138,21 +140,58 @@ impl Thickness {
         limit: f32,
         count: usize,
     ) -> PyResult<Bound<'py, PyList>> {
+        let kind = py.import("sculptd.convert")?.getattr("ThinPlace")?;
         let out = PyList::empty(py);
         let found = self.against(py, limit)?;
         for spot in found.worst(limit, 0.0, count) {
-            let d = PyDict::new(py);
-            d.set_item("position", self.part.to_file(spot.position.into()).to_array())?;
-            d.set_item("thickness", spot.thickness)?;
-            d.set_item("area", spot.area)?;
-            out.append(d)?;
+            let position: (f64, f64, f64) = self.part.to_file(spot.position.into()).into();
+            out.append(kind.call1((position, spot.thickness, spot.area))?)?;
         }
         Ok(out)
     }
 
+    /// Judges the walls as `sculptd thickness --json` does: a dict with `verdict` ('pass', 'warn',
+    /// 'fail', 'undecided' or 'unjudged'), `statement`, `least`, `worst` and the figures behind
+    /// them. `preset`: a process or a material, such as 'fdm', 'sla' or 'abs'; the other limits, in
+    /// mm, replace its own.
+    #[pyo3(signature = (preset=None, *, fail_below=None, warn_below=None, fail_above=None,
+                        progress=None))]
+    fn judge<'py>(
+        &self,
+        py: Python<'py>,
+        preset: Option<&str>,
+        fail_below: Option<f32>,
+        warn_below: Option<f32>,
+        fail_above: Option<f32>,
+        progress: Progress,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let own = preset.map(wall_limits).transpose()?.unwrap_or_default();
+        let limits = ThicknessLimits {
+            fail_below: fail_below.or(own.fail_below),
+            warn_below: warn_below.or(own.warn_below),
+            fail_above: fail_above.or(own.fail_above),
+            ..own
+        };
+        let all = [limits.fail_below, limits.warn_below, limits.fail_above];
+        if all.iter().flatten().any(|l| !(*l > 0.0 && l.is_finite())) {
+            return Err(PyValueError::new_err("limits: expected numbers above 0"));
+        }
+        let (part, settings) = (self.part.clone(), self.measured.settings);
+        #[allow(clippy::disallowed_methods)] // The answer states its duration.
+        let began = std::time::Instant::now();
+        let seconds = move || began.elapsed().as_secs_f64();
+        let found = watched(py, &progress, move |job| {
+            check("", &part, None, &settings, limits, job, seconds)
+        })?
+        .map_err(|e| errors::thickness(&e))?;
+        plain(py, &found.answer)
+    }
+
     fn __repr__(&self) -> String {
         let s = &self.summary;
-        format!("<sculptd.Thickness min {:?}, median {:?}, max {:?}>", s.min, s.median, s.max)
+        let text = |v: Option<f32>| v.map_or("none".into(), |v| v.to_string());
+        let [min, median, max] = [s.min, s.median, s.max].map(text);
+        format!("<sculptd.Thickness min {min}, median {median}, max {max}>")
     }
 }
 
@@ -166,7 +205,7 @@ impl Thickness {
         let query =
             WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
         let part = self.part.clone();
-        watched(py, &None, |job| {
+        watched(py, &None, move |job| {
             thickness::measure_at_places(&part.mesh, None, &settings, query, job)
         })?
         .map(Arc::new)
@@ -225,7 +264,7 @@ fn thickness_of(
         ..ThicknessSettings::default()
     };
     let poly = mesh.get().poly().clone();
-    let found = watched(py, &progress, |job| {
+    let found = watched(py, &progress, move |job| {
         if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
             return Ok(None);
         }

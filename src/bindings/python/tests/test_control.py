@@ -1,17 +1,14 @@
 """The client against a real daemon; skipped unless SCULPTD_BINARY names one."""
 
-import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import sculptd
+from running_daemon import BINARY, RunningDaemon
 from sculptd import control
-
-BINARY = os.environ.get("SCULPTD_BINARY")
 
 
 class WithoutTheNativeModule(unittest.TestCase):
@@ -39,29 +36,11 @@ class Absent(unittest.TestCase):
 @unittest.skipUnless(BINARY, "SCULPTD_BINARY is not set")
 class Daemon(unittest.TestCase):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        home = pathlib.Path(self.folder.name)
-        self.socket = home / "sculptd.sock"
-        environment = {**os.environ, "XDG_RUNTIME_DIR": str(home), "HOME": str(home)}
-        for name in ("XDG_DATA_HOME", "XDG_CONFIG_HOME", "DISPLAY", "WAYLAND_DISPLAY"):
-            environment.pop(name, None)
-        self.log = open(home / "log", "wb")
-        self.daemon = subprocess.Popen(
-            [BINARY, "run", "--headless", "--for", "120"],
-            env=environment,
-            stdout=self.log,
-            stderr=self.log,
-        )
-        until = time.monotonic() + 60
-        while not self.socket.exists() and self.daemon.poll() is None:
-            self.assertLess(time.monotonic(), until, "the daemon opens no socket")
-            time.sleep(0.05)
+        self.daemon = RunningDaemon()
+        self.socket = self.daemon.socket
 
     def tearDown(self):
-        self.daemon.terminate()
-        self.daemon.wait(60)
-        self.log.close()
-        self.folder.cleanup()
+        self.daemon.stop()
 
     def test_a_stroke_changes_the_clay_and_is_exported(self):
         with control.Client(self.socket) as daemon:
@@ -76,10 +55,35 @@ class Daemon(unittest.TestCase):
             while daemon.hash()["hash"] == before:
                 self.assertLess(time.monotonic(), until, "the stroke changed nothing")
             self.assertIsNotNone(daemon.next_event(10.0))
-            path = pathlib.Path(self.folder.name) / "sculpture.stl"
+            path = pathlib.Path(self.daemon.folder.name) / "sculpture.stl"
             daemon.export(path)
             made = sculptd.read(path)
             self.assertGreater(len(made), 1000)
+
+    def test_reads_after_undo_redo_and_jump_are_current(self):
+        with control.Client(self.socket) as daemon:
+            states, nodes = [daemon.hash()["hash"]], [daemon.history()["here"]]
+            for y in (0.35, 0.5, 0.65):
+                daemon.stroke([(0.4, y, 0.9, 0), (0.6, y, 0.9, 300)], kind="clay", radius=0.1)
+                states.append(daemon.hash()["hash"])
+                nodes.append(daemon.history()["here"])
+            self.assertEqual(len(set(states)), 4)
+            path = pathlib.Path(self.daemon.folder.name) / "state.ply"
+            meshes, now = {}, 3
+            for to in (2, 3, 2, 1, 2, 0, 3, 1, 0, 1, 3, 0):
+                if to == now - 1:
+                    daemon.undo()
+                elif to == now + 1:
+                    daemon.redo()
+                else:
+                    daemon.jump(node=nodes[to])
+                now = to
+                self.assertEqual(daemon.hash()["hash"], states[to])
+                self.assertEqual(daemon.history()["here"], nodes[to])
+                daemon.export(path)
+                mesh = sculptd.read(path)
+                self.assertEqual(meshes.setdefault(to, mesh), mesh)
+            self.assertEqual(len(set(meshes.values())), 4)
 
     def test_a_refusal_names_the_field(self):
         with control.Client(self.socket) as daemon:

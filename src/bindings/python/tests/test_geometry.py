@@ -210,7 +210,7 @@ class Questions(unittest.TestCase):
         self.assertAlmostEqual(area / share, 960.0, delta=2.0)
         self.assertEqual(walls.below(0.5), (0.0, 0.0))
         worst = walls.worst(3.0)[0]
-        self.assertLess(worst["thickness"], 3.0)
+        self.assertLess(worst.thickness, 3.0)
         self.assertEqual(set(walls.summary()) & {"min", "histogram"}, {"min", "histogram"})
         balls = sculptd.thickness(plate, method="sphere")
         self.assertAlmostEqual(balls.median, 2.0, delta=0.05)
@@ -270,6 +270,23 @@ class Questions(unittest.TestCase):
         quads = sculptd.subdivide(Mesh.box((0, 0, 0), (1, 1, 1)), 2, scheme="catmull-clark")
         self.assertEqual(quads.faces.shape, (96, 4))
 
+    def test_walls_are_judged_as_the_command_does(self):
+        plate = Mesh.box((0, 0, 0), (40, 40, 0.7))
+        walls = sculptd.thickness(plate)
+        for settings, verdict in [
+            ({"preset": "fdm"}, "fail"),
+            ({"fail_below": 0.5, "warn_below": 0.6}, "pass"),
+            ({"fail_below": 0.5, "warn_below": 0.8}, "warn"),
+            ({"fail_below": 0.5, "fail_above": 0.6}, "fail"),
+            ({}, "unjudged"),
+        ]:
+            answer = walls.judge(**settings)
+            self.assertEqual(answer["verdict"], verdict, settings)
+        self.assertAlmostEqual(walls.judge("fdm")["least"]["upper"], 0.7, delta=1e-4)
+        for bad in ({"preset": "glass"}, {"fail_below": 0.0}):
+            with self.assertRaises(ValueError):
+                walls.judge(**bad)
+
     def test_repair_closes_and_turns(self):
         box = Mesh.box((0, 0, 0), (1, 1, 1)).triangulated()
         faces = box.faces.copy()
@@ -298,6 +315,9 @@ class LongWork(unittest.TestCase):
         told = []
         sculptd.thickness(self.big, progress=told.append)
         self.assertEqual(told[-1], 1.0)
+        self.assertEqual(told, sorted(told))
+        told = []
+        sculptd.remesh(Mesh.sphere(10.0, 40), side=128, sharp=True, progress=told.append)
         self.assertEqual(told, sorted(told))
 
     def test_an_exception_of_progress_cancels(self):

@@ -9,7 +9,8 @@ except ImportError:
 
 import numpy as np
 import sculptd
-import sculptd.trimesh_engine as ours
+import sculptd.trimesh_engine
+from sculptd.convert import from_trimesh, to_trimesh
 
 
 class Engine(unittest.TestCase):
@@ -40,6 +41,13 @@ class Engine(unittest.TestCase):
         left = trimesh.boolean.difference(balls, engine="sculptd")
         self.assertLess(left.volume, balls[0].volume)
 
+    def test_colours_are_kept(self):
+        self.a.visual = trimesh.visual.ColorVisuals(self.a, vertex_colors=(200, 40, 40, 255))
+        self.b.visual = trimesh.visual.ColorVisuals(self.b, vertex_colors=(40, 40, 200, 255))
+        made = trimesh.boolean.union([self.a, self.b], engine="sculptd")
+        found = {tuple(c) for c in np.asarray(made.visual.vertex_colors)}
+        self.assertEqual(found, {(200, 40, 40, 255), (40, 40, 200, 255)})
+
     def test_what_is_no_volume_is_refused(self):
         sheet = trimesh.Trimesh(np.eye(3), [[0, 1, 2]])
         with self.assertRaises(ValueError):
@@ -48,7 +56,7 @@ class Engine(unittest.TestCase):
             trimesh.boolean.union([self.a, sheet], engine="sculptd", check_volume=False)
 
     def test_there_and_back(self):
-        again = ours.to_trimesh(ours.from_trimesh(self.a))
+        again = to_trimesh(from_trimesh(self.a))
         np.testing.assert_array_equal(again.vertices, self.a.vertices)
         np.testing.assert_array_equal(again.faces, self.a.faces)
 

@@ -18,7 +18,8 @@ Functions that may take long release the interpreter's lock, stop on Ctrl+C, and
 ``progress(done)`` with a number from 0 to 1 about ten times a second. An exception that ``progress``
 raises cancels the work.
 
-``sculptd.control`` talks to a running daemon; ``sculptd.trimesh_engine`` gives trimesh our
+``sculptd.control`` talks to a running daemon; ``sculptd.convert`` converts meshes to and from
+trimesh, pyvista and Open3D, and results to pandas; ``sculptd.trimesh_engine`` gives trimesh our
 Booleans.
 """
 
@@ -37,6 +38,7 @@ if typing.TYPE_CHECKING:
         EmptyResult,
         FileFormatError,
         JobCancelled,
+        LossWarning,
         Mesh,
         Projection,
         SculptdError,
@@ -81,6 +83,7 @@ __all__ = [
     "EmptyResult",
     "FileFormatError",
     "JobCancelled",
+    "LossWarning",
     "Mesh",
     "Projection",
     "SculptdError",

@@ -1,11 +1,13 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, Literal, TypedDict, final
+from typing import Any, BinaryIO, Literal, TypedDict, final
 
 from typing_extensions import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from .convert import ThinPlace
 
 __all__ = [
     "__version__",
@@ -14,11 +16,13 @@ __all__ = [
     "BooleanFailed",
     "EmptyResult",
     "JobCancelled",
+    "LossWarning",
     "Mesh",
     "read",
     "BooleanResult",
     "boolean",
     "boolean_all",
+    "union",
     "sections",
     "slices",
     "Thickness",
@@ -61,6 +65,7 @@ class BooleanFailed(SculptdError):
 
 class EmptyResult(SculptdError): ...
 class JobCancelled(SculptdError): ...
+class LossWarning(UserWarning): ...
 
 @final
 class Mesh:
@@ -70,6 +75,8 @@ class Mesh:
         faces: ArrayLike,
         face_starts: ArrayLike | None = None,
         colours: ArrayLike | None = None,
+        groups: ArrayLike | None = None,
+        group_names: Sequence[str] | None = None,
     ) -> Self: ...
     @property
     def vertices(self) -> NDArray[np.float64]: ...
@@ -83,6 +90,8 @@ class Mesh:
     def colours(self) -> NDArray[np.uint8] | None: ...
     @property
     def groups(self) -> NDArray[np.uint32] | None: ...
+    @property
+    def group_names(self) -> list[str] | None: ...
     @property
     def format(self) -> str | None: ...
     @property
@@ -115,7 +124,11 @@ class Mesh:
     def __deepcopy__(self, _memo: object, /) -> Mesh: ...
     def __reduce__(self) -> tuple[Callable[[bytes], Mesh], tuple[bytes]]: ...
     def _repr_png_(self) -> bytes: ...
-    def write(self, path: _Path) -> None: ...
+    def _repr_html_(self) -> str: ...
+    def plot(self, **settings: Any) -> Any: ...
+    def write(
+        self, path: _Path | BinaryIO, format: str | None = None, *, strict: bool = False
+    ) -> None: ...
     @classmethod
     def box(cls, low: _Vector, high: _Vector) -> Mesh: ...
     @classmethod
@@ -151,11 +164,6 @@ class BooleanResult:
     @property
     def warnings(self) -> list[str]: ...
 
-class _ThinRegion(TypedDict):
-    position: list[float]
-    thickness: float
-    area: float
-
 @final
 class Thickness:
     @property
@@ -183,7 +191,16 @@ class Thickness:
     def error_bound(self) -> float: ...
     def summary(self) -> dict[str, Any]: ...
     def below(self, limit: float) -> tuple[float, float]: ...
-    def worst(self, limit: float, count: int = 10) -> list[_ThinRegion]: ...
+    def judge(
+        self,
+        preset: str | None = None,
+        *,
+        fail_below: float | None = None,
+        warn_below: float | None = None,
+        fail_above: float | None = None,
+        progress: _Progress = None,
+    ) -> dict[str, Any]: ...
+    def worst(self, limit: float, count: int = 10) -> list[ThinPlace]: ...
 
 @final
 class Projection:
@@ -217,7 +234,13 @@ class _Measures(TypedDict):
     dimensions: list[float]
     centroid: list[float] | None
 
-def read(path: _Path, progress: _Progress = None) -> Mesh: ...
+def read(
+    path: _Path | BinaryIO,
+    progress: _Progress = None,
+    *,
+    format: str | None = None,
+    strict: bool = False,
+) -> Mesh: ...
 def boolean(
     a: Mesh,
     b: Mesh | Sequence[Mesh],

@@ -7,29 +7,28 @@ Importing this module registers it::
 
     joined = trimesh.boolean.union([a, b], engine="sculptd")
 
-``to_trimesh`` and ``from_trimesh`` convert meshes.
+Colours of the operands are kept: faces of the result have those of the operand that they are from.
 """
 
-import numpy as np
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
 import trimesh
 
-from . import Mesh, boolean
+from . import boolean
+from .convert import from_trimesh, to_trimesh
 
-__all__ = ["engine", "from_trimesh", "to_trimesh"]
-
-
-def from_trimesh(mesh):
-    """A `sculptd.Mesh` of a `trimesh.Trimesh`."""
-    return Mesh(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+__all__ = ["engine"]
 
 
-def to_trimesh(mesh):
-    """A `trimesh.Trimesh` of a `sculptd.Mesh`; polygons are cut into triangles."""
-    whole = mesh.triangulated()
-    return trimesh.Trimesh(vertices=whole.vertices, faces=whole.faces, process=False)
-
-
-def engine(meshes, operation, check_volume=True, tolerance=None, progress=None, **_):
+def engine(
+    meshes: Sequence[Any],
+    operation: Literal["union", "intersection", "difference"],
+    check_volume: bool = True,
+    tolerance: float | None = None,
+    progress: Callable[[float], object] | None = None,
+    **_: Any,
+) -> Any:
     """One operation on a list of meshes, as trimesh's engines are called.
 
     Difference takes every further mesh from the first. The meshes are joined one after another, each
@@ -52,7 +51,7 @@ def engine(meshes, operation, check_volume=True, tolerance=None, progress=None, 
     return to_trimesh(made.mesh)
 
 
-def _register():
+def _register() -> None:
     # trimesh has no public function for this; `_engines` is the table that its functions look in.
     trimesh.boolean._engines["sculptd"] = engine
     available = getattr(trimesh.boolean, "engines_available", None)
