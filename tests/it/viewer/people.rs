@@ -5,7 +5,9 @@ use std::sync::Arc;
 use egui_kittest::kittest::Queryable;
 use glam::Vec2;
 use sculptd_daemon::Published;
-use sculptd_daemon::people::{PeopleHere, Person, PersonRole, colour_of};
+use sculptd_daemon::people::{
+    PeopleHere, Person, PersonRole, SharedStanding, SharedState, colour_of,
+};
 use sculptd_devices::{Body, DeviceId, Pen, Sample};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::command::{Command, OfPerson};
@@ -114,4 +116,27 @@ fn the_list_says_who_is_here_as_what_and_who_has_gone() {
         assert!(h.query_by_label(label).is_some(), "'{label}' is not there");
     }
     assert_eq!(h.query_all_by_label("sculptor").count(), 3);
+
+    // The connection: each state has its own line, and a second sculpture of the name is named.
+    let standing =
+        |state, waiting| SharedStanding { state, host: 2, since_s: 7, waiting, undelivered: 0 };
+    let lines = [
+        (SharedState::Hosts, 0, "You host: the others follow this computer"),
+        (SharedState::Follows, 0, "Bob hosts"),
+        (SharedState::Follows, 90, "90 inputs are on their way"),
+        (SharedState::CutOff, 12, "Cut off for 7 s. 12 inputs wait"),
+        (SharedState::SentAway, 0, "Sent away: withdrawn. You go on alone"),
+    ];
+    for (state, waiting, line) in lines {
+        let published = &mut h.state_mut().published;
+        published.standing = standing(state, waiting);
+        let people = published.people.as_ref().expect("shared").as_ref().clone();
+        let others = vec!["5f3a90c1 (2 people, since 4 min)".into()];
+        let sent_away = Some("withdrawn".into());
+        published.people = Some(Arc::new(PeopleHere { others, sent_away, ..people }));
+        h.run_steps(2);
+        assert!(h.query_by_label(line).is_some(), "'{line}' is not there");
+    }
+    let other = "Another sculpture of this name: 5f3a90c1 (2 people, since 4 min)";
+    assert!(h.query_by_label(other).is_some());
 }

@@ -686,6 +686,8 @@ class PenStatus(TypedDict):
 
 # Reply of people.
 class PeopleReply(TypedDict):
+    # The connection to the others; null if nothing is shared.
+    link: NotRequired[SharedLink | None]
     # The number of the person of this daemon; 0: none, as nothing is shared.
     own: int
     # Counts of the input of this daemon's devices and commands; null if nothing is shared.
@@ -919,6 +921,29 @@ class SentReply(TypedDict):
     # Always true.
     sent: bool
 
+# The connection of this daemon to the others at a shared sculpture.
+class SharedLink(TypedDict):
+    # Name of the person whose daemon hosts; null if unknown.
+    host: NotRequired[str | None]
+    # Other sculptures that are shared under the same name on this network: number, people, age.
+    others: Sequence[str]
+    # Why the host sent this daemon away; null if it did not.
+    reason: NotRequired[str | None]
+    # Number of the sculpture, eight hexadecimal digits: two of one name differ in it.
+    sculpture: str
+    # Whole seconds for which the state has been so.
+    since_s: int
+    # State of the connection.
+    state: SharedState
+    # Batches of local input that never reached the others: only this daemon's sculpture and session
+    # contain them.
+    undelivered: int
+    # Batches of local input that no host has ordered yet.
+    waiting: int
+
+# See [SharedLink].
+SharedState: TypeAlias = Literal['hosts', 'follows', 'cut-off', 'sent-away']
+
 # Parameters of scene.show.
 class ShowParams(TypedDict):
     # The object.
@@ -995,6 +1020,8 @@ class StatusReply(TypedDict):
     samples: int
     # The path of the session file, where the daemon may open a window for it.
     session: NotRequired[str | None]
+    # The connection to the others at a shared sculpture; null if nothing is shared.
+    shared: NotRequired[SharedLink | None]
     # Tablets that the desktop's pointer follows, and where the window has found that it puts them.
     tablets: NotRequired[Sequence[TabletStatus]]
     # Ticks that the loop has made.
