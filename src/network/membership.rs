@@ -243,7 +243,7 @@ mod tests {
         let other = Secret([9; KEY]);
         assert!(SignedMembership::from_bytes(&bytes, &other.public()).is_err());
         // Signed by another who calls himself the owner, and by another for the owner.
-        let posing = list.clone().signed(&other).to_bytes();
+        let posing = list.signed(&other).to_bytes();
         assert!(SignedMembership::from_bytes(&posing, &public).is_err());
         assert!(SignedMembership::from_bytes(&posing, &other.public()).is_err());
     }
