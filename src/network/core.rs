@@ -8,7 +8,7 @@ use crate::membership::SignedMembership;
 use crate::outbox::Outbox;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Secret;
-use crate::wire::frame::{Frame, PersonId, Role};
+use crate::wire::frame::{Arrival, Frame, PersonId, Role};
 use crate::wire::greeting::Greeting;
 use crate::wire::message::{Address, AmongHeirs, FromHost, FromMember, Nonce};
 
@@ -184,6 +184,12 @@ impl Core {
     pub fn end(&mut self, why: impl Into<String>) {
         self.ended = true;
         self.events.push_back(Event::Refused(why.into()));
+    }
+
+    /// The arrival of the station's person.
+    pub fn arrival(&self) -> Arrival {
+        let (person, name, role) = (self.person, self.name.clone(), self.role);
+        Arrival { person, name, role, here: true }
     }
 
     /// Seconds since 1970.

@@ -68,6 +68,7 @@ impl Host {
     pub fn new(core: &mut Core, term: Term, now_us: u64) -> Host {
         core.log.begin_turn(term);
         let first = term.number == 1;
+        core.person = if first { 1 } else { core.person };
         let group = core.group.get_or_insert_with(|| fresh(&mut core.entropy)).clone();
         let mut host = Host {
             term,
@@ -98,10 +99,9 @@ impl Host {
             host.waiting.entry(person.person).or_default().received = applied;
             host.acknowledgements.expect(core.log.last(), person.person, applied);
         }
-        if first {
-            let (name, role) = (core.name.clone(), core.role);
-            core.person = 1;
-            host.arrivals.push(Arrival { person: 1, name, role, here: true });
+        // A successor may have been cut off before the frame in which it arrived.
+        if core.log.person(core.person).is_none() {
+            host.arrivals.push(core.arrival());
         }
         core.outbox.begin_after(core.log.applied(core.person));
         core.events.push_back(Event::Entered { person: core.person, rate_hz: core.rate_hz });
@@ -210,8 +210,8 @@ impl Host {
         member.violations += 1;
         if now_us >= member.told_us + 1_000_000 || member.told_us == 0 {
             member.told_us = now_us;
-            let (name, count) = (&member.name, member.violations);
-            core.note(format!("'{name}': {what}; dropped ({count} times by now)"));
+            let JoinedMember { name, violations, .. } = member;
+            core.note(format!("'{name}': {what}; dropped ({violations} times by now)"));
         }
         if member.violations >= PATIENCE {
             self.dismiss(core, from, what);
@@ -357,9 +357,8 @@ impl Host {
                 held.send(core, from, member);
             }
             FromMember::Hash { index, hash } => {
-                if let Some(own) = self.comparison.take(index, from, hash) {
-                    self.differs(core, index, from, own);
-                }
+                let own = self.comparison.take(index, from, hash);
+                own.into_iter().for_each(|own| self.differs(core, index, from, own));
             }
             FromMember::Leave => {
                 let name = member.name.clone();

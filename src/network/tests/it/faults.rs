@@ -169,3 +169,27 @@ fn who_was_killed_and_is_back_at_once_is_let_in() {
     s.verify();
     assert_eq!((s.replicas[back].station.person(), s.replicas[back].refused.clone()), (3, None));
 }
+
+#[test]
+fn who_is_cut_off_right_after_entering_counts_its_own_input() {
+    let mut s = Simulation::new(13, GOOD);
+    // The checkpoint of the one before is given to the next one, too.
+    s.join_sculptor();
+    s.run(3.0, |_| true);
+    let late = s.join_sculptor();
+    while !s.replicas[late].station.follows() {
+        s.run(0.004, |i| i == 0);
+    }
+    let station = &s.replicas[late].station;
+    assert!(station.log().person(station.person()).is_none(), "the frame of its arrival is late");
+    s.replicas[late].part = 1;
+    s.run(5.0, |i| i == late);
+    s.run(1.0, |_| false);
+    let station = &s.replicas[late].station;
+    assert!(station.hosts() && station.outbox().last() > 100);
+    assert_eq!(station.waiting(), 0, "all of it is ordered");
+    s.replicas[late].part = 0;
+    s.run(4.0, |_| true);
+    s.run(4.0, |_| false);
+    s.verify();
+}
