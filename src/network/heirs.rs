@@ -62,6 +62,19 @@ impl Among {
     }
 }
 
+/// The search for a successor.
+#[derive(Debug)]
+pub struct Election {
+    /// When it is decided.
+    pub until_us: u64,
+    /// When the station speaks next.
+    pub next_us: u64,
+    /// The best word so far. If it is the own, this station hosts when the time is over.
+    pub best: (Reached, Address),
+    /// Another won.
+    pub decided: bool,
+}
+
 /// Returns true if candidate `a` is better: it has more of the log; of equals, the lower address.
 pub fn better(a: (Reached, Address), b: (Reached, Address)) -> bool {
     a.0 > b.0 || a.0 == b.0 && a.1 < b.1

@@ -141,6 +141,11 @@ impl Member {
         matches!(self.phase, MemberPhase::Follows)
     }
 
+    /// All local batches up to this one have reached the host.
+    pub fn received(&self) -> u64 {
+        self.received
+    }
+
     /// Returns true if a message to the host and its answer take long.
     pub fn is_far(&self) -> bool {
         self.trip.is_long()

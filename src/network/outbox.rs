@@ -150,7 +150,7 @@ impl Outbox {
 
     /// Takes the batches after `applied` out of the box, each with the number of its first command:
     /// nobody else will order them.
-    pub fn take_undelivered(&mut self, applied: u64) -> Vec<(Batch, u64)> {
+    pub fn take_after(&mut self, applied: u64) -> Vec<(Batch, u64)> {
         let from = self.from(applied);
         let batches: Vec<Batch> = self.batches.drain(from..).map(|k| k.batch).collect();
         let numbered = |b: Batch| {
@@ -364,7 +364,7 @@ mod tests {
         outbox.push(vec![], vec![Command::Undo], 10);
         outbox.push(vec![], vec![Command::Undo], 11);
         assert_eq!(outbox.waiting_from(4), 11);
-        let undelivered = outbox.take_undelivered(4);
+        let undelivered = outbox.take_after(4);
         let numbers: Vec<_> = undelivered.iter().map(|(b, first)| (b.number, *first)).collect();
         assert_eq!(numbers, [(5, 11)]);
     }

@@ -13,7 +13,7 @@
 
 use crate::core::{Core, DOWN, Event, GREETING, HEIRS, LOST_US, OtherSculpture, To, UP};
 use crate::handshake::is_genuine;
-use crate::heirs::{Among, better};
+use crate::heirs::{Among, Election, better};
 use crate::host::Host;
 use crate::keyring::{Entropy, Invitation};
 use crate::member::Member;
@@ -22,7 +22,7 @@ use crate::outbox::Outbox;
 use crate::replica_log::ReplicaLog;
 use crate::wire::frame::{Batch, Frame, PersonId, Role};
 use crate::wire::greeting::Greeting;
-use crate::wire::message::{Address, AmongHeirs, HeirsWord, Reached, Term};
+use crate::wire::message::{Address, AmongHeirs, HeirsWord, Term};
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
 
@@ -62,16 +62,6 @@ impl std::fmt::Debug for Identity {
 enum StationPhase {
     Hosts(Box<Host>),
     Follows(Box<Member>),
-}
-
-/// The search for a successor.
-#[derive(Debug)]
-struct Election {
-    until_us: u64,
-    next_us: u64,
-    /// The own word was the best: this station hosts when the time is over.
-    best: (Reached, Address),
-    decided: bool,
 }
 
 /// The search of a station that wants to host.
@@ -281,18 +271,28 @@ impl Station {
         self.core.outbox.waiting_from(applied)
     }
 
-    /// The number of local batches that no host is known to have ordered.
-    pub fn waiting(&self) -> u64 {
-        let outbox = &self.core.outbox;
-        match self.core.role {
-            Role::Device => outbox.len() as u64,
-            _ => outbox.last().saturating_sub(self.core.log.applied(self.core.person)),
+    /// The last local batch that the others have. A device sees no order: the host's word counts.
+    fn delivered(&self) -> u64 {
+        let acknowledged = self.core.outbox.acknowledged();
+        match &self.phase {
+            StationPhase::Follows(m) if self.core.role == Role::Device => m.received(),
+            _ => self.core.log.applied(self.core.person).max(acknowledged),
         }
     }
 
-    /// Takes the local batches that no host has ordered, each with the number of its first command.
-    pub fn take_undelivered(&mut self) -> Vec<(Batch, u64)> {
-        self.core.outbox.take_undelivered(self.core.log.applied(self.core.person))
+    /// The number of local batches that the others are not known to have.
+    pub fn waiting(&self) -> u64 {
+        self.core.outbox.count_after(self.delivered()) as u64
+    }
+
+    /// Takes the local batches that are not in the own world, each with the number of its first
+    /// command.
+    pub fn take_unstepped(&mut self) -> Vec<(Batch, u64)> {
+        let stepped = match self.core.role {
+            Role::Device => self.core.outbox.last(),
+            _ => self.core.log.applied(self.core.person),
+        };
+        self.core.outbox.take_after(stepped)
     }
 
     /// The person whose daemon hosts; 0: unknown.

@@ -196,7 +196,7 @@ impl StationThread {
     /// What nobody has ordered is stepped here.
     fn go_on_alone(&mut self) {
         self.undelivered += self.station.waiting();
-        let _ = self.ends.to_loop.send(ToLoop::Alone(self.station.take_undelivered()));
+        let _ = self.ends.to_loop.send(ToLoop::Alone(self.station.take_unstepped()));
     }
 
     fn send(&mut self) {
@@ -371,6 +371,11 @@ impl StationThread {
             self.others = self.station.others().len();
             let mut here = people_here(&self.station);
             here.sent_away = self.sent_away.clone();
+            if here.sent_away.is_some() {
+                // Who of them is still there, this daemon does not know any more.
+                let own = here.own;
+                here.all.iter_mut().for_each(|p| p.here &= p.number == own);
+            }
             let _ = self.ends.to_loop.send(ToLoop::People(Arc::new(here)));
         }
     }

@@ -7,7 +7,7 @@ use sculptd_network::wire::frame::Role;
 use sculptd_network::wire::greeting::{Greeting, Hello, VERSION};
 
 use crate::faults::long;
-use crate::simulated::{BAD, EPOCH_S, GOOD, Random, Simulation};
+use crate::simulated::{BAD, EPOCH_S, GOOD, Random, Simulation, undo};
 
 fn refused(s: &Simulation, i: usize) -> String {
     s.replicas[i].refused.clone().unwrap_or_default()
@@ -46,6 +46,13 @@ fn who_is_withdrawn_is_out_within_two_seconds_and_stays_out_under_a_successor() 
         assert!(s.now_us < at + 2_000_000, "Bob is still here");
     }
     assert!(refused(&s, bob).contains("withdrawn"), "{}", refused(&s, bob));
+    // What did not reach the others is counted once, and taken once.
+    let station = &mut s.replicas[bob].station;
+    let (before, now) = (station.waiting(), at + 2_000_000);
+    (0..3).for_each(|_| station.submit(vec![], undo(), now));
+    assert_eq!(station.waiting(), before + 3);
+    assert!(station.take_unstepped().len() as u64 >= before + 3);
+    assert_eq!((station.waiting(), station.take_unstepped().len()), (0, 0));
     s.run(1.0, |i| i != bob);
     // Cy has the new list and takes over; Bob's key opens nothing there either.
     s.replicas[0].alive = false;
