@@ -61,6 +61,9 @@ pub enum FaceSetSource {
     Normals,
     /// Sets meet where the surface bends by more than `degrees` over an edge.
     Crease,
+    /// Sets meet where the thickness of the wall changes; at most `levels` thicknesses are told
+    /// apart.
+    Walls,
 }
 
 /// Parameters of `sets.make`. Hidden vertices stay in their sets.
@@ -74,6 +77,10 @@ pub struct FaceSetMakeParams {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, schemars(range(min = 0.0, max = 180.0)))]
     pub degrees: Option<f32>,
+    /// Of `walls`; 1 to 16, without it as few as the walls need.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(test, schemars(range(min = 1, max = 16)))]
+    pub levels: Option<u8>,
 }
 
 /// Names a face set: by its number, by a place of the view, or as what is masked. Only one of them.

@@ -29,8 +29,12 @@ pub fn set_seen(shown: &Published, at: Vec2) -> Option<u16> {
 ///
 /// # Errors
 /// Returns an error if there are more parts than face set numbers.
-pub fn parted(shown: &Published, by: Partition) -> Result<Computed<u64>, OperationError> {
-    let edit = face_sets::partition(&shown.mesh, by)?;
+pub fn parted(
+    shown: &Published,
+    by: Partition,
+    job: &Job,
+) -> Result<Computed<u64>, OperationError> {
+    let edit = face_sets::partition(&shown.mesh, by, job)?;
     let SetsEdit::Assign { pages, .. } = &edit else {
         return Ok(Computed::of_scene(SceneCommand::Sets(edit), None, 0));
     };

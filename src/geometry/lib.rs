@@ -59,6 +59,7 @@ pub mod io;
 pub mod job;
 pub mod march;
 pub mod measure;
+mod min_cut;
 pub mod offset;
 pub mod picture;
 pub mod portable;

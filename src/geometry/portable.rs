@@ -25,6 +25,8 @@ pub trait PortableMath: Sized {
     fn portable_atan2(self, x: Self) -> Self;
     /// `e` to this power.
     fn portable_exp(self) -> Self;
+    /// The natural logarithm of this number, which is above 0.
+    fn portable_ln(self) -> Self;
     /// This number, which is not negative, to a power.
     fn portable_powf(self, power: Self) -> Self;
     /// The length of (`self`, `y`), without overflow.
@@ -51,6 +53,9 @@ impl PortableMath for f32 {
     }
     fn portable_exp(self) -> f32 {
         libm::expf(self)
+    }
+    fn portable_ln(self) -> f32 {
+        libm::logf(self)
     }
     fn portable_powf(self, power: f32) -> f32 {
         libm::powf(self, power)
@@ -81,6 +86,9 @@ impl PortableMath for f64 {
     }
     fn portable_exp(self) -> f64 {
         libm::exp(self)
+    }
+    fn portable_ln(self) -> f64 {
+        libm::log(self)
     }
     fn portable_powf(self, power: f64) -> f64 {
         libm::pow(self, power)
@@ -118,6 +126,7 @@ mod tests {
             near(x.portable_sin(), x.sin());
             near(x.portable_cos(), x.cos());
             near(x.portable_exp().min(1e3), x.exp().min(1e3));
+            near((x * x + 0.1).portable_ln(), (x * x + 0.1).ln());
             near(x.abs().portable_powf(0.618), x.abs().powf(0.618));
             near(x.portable_atan2(0.3), x.atan2(0.3));
             near(x.portable_hypot(1.5), x.hypot(1.5));

@@ -150,6 +150,11 @@ impl Map {
         matches!(self, Map::Overhang | Map::Draft)
     }
 
+    /// Returns true for a map of lengths, which can be shown in steps.
+    pub fn has_bands(self) -> bool {
+        matches!(self, Map::Thickness | Map::Distance)
+    }
+
     /// The colour of an angle: `x` from 0 to 1 below the limit, or above it.
     fn angle_colour(self, x: f32, above: bool) -> [u8; 3] {
         match (self, above) {
@@ -241,6 +246,8 @@ pub struct Look {
     /// The floor under the object.
     pub grid: bool,
     pub map: Map,
+    /// The colours of a map of lengths in steps, so that equal walls are seen as equal.
+    pub bands: bool,
     /// A pale ground instead of a dark one.
     pub pale: bool,
     /// Face sets of the active object by colours.
@@ -268,6 +275,7 @@ impl Default for Look {
             wireframe: false,
             grid: false,
             map: Map::None,
+            bands: false,
             pale: false,
             sets: true,
             scale: (0.0, 1.0),
@@ -297,6 +305,24 @@ impl Look {
         if studio && self.shadow.is_finite() { self.shadow.clamp(0.0, 1.0) } else { 0.0 }
     }
 
+    /// The map's scale for the card. The fourth number of the first entry is 0 if it is shown in
+    /// steps.
+    pub fn card_scale(&self) -> [[f32; 4]; SCALE] {
+        let mut scale = self.map.scale();
+        if self.bands && self.map.has_bands() {
+            scale[0][3] = 0.0;
+        }
+        scale
+    }
+
+    /// The colour of a share of the map's scale, 0 to 1, as the card draws it; sRGB.
+    pub fn scale_colour(&self, x: f32) -> [u8; 3] {
+        let banded = self.bands && self.map.has_bands();
+        let last = (SCALE - 1) as f32;
+        let x = if banded { (x * SCALE as f32).floor().clamp(0.0, last) / last } else { x };
+        self.map.colour(x, 0.0, 1.0)
+    }
+
     pub fn material(&self) -> &'static Material {
         &MATERIALS[self.material.min(MATERIALS.len() - 1)]
     }
@@ -320,6 +346,21 @@ pub fn with_set(colour: [u8; 4], set: u16) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bands_are_the_colours_of_the_card() {
+        let look = Look { map: Map::Thickness, bands: true, ..Look::default() };
+        let on_card = Map::Thickness.scale();
+        for (i, colour) in on_card.iter().enumerate() {
+            for at in [0.01, 0.5, 0.99] {
+                let x = (i as f32 + at) / SCALE as f32;
+                assert_eq!(linear(look.scale_colour(x)), *colour);
+            }
+        }
+        let smooth = Look { bands: false, ..look };
+        assert_ne!(smooth.scale_colour(0.51), smooth.scale_colour(0.55));
+        assert_eq!(look.scale_colour(0.51), look.scale_colour(0.55));
+    }
 
     #[test]
     fn a_scale_runs_from_its_low_to_its_high_colour() {

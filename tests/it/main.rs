@@ -70,6 +70,7 @@ mod tree;
 #[cfg(feature = "viewer")]
 mod viewer;
 mod waiting;
+mod wall_parts;
 #[cfg(unix)]
 mod web;
 

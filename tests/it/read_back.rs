@@ -137,7 +137,9 @@ fn params(method: &str, r: &mut Random, host: &Host, dir: &Path) -> Value {
             json!({ "layer": layer })
         }
         "sets.rename" => json!({ "set": set, "name": "a set" }),
-        "sets.make" => json!({ "from": r.of(&["mask", "visible", "loose", "normals", "crease"]) }),
+        "sets.make" => {
+            json!({ "from": r.of(&["mask", "visible", "loose", "normals", "crease", "walls"]) })
+        }
         "sets.hide" | "sets.isolate" => json!({ "set": set }),
         "sets.region" => {
             json!({ "region": region(r), "action": r.of(&["make", "hide", "isolate"]) })

@@ -23,6 +23,7 @@ mod scene;
 mod stall;
 mod stall_order;
 mod versions;
+mod walls;
 mod workbench;
 
 use std::sync::OnceLock;

@@ -72,6 +72,12 @@ pub enum SetsError {
     /// The clay is another than the one that the sets were computed from.
     #[error("the object has changed since its face sets were computed")]
     Changed,
+    /// Levels of thickness out of their range.
+    #[error("the number of levels: expected 1 to 16")]
+    Levels,
+    /// The job was cancelled.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl SetsEdit {

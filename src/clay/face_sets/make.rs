@@ -1,6 +1,6 @@
 //! Face sets that follow from the shape: loose parts, parts that face one way, parts between
-//! creases. Computed from a snapshot on the thread of whoever asks, put in place by
-//! [`SetsEdit::Assign`].
+//! creases, parts of equal wall. Computed from a snapshot on the thread of whoever asks, put in
+//! place by [`SetsEdit::Assign`].
 
 use std::sync::Arc;
 
@@ -8,8 +8,14 @@ use glam::Vec3;
 
 use super::{HIDDEN, MOST_SETS, SetsEdit, SetsError};
 use crate::snapshot::Snapshot;
+use sculptd_geometry::TriMesh;
 use sculptd_geometry::disjoint_sets::DisjointSets;
+use sculptd_geometry::job::Job;
 use sculptd_geometry::portable::PortableMath;
+use sculptd_geometry::thickness::partition::PartitionSettings;
+use sculptd_geometry::thickness::{
+    MeasuredPlaces, ThicknessError, ThicknessMethod, ThicknessSettings, measure,
+};
 
 /// The rule that separates one set from another.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +28,9 @@ pub enum Partition {
     /// Separates sets at edges where the surface bends by more than this angle, in degrees, 0 to
     /// 180.
     Crease(f32),
+    /// Separates parts whose walls differ, in at most this many levels of thickness, 1 to 16;
+    /// `None`: as few as the walls need. The thickness is the mean of a cone of rays.
+    Walls(Option<usize>),
 }
 
 /// No triangle, no part.
@@ -32,8 +41,9 @@ const NONE: u32 = u32::MAX;
 /// is hidden stay, and their numbers are not given again.
 ///
 /// # Errors
-/// [`SetsError::Full`] where there are more parts than numbers.
-pub fn partition(clay: &Snapshot, by: Partition) -> Result<SetsEdit, SetsError> {
+/// [`SetsError::Full`] where there are more parts than numbers, [`SetsError::Cancelled`], and
+/// [`SetsError::Levels`] for a number of levels out of its range.
+pub fn partition(clay: &Snapshot, by: Partition, job: &Job) -> Result<SetsEdit, SetsError> {
     let tri = clay.to_tri();
     let ranks = clay.ranks();
     let mut hidden = vec![false; tri.positions.len()];
@@ -82,6 +92,12 @@ pub fn partition(clay: &Snapshot, by: Partition) -> Result<SetsEdit, SetsError> 
             });
             (0..shown.len() as u32).map(|t| joined.root(t)).collect()
         }
+        Partition::Walls(levels) => {
+            let is_shown = |t: &&[u32; 3]| !t.iter().all(|&v| hidden[v as usize]);
+            let of = parts_of_equal_wall(&tri, levels, job)?;
+            let all = tri.triangles.iter().zip(of);
+            all.filter(|(t, _)| is_shown(t)).map(|(_, part)| part).collect()
+        }
         Partition::Normals(degrees) => grown(&shown, |seed, t| !turned(seed, t, cosine(degrees))),
     };
     // A vertex goes to the part with the largest area about it; of equal ones to the first.
@@ -118,6 +134,28 @@ pub fn partition(clay: &Snapshot, by: Partition) -> Result<SetsEdit, SetsError> 
         (p as u32, page.topology().ids.iter().map(|&id| sets[ranks.of(id)]).collect())
     });
     Ok(SetsEdit::Assign { revision: clay.revision(), pages: Arc::new(pages.collect()) })
+}
+
+/// For each triangle its part of equal wall; one more part for those without a value.
+fn parts_of_equal_wall(
+    tri: &TriMesh,
+    levels: Option<usize>,
+    job: &Job,
+) -> Result<Vec<u32>, SetsError> {
+    let settings = ThicknessSettings {
+        method: ThicknessMethod::Cone,
+        at: MeasuredPlaces::VerticesAndFaces,
+        ..ThicknessSettings::default()
+    };
+    let refused = |e| match e {
+        ThicknessError::Cancelled(_) => SetsError::Cancelled,
+        ThicknessError::Setting { .. } => SetsError::Levels,
+    };
+    let measured = measure(tri, &settings, job).map_err(refused)?;
+    let how = PartitionSettings { levels, ..PartitionSettings::default() };
+    let found = measured.partition(how).map_err(refused)?;
+    let rest = found.parts.len() as u32;
+    Ok(found.of.into_iter().map(|part| part.min(rest)).collect())
 }
 
 /// Directed edges of triangles as (lesser end, greater end, triangle), ascending.

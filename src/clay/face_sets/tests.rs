@@ -13,7 +13,8 @@ use crate::{Clay, Detail, Ray, Reach, Workers};
 use sculptd_geometry::boolean::{BooleanOptions, Operation};
 use sculptd_geometry::disjoint_sets::DisjointSets;
 use sculptd_geometry::shapes::{cuboid, icosphere};
-use sculptd_geometry::{TriMesh, job::Job};
+use sculptd_geometry::thickness::refine::refine;
+use sculptd_geometry::{PolyMesh, TriMesh, job::Job};
 
 fn of(plain: &TriMesh) -> Clay {
     Clay::build(plain, &Job::default()).expect("clay")
@@ -215,7 +216,7 @@ fn parts() -> TriMesh {
 }
 
 fn parted(clay: &mut Clay, by: Partition) -> Vec<(u16, u64, u64)> {
-    let made = partition(&clay.snapshot(), by).expect("sets");
+    let made = partition(&clay.snapshot(), by, &Job::default()).expect("sets");
     edit(clay, &made).expect("put in place");
     clay.snapshot().face_sets()
 }
@@ -231,7 +232,7 @@ fn loose_parts_become_sets_in_the_order_of_the_mesh() {
     let sets = parted(&mut clay, Partition::Loose);
     assert_eq!(sets, [(4, ball, ball), (5, ball, 0), (6, 8, 0), (7, ball, 0)]);
     // Sets that were computed of another revision are refused.
-    let late = partition(&clay.snapshot(), Partition::Loose).expect("sets");
+    let late = partition(&clay.snapshot(), Partition::Loose, &Job::default()).expect("sets");
     edit(&mut clay, &SetsEdit::ShowAll).expect("shown");
     assert_eq!(edit(&mut clay, &late), Err(SetsError::Changed));
 }
@@ -268,6 +269,39 @@ fn creases_and_turns_part_a_finely_cut_cube_at_its_edges() {
     assert_eq!(parted(&mut ball, Partition::Crease(40.0)).len(), 1);
     let turned = parted(&mut ball, Partition::Normals(40.0)).len();
     assert!((8..60).contains(&turned), "{turned}");
+}
+
+#[test]
+fn a_slab_with_two_walls_is_parted_where_the_wall_changes() {
+    // 2 mm up to x = 30, then 5 mm.
+    let profile = [[0.0, 0.0], [60.0, 0.0], [60.0, 5.0], [30.0, 5.0], [30.0, 2.0], [0.0, 2.0]];
+    let mut slab = PolyMesh::new();
+    for y in [0.0, 20.0] {
+        slab.positions.extend(profile.map(|[x, z]| DVec3::new(x, y, z)));
+    }
+    let mut faces: Vec<Vec<u32>> = vec![(0..6).collect(), (6..12).rev().collect()];
+    faces.extend((0..6).map(|i| vec![i, i + 6, (i + 1) % 6 + 6, (i + 1) % 6]));
+    for corners in faces {
+        slab.corners.extend(corners);
+        slab.face_starts.push(slab.corners.len() as u32);
+    }
+    let job = Job::default();
+    let mut clay = of(&refine(&slab.triangulate().0, 1.0).mesh);
+    let sets = parted(&mut clay, Partition::Walls(Some(3)));
+    assert!(sets.len() >= 2, "{sets:?}");
+    let shown = clay.snapshot();
+    let down = |x: f32| {
+        let ray = Ray { origin: Vec3::new(x, 10.0, 50.0), dir: -Vec3::Z };
+        shown.set_at(&shown.pick(ray).expect("the slab"))
+    };
+    assert_eq!(down(8.0), down(22.0));
+    assert_eq!(down(38.0), down(52.0));
+    assert_ne!(down(22.0), down(38.0));
+    let senseless = partition(&clay.snapshot(), Partition::Walls(Some(0)), &job);
+    assert_eq!(senseless, Err(SetsError::Levels));
+    job.cancel();
+    let cancelled = partition(&clay.snapshot(), Partition::Walls(None), &job);
+    assert_eq!(cancelled, Err(SetsError::Cancelled));
 }
 
 /// Asserts that a mesh is closed and oriented, each vertex in one fan; its components and volume.

@@ -59,9 +59,10 @@ pub(super) fn make(host: &Host, p: FaceSetMakeParams) -> SetsDone {
         FaceSetSource::Loose => Partition::Loose,
         FaceSetSource::Normals => Partition::Normals(degrees),
         FaceSetSource::Crease => Partition::Crease(degrees),
+        FaceSetSource::Walls => Partition::Walls(p.levels.map(usize::from)),
     };
     let job = Job::default();
-    let done = host.operate(&job, |now| face_set_jobs::parted(now, by))?;
+    let done = host.operate(&job, |now| face_set_jobs::parted(now, by, &job))?;
     let set = u16::try_from(object_of(done.answer)).ok().filter(|set| *set > 0);
     Ok(FaceSetReply { set, made: done.made })
 }

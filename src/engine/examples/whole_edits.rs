@@ -115,7 +115,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (mut most, mut counts, mut sums, mut which) = (Vec::new(), 0, Vec::new(), 0);
         for _ in 0..TIMES {
             let command = match name {
-                "sets: by connectivity" => sets(partition(&world.snapshot(), Partition::Loose)?),
+                "sets: by connectivity" => {
+                    sets(partition(&world.snapshot(), Partition::Loose, &Job::default())?)
+                }
                 _ => command.clone(),
             };
             let steps = world.undo_steps();

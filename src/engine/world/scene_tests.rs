@@ -144,7 +144,7 @@ fn edit_sets_at_random(world: &mut World, dice: &mut Dice) {
     let mut snapshot = world.mesh().duplicate(0);
     let snapshot = snapshot.snapshot();
     let set = dice.roll(usize::from(snapshot.highest_set()) + 2) as u16;
-    let parted = |by| match partition(&snapshot, by) {
+    let parted = |by| match partition(&snapshot, by, &Job::default()) {
         // As it was computed from the clay itself.
         Ok(SetsEdit::Assign { pages, .. }) => {
             SetsEdit::Assign { revision: world.mesh().revision(), pages }

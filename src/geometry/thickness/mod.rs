@@ -13,6 +13,7 @@
 //! the triangles' own surface, smoothed where it bends by less than the crease.
 
 pub mod ball;
+mod bands;
 mod below;
 pub mod check;
 pub mod colour;
@@ -22,8 +23,10 @@ mod edges;
 mod known_walls;
 pub mod least;
 mod measuring;
+pub mod medial_curve;
 mod opposed;
 pub mod overlap;
+pub mod partition;
 pub mod preset;
 pub mod probe;
 pub mod ray;

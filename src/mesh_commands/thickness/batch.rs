@@ -43,9 +43,12 @@ pub(super) fn run(args: &ThicknessArgs, limits: ThicknessLimits, json: bool) -> 
     let folder = args.out.as_deref().ok_or_else(|| {
         Fail::Usage("several files need a folder for their reports: say --out FOLDER".into())
     })?;
-    if args.ply.is_some() || args.png.is_some() || args.report.is_some() {
+    let single = [&args.ply, &args.png, &args.report, &args.skeleton];
+    if args.parts || single.iter().any(|o| o.is_some()) {
         return Err(Fail::Usage(
-            "--ply, --png and --report are for a single file; a batch writes into --out".into(),
+            "--ply, --png, --report, --parts and --skeleton are for a single file; a batch writes \
+             into --out"
+                .into(),
         ));
     }
     std::fs::create_dir_all(folder).map_err(|e| Fail::io(folder, &e))?;

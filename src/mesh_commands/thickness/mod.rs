@@ -1,6 +1,7 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
 mod batch;
+mod parts;
 mod ply;
 
 use std::io::Write;
@@ -11,6 +12,7 @@ use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
+use parts::{Structure, write_skeleton};
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::picture::{Camera, Picture, draw};
@@ -19,6 +21,7 @@ use sculptd_geometry::thickness::check::{
 };
 use sculptd_geometry::thickness::colour::colour;
 use sculptd_geometry::thickness::overlap;
+use sculptd_geometry::thickness::partition::SMOOTHING;
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::report;
@@ -41,6 +44,21 @@ pub struct ThicknessArgs {
     /// of the whole part's; in the file's coordinates, millimetres. `--png` draws both.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
+    /// Divide the surface into parts of equal wall, each with its thickness, area and borders.
+    /// `--png` shows them, and `--ply` has the number of each triangle's part.
+    #[arg(long)]
+    pub parts: bool,
+    /// Levels of thickness of `--parts`, 1 to 16 [default: as few as the walls need, at most 8].
+    #[arg(long, value_name = "N", requires = "parts")]
+    pub levels: Option<usize>,
+    /// With --parts: a spot of another level belongs to its surroundings if its radius is below
+    /// this many walls, and a strip if its width is.
+    #[arg(long, value_name = "WALLS", default_value_t = SMOOTHING)]
+    pub smoothing: f32,
+    /// Write the lines along the middle of the part's limbs as an OBJ file, and tell their length
+    /// and thickness. `--png` draws them.
+    #[arg(long, value_name = "FILE")]
+    pub skeleton: Option<PathBuf>,
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex, and a
     /// `thickness` of each face, measured at its middle.
     #[arg(long, value_name = "FILE")]
@@ -387,11 +405,11 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     let limits = args.limits.limits(presets)?;
     let job = Job::default();
     if let Some(at) = args.at {
-        let others = [&args.ply, &args.report, &args.junit, &args.out];
-        if others.iter().any(|o| o.is_some()) {
+        let others = [&args.ply, &args.report, &args.junit, &args.out, &args.skeleton];
+        if args.parts || others.iter().any(|o| o.is_some()) {
             return Err(Fail::Usage(
-                "--at tells one place, and draws it with --png: --ply, --report, --junit and --out \
-                 are of the whole part"
+                "--at tells one place, and draws it with --png: --ply, --report, --junit, --out, \
+                 --parts and --skeleton are of the whole part"
                     .into(),
             ));
         }
@@ -408,16 +426,24 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     for w in &checked.answer.warnings {
         eprintln!("sculptd: warning: {}: {w}", path.display());
     }
+    let found = Structure::find(args, &part, &checked.thickness, &job)?;
     if let Some(out) = &args.ply {
-        write_beside(out, |w| ply::write(w, &part, &checked.thickness))
+        let parts = found.partition.as_ref().map(|p| &p.of[..]);
+        write_beside(out, |w| ply::write(w, &part, &checked.thickness, parts))
             .map_err(|e| Fail::io(out, &e))?;
+    }
+    if let Some(out) = &args.skeleton {
+        write_skeleton(out, &found)?;
     }
     if let Some(out) = &args.png {
         let colours = checked.thickness.colours(checked.thickness.scale());
         let camera = Camera::whole(&part.mesh, 4.0 / 3.0);
         let mut picture = draw(&part.mesh, Some(&colours), &camera, 1200, 900);
         let (low, high) = checked.thickness.scale();
-        picture.legend(low, high, |v| colour(v, low, high));
+        if !args.parts {
+            picture.legend(low, high, |v| colour(v, low, high));
+        }
+        found.draw(&part.mesh, part.centre, &mut picture);
         let png = picture.png().map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
@@ -432,8 +458,18 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
         write_beside(out, |w| w.write_all(batch::junit(&[row]).as_bytes()))
             .map_err(|e| Fail::io(out, &e))?;
     }
-    answer(json, &checked.answer, |w| text(w, &checked.answer));
+    let whole = WholeAnswer { checked: &checked.answer, found: &found };
+    answer(json, &whole, |w| text(w, &checked.answer, &found));
     judge(&checked.answer)
+}
+
+/// The answer for one file.
+#[derive(Serialize)]
+struct WholeAnswer<'a> {
+    #[serde(flatten)]
+    checked: &'a ThicknessAnswer,
+    #[serde(flatten)]
+    found: &'a Structure,
 }
 
 /// Reads and checks one file.
@@ -447,7 +483,7 @@ fn one(
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
     let mut settings = args.how.settings();
-    if args.ply.is_some() {
+    if args.ply.is_some() || args.parts {
         settings.at = MeasuredPlaces::VerticesAndFaces;
     }
     let mut checked =
@@ -494,7 +530,7 @@ fn judge(a: &ThicknessAnswer) -> Outcome {
     Err(Fail::Check(format!("{}: {}", a.file, why.join("; "))))
 }
 
-fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
+fn text(w: &mut dyn Write, a: &ThicknessAnswer, found: &Structure) -> std::io::Result<()> {
     let n = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:.4}"));
     let s = &a.summary;
     writeln!(
@@ -538,6 +574,7 @@ fn text(w: &mut dyn Write, a: &ThicknessAnswer) -> std::io::Result<()> {
             x.area
         )?;
     }
+    found.text(w)?;
     writeln!(w, "  verdict    {}", verdict(a.verdict))?;
     writeln!(w, "  {:.3} s, {:.2} million rays a second", a.seconds, a.rays_per_second * 1e-6)
 }

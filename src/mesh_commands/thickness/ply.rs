@@ -6,8 +6,14 @@ use sculptd_geometry::CentredMesh;
 use sculptd_geometry::thickness::Thickness;
 
 /// Binary PLY: position (double, the file's own coordinates in mm), colour, thickness (NaN: none),
-/// reason.
-pub(super) fn write(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std::io::Result<()> {
+/// reason. `parts` is the number of each triangle's part, -1 in the file for none.
+pub(super) fn write(
+    w: &mut dyn Write,
+    part: &CentredMesh,
+    t: &Thickness,
+    parts: Option<&[u32]>,
+) -> std::io::Result<()> {
+    let part_property = if parts.is_some() { "property int part\n" } else { "" };
     let (n, m) = (part.mesh.positions.len(), part.mesh.triangles.len());
     write!(
         w,
@@ -18,7 +24,7 @@ pub(super) fn write(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std
          property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float \
          thickness\nproperty uchar reason\n\
          element face {m}\nproperty list uchar int vertex_indices\nproperty float \
-         thickness\nend_header\n"
+         thickness\n{part_property}end_header\n"
     )?;
     let colours = t.colours(t.scale());
     let mut rows = Vec::with_capacity(n * 32 + m * 17);
@@ -34,6 +40,10 @@ pub(super) fn write(w: &mut dyn Write, part: &CentredMesh, t: &Thickness) -> std
         rows.push(3);
         c.iter().for_each(|v| rows.extend(v.to_le_bytes()));
         rows.extend(t.face_values.get(f).copied().unwrap_or(f32::NAN).to_le_bytes());
+        if let Some(parts) = parts {
+            let own = parts.get(f).and_then(|&p| i32::try_from(p).ok()).unwrap_or(-1);
+            rows.extend(own.to_le_bytes());
+        }
     }
     w.write_all(&rows)
 }

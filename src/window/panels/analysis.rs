@@ -5,7 +5,7 @@ use super::state::{Action, ThicknessSummary, UiRequest, UiState, View};
 use super::theme;
 use crate::language::text_of;
 use crate::language::tr;
-use crate::look::Map;
+use crate::look::{Look, Map};
 use sculptd_geometry::thickness::preset::Preset;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
@@ -46,7 +46,19 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         return;
     };
     ui.add_space(6.0);
-    histogram(ui, found, walls.limit);
+    let auto = (found.min, found.high);
+    let shown = walls.scale.unwrap_or(auto);
+    let mut marks = [walls.limit, shown.0, shown.1];
+    if histogram(ui, found, &ui_state.look, &mut marks) {
+        if marks[0] != walls.limit {
+            (walls.limit, walls.preset) = (marks[0].max(0.0), None);
+        }
+        if (marks[1], marks[2]) != shown {
+            walls.scale = Some((marks[1], marks[2].max(marks[1] + LEAST_SPAN)));
+        }
+    }
+    scale(ui, &mut walls.scale, auto, walls.limit);
+    ui.checkbox(&mut ui_state.look.bands, tr!("walls-bands")).on_hover_text(tr!("walls-bands.tip"));
     let row = |ui: &mut egui::Ui, name: &str, value: String| {
         ui.colored_label(quiet, tr!(name));
         ui.monospace(value);
@@ -54,6 +66,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     };
     egui::Grid::new("walls").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         row(ui, "walls-thinnest", tr!("length-mm", value = format!("{:.3}", found.min)));
+        row(ui, "walls-usual", tr!("length-mm", value = format!("{:.3}", found.usual())));
         row(ui, "walls-median", tr!("length-mm", value = format!("{:.3}", found.median)));
         row(ui, "walls-thickest", tr!("length-mm", value = format!("{:.3}", found.max)));
         let below = format!("{:.1}", found.below * 100.0);
@@ -81,31 +94,95 @@ fn process(preset: &Preset) -> String {
     text_of(&format!("process-{}", preset.name), &preset.title)
 }
 
-fn histogram(ui: &mut egui::Ui, found: &ThicknessSummary, limit: f32) {
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(196.0, 64.0), egui::Sense::hover());
+/// The narrowest scale, millimetres.
+const LEAST_SPAN: f32 = 1e-4;
+
+/// The ends of the colours' scale: those of the map, or set by hand.
+fn scale(ui: &mut egui::Ui, chosen: &mut Option<(f32, f32)>, auto: (f32, f32), limit: f32) {
+    let (mut low, mut high) = chosen.unwrap_or(auto);
+    let drag = |value| egui::DragValue::new(value).range(0.0..=1e6).speed(0.01).suffix(" mm");
+    let from = rows::value(ui, &tr!("walls-scale-from"), drag(&mut low));
+    let to = rows::value(ui, &tr!("walls-scale-to"), drag(&mut high));
+    if from.changed() || to.changed() {
+        *chosen = Some((low.min(high - LEAST_SPAN), high.max(low + LEAST_SPAN)));
+    }
+    rows::flow(ui, |ui| {
+        let follow = ui.add_enabled(chosen.is_some(), egui::Button::new(tr!("walls-scale-auto")));
+        if follow.on_hover_text(tr!("walls-scale-auto.tip")).clicked() {
+            *chosen = None;
+        }
+        let about = ui.add_enabled(limit > 0.0, egui::Button::new(tr!("walls-scale-limit")));
+        if about.on_hover_text(tr!("walls-scale-limit.tip")).clicked() {
+            *chosen = Some((0.0, 2.0 * limit));
+        }
+    });
+}
+
+/// Draws the histogram. `marks` are the limit and the two ends of the scale, which are dragged;
+/// returns true while one is.
+fn histogram(
+    ui: &mut egui::Ui,
+    found: &ThicknessSummary,
+    look: &Look,
+    marks: &mut [f32; 3],
+) -> bool {
+    let size = egui::vec2(196.0, 64.0);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click_and_drag());
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr!("walls-histogram")));
+    let span = (found.high - found.min).max(1e-12);
+    let place = |value: f32| rect.left() + (value - found.min) / span * rect.width();
+    // The mark that is nearest where the drag begins; of those beside each other the limit.
+    let key = response.id.with("mark");
+    if response.drag_started()
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        let away = |i: &usize| (place(marks[*i]).clamp(rect.left(), rect.right()) - at.x).abs();
+        let nearest = (0..marks.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        ui.data_mut(|d| d.insert_temp(key, nearest.unwrap_or_default()));
+    }
+    let mut moved = false;
+    if response.dragged()
+        && let Some(at) = response.interact_pointer_pos()
+        && let Some(mark) = ui.data(|d| d.get_temp::<usize>(key))
+    {
+        let x = (at.x - rect.left()) / rect.width();
+        let value = found.min + x.clamp(0.0, 1.0) * span;
+        marks[mark] = match mark {
+            1 => value.min(marks[2] - LEAST_SPAN),
+            2 => value.max(marks[1] + LEAST_SPAN),
+            _ => value,
+        };
+        moved = true;
+    }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let most = found.histogram.iter().copied().max().unwrap_or(0).max(1) as f32;
     let width = rect.width() / found.histogram.len().max(1) as f32;
-    let span = found.high - found.min;
     for (i, n) in found.histogram.iter().enumerate() {
         let x = rect.left() + i as f32 * width;
-        let height = (*n as f32 / most).sqrt() * (rect.height() - 4.0);
+        let height = (*n as f32 / most).sqrt() * (rect.height() - 8.0);
         let value = found.min + (i as f32 + 0.5) / found.histogram.len() as f32 * span;
-        let [r, g, b] = Map::Thickness.colour(value, found.min, found.high);
+        let share = (value - marks[1]) / (marks[2] - marks[1]).max(1e-12);
+        let [r, g, b] = look.scale_colour(share.clamp(0.0, 1.0));
         let bar = egui::Rect::from_min_max(
             egui::pos2(x, rect.bottom() - height),
             egui::pos2(x + width - 0.5, rect.bottom()),
         );
         painter.rect_filled(bar, 0.0, egui::Color32::from_rgb(r, g, b));
     }
-    let at = (limit - found.min) / span.max(1e-12);
-    if (0.0..=1.0).contains(&at) {
-        let x = rect.left() + at * rect.width();
-        painter.vline(x, rect.y_range(), egui::Stroke::new(1.5, ui.visuals().text_color()));
+    let colour = ui.visuals().text_color();
+    if rect.x_range().contains(place(marks[0])) {
+        painter.vline(place(marks[0]), rect.y_range(), egui::Stroke::new(1.5, colour));
+    }
+    for end in [marks[1], marks[2]] {
+        // Beyond the histogram a handle waits at its edge.
+        let x = place(end).clamp(rect.left() + 4.0, rect.right() - 4.0);
+        let corners = [(-4.0, 0.0), (4.0, 0.0), (0.0, 7.0)];
+        let corners = corners.map(|(dx, dy)| egui::pos2(x + dx, rect.top() + dy)).to_vec();
+        painter.add(egui::Shape::convex_polygon(corners, colour, egui::Stroke::NONE));
     }
     let (min, max) = (format!("{:.3}", found.min), format!("{:.3}", found.high));
     response.on_hover_text(tr!("walls-histogram.tip", min = min, max = max));
+    moved
 }

@@ -158,6 +158,7 @@ fn make(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
             (Partition::Loose, "sets-loose"),
             (Partition::Normals(degrees), "sets-normals"),
             (Partition::Crease(degrees), "sets-crease"),
+            (Partition::Walls(None), "sets-walls"),
         ] {
             if button(ui, free, name) {
                 out.push(UiRequest::MakeSets(by));

@@ -31,7 +31,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
             ui.strong(tr!(map.title()));
             let (rect, _) = ui.allocate_exact_size(vec2(92.0, 120.0), egui::Sense::hover());
             let bar = Rect::from_min_size(rect.min + vec2(0.0, 6.0), vec2(16.0, 108.0));
-            measure::bar(ui.painter(), bar, |x| map.colour(x, 0.0, 1.0));
+            measure::bar(ui.painter(), bar, |x| ui_state.look.scale_colour(x));
             let font = egui::FontId::proportional(12.0);
             let colour = ui.visuals().text_color();
             if !known {
@@ -44,6 +44,10 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
                     colour,
                 );
                 return;
+            }
+            if let Some(here) = ui_state.walls.here.filter(|_| map == Map::Thickness) {
+                mark(ui, bar, (here - low) / (high - low).max(1e-12));
+                ui.label(tr!("walls-here", value = format!("{here:.3}")));
             }
             for i in 0..=2 {
                 let x = i as f32 / 2.0;
@@ -60,6 +64,15 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
             }
         });
     });
+}
+
+/// A mark beside the bar at a share of the scale.
+fn mark(ui: &egui::Ui, bar: Rect, share: f32) {
+    let y = bar.bottom() - share.clamp(0.0, 1.0) * bar.height();
+    let points = [vec2(-1.0, 0.0), vec2(-7.0, -4.0), vec2(-7.0, 4.0)];
+    let colour = ui.visuals().text_color();
+    let corners = points.map(|p| pos2(bar.left(), y) + p).to_vec();
+    ui.painter().add(egui::Shape::convex_polygon(corners, colour, egui::Stroke::NONE));
 }
 
 /// The text of a map of angles at the low end, the limit and the high end of its scale.

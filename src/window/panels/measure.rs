@@ -184,20 +184,21 @@ fn distance(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mu
 
 /// A scale's bar, upright, its low end below: for legends.
 pub fn bar(painter: &egui::Painter, rect: egui::Rect, colour: impl Fn(f32) -> [u8; 3]) {
-    const STEPS: u32 = 32;
+    // A multiple of the number of bands, so that none is blurred.
+    const STEPS: u32 = 64;
     let mut mesh = Mesh::default();
-    for i in 0..=STEPS {
-        let x = i as f32 / STEPS as f32;
-        let [r, g, b] = colour(x);
-        let y = rect.bottom() - x * rect.height();
-        for side in [rect.left(), rect.right()] {
-            mesh.colored_vertex(pos2(side, y), Color32::from_rgb(r, g, b));
+    for i in 0..STEPS {
+        let [low, high] =
+            [i, i + 1].map(|i| rect.bottom() - i as f32 / STEPS as f32 * rect.height());
+        let [r, g, b] = colour((i as f32 + 0.5) / STEPS as f32);
+        for (x, y) in
+            [(rect.left(), low), (rect.right(), low), (rect.left(), high), (rect.right(), high)]
+        {
+            mesh.colored_vertex(pos2(x, y), Color32::from_rgb(r, g, b));
         }
-        if i > 0 {
-            let k = i * 2;
-            mesh.add_triangle(k - 2, k - 1, k);
-            mesh.add_triangle(k - 1, k, k + 1);
-        }
+        let k = i * 4;
+        mesh.add_triangle(k, k + 1, k + 2);
+        mesh.add_triangle(k + 1, k + 2, k + 3);
     }
     painter.add(mesh);
 }

@@ -191,6 +191,9 @@ fn shadow_vertex(
 fn scaled(value: f32) -> vec3<f32> {
     let at = clamp((value - frame.map.x) * frame.map.y, 0.0, 1.0) * 7.0;
     let i = min(u32(at), 6u);
+    if (frame.scale[0].a < 0.5) {
+        return frame.scale[min(u32(at * 8.0 / 7.0), 7u)].rgb;
+    }
     return mix(frame.scale[i].rgb, frame.scale[i + 1u].rgb, at - f32(i));
 }
 
@@ -322,8 +325,9 @@ fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0)
             if (front) {
                 base = by_angle(select(own, -own, dot(own, in.normal) < 0.0), in.place);
             }
-        } else if (in.known > 0.999) {
-            base = scaled(in.value);
+        } else if (in.known > 0.02) {
+            // Corners without a value take no part: the value follows from the others.
+            base = scaled(in.value / in.known);
         }
         base *= 0.8;
     }

@@ -67,6 +67,7 @@ mod thickness_task;
 pub mod timelapse;
 mod turntable;
 mod version_pictures;
+pub mod wall_probe;
 mod wiring;
 
 pub use app::run;

@@ -8,7 +8,9 @@ use super::overlay;
 use super::pointer::Drag;
 use super::renderer::LineEnd;
 use super::state::WindowState;
+use super::wall_probe::{ProbedWall, wall_on};
 use super::wiring::Wiring;
+use crate::look::Map;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::Stage;
 use sculptd_daemon::people::colour_of;
@@ -78,6 +80,9 @@ impl WindowState {
         }
         self.objects_in_hand(&mut lines, state, &self.camera);
         self.check_lines(&mut lines, &self.camera);
+        if let Some(wall) = self.wall_here(state) {
+            overlay::wall(&mut lines, &wall);
+        }
         OverClay { lines, brush, led: self.led(state, wiring) }
     }
 
@@ -109,5 +114,13 @@ impl WindowState {
             let of = state.others_hands().map(colour_of);
             overlay::hands(lines, hands, &state.volume, of);
         }
+    }
+
+    /// The wall under the pointer while the map of thickness is shown.
+    pub(super) fn wall_here(&self, state: &Published) -> Option<ProbedWall> {
+        let at = self.pointer.at;
+        let on_clay = self.pointer.inside && self.is_in_view(at) && !self.over_panel(at);
+        let shown = on_clay && self.ui_state.look.map == Map::Thickness;
+        shown.then(|| wall_on(state, self.camera.ray(self.view_point(at)))).flatten()
     }
 }

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
+use super::wall_probe::ProbedWall;
 use crate::look::linear;
 use crate::panels::check_values::RING_SHARE;
 use sculptd_clay::Ray;
@@ -19,6 +20,8 @@ const HELD: [u8; 4] = [255, 214, 140, 110];
 const BONE: [u8; 4] = [190, 225, 255, 200];
 /// Of a marked finding: the colours, and the opacity behind a surface.
 const MARK: [u8; 4] = [255, 190, 20, 255];
+/// The ray of the wall under the pointer.
+const PROBE: [u8; 4] = [255, 255, 255, 255];
 const DARK: [u8; 4] = [4, 2, 2, 255];
 const MARK_THROUGH: f32 = 0.45;
 /// Corners of a ring: smooth to the eye at any size.
@@ -188,6 +191,17 @@ pub fn finding_mark(out: &mut Vec<LineEnd>, camera: &Camera, place: Vec3) {
     for quarter in 0..4 {
         let angle = quarter as f32 * 0.25 * turn;
         line(at(angle, radius * 0.25), at(angle, radius * 1.4), MARK);
+    }
+}
+
+/// The ray through a wall, with a cross on the side where it leaves; seen through the clay.
+pub fn wall(out: &mut Vec<LineEnd>, wall: &ProbedWall) {
+    let far = wall.place - wall.normal * wall.thickness;
+    let (u, v) = wall.opposite.any_orthonormal_pair();
+    let arm = 0.25 * wall.thickness;
+    let lines = [(wall.place, far), (far - u * arm, far + u * arm), (far - v * arm, far + v * arm)];
+    for (a, b) in lines {
+        out.extend([a, b].map(|p| LineEnd { through: 1.0, ..LineEnd::new(p, PROBE) }));
     }
 }
 

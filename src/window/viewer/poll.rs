@@ -267,7 +267,9 @@ impl WindowState {
                 &self.ui_state.walls.found,
                 self.ui_state.sizes.distances,
             ) {
-                (Map::Thickness, Some(found), _) => (found.min, found.high),
+                (Map::Thickness, Some(found), _) => {
+                    self.ui_state.walls.scale.unwrap_or((found.min, found.high))
+                }
                 // Both ends as far from nothing; an object that did not change is pale all over.
                 (Map::Distance, _, Some(d)) => {
                     let most = d.max.max(-d.min).max(state.extent * 1e-5);
@@ -278,6 +280,9 @@ impl WindowState {
         );
         changed |= self.ui_state.look.scale != scale;
         self.ui_state.look.scale = scale;
+        let here = self.wall_here(state).map(|wall| wall.thickness);
+        changed |= self.ui_state.walls.here != here;
+        self.ui_state.walls.here = here;
         if self.ui_state.look.map == Map::Thickness {
             let (limit, transform) = (self.ui_state.walls.limit, state.transform());
             let clay = (state.mesh.object_id(), state.mesh.revision());

@@ -363,7 +363,7 @@ impl Renderer {
             base: [base[0], base[1], base[2], f32::from(scene.look.flat)],
             finish: [shine, m.power, rim, scene.look.cavity.clamp(0.0, 2.0)],
             map: [low, 1.0 / (high - low).max(1e-12), kind, nearer(scene.camera, radius)],
-            scale: scene.look.map.scale(),
+            scale: scene.look.card_scale(),
             low: linear(ground[0]),
             high: linear(ground[1]),
             light: light(&scene.look),

@@ -430,7 +430,7 @@ impl Tasks {
         shown: Arc<ArcSwap<Published>>,
         commands: CommandSender,
     ) {
-        let compute = move |now: &Published, _: &Job| face_set_jobs::parted(now, by);
+        let compute = move |now: &Published, job: &Job| face_set_jobs::parted(now, by, job);
         let done = |_| tr!("task-sets-made");
         self.operate("sculptd-sets", (shown, commands), Arc::default(), compute, done);
     }

@@ -65,6 +65,9 @@ fn face_sets_are_made_hidden_extracted_by_request_and_come_back_from_a_session()
     let parts = run.ask("sets.make", json!({ "from": "crease", "degrees": 50 }));
     assert!(parts["made"].as_u64() >= Some(2), "{parts}");
     assert!(run.refused("sets.make", json!({ "from": "crease", "degrees": 200 })).contains("180"));
+    let walls = run.ask("sets.make", json!({ "from": "walls", "levels": 2 }));
+    assert!(walls["made"].as_u64() >= Some(1), "{walls}");
+    assert!(run.refused("sets.make", json!({ "from": "walls", "levels": 17 })).contains("16"));
 
     // Another level has other vertices: the sets are dropped, and that is said.
     run.ask("scene.activate", json!({ "id": 0 }));

@@ -18,7 +18,7 @@ use sculptd_window::look::Map;
 use sculptd_window::panels::state::region::{RegionPurpose, RegionShape};
 use sculptd_window::panels::state::{
     Action, DistanceSummary, FrameFigures, KeyMap, Measured, Preferences, SessionView, StepPicture,
-    TabletKeys, ThicknessSummary, ThinSpot, TrialStatus, Views,
+    TabletKeys, TrialStatus, Views,
 };
 use sculptd_window::panels::{Tab, UiRequest, UiState, View, all};
 
@@ -327,32 +327,6 @@ fn a_thing_is_taken_up_placed_and_joined() {
     h.get_by_label("Cut").click();
     h.run_steps(2);
     assert!(matches!(h.state().asked[..], [UiRequest::Join(_)]), "{:?}", h.state().asked);
-}
-
-#[test]
-fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
-    let mut h = harness(Tab::Walls);
-    h.state_mut().ui_state.look.map = Map::Thickness;
-    let place = glam::Vec3::new(0.1, 0.9, 0.0);
-    h.state_mut().ui_state.walls.found = Some(Box::new(ThicknessSummary {
-        min: 0.4,
-        max: 3.0,
-        median: 1.5,
-        high: 2.5,
-        measured: 90,
-        vertices: 100,
-        below: 0.07,
-        histogram: vec![3; 48],
-        spots: vec![ThinSpot { place, thickness: 0.4 }],
-    }));
-    h.run_steps(2);
-    h.get_by_label("1: 0.400 mm").click();
-    h.run_steps(2);
-    assert!(
-        matches!(h.state().asked[..], [UiRequest::FlyTo(p)] if p == place),
-        "{:?}",
-        h.state().asked
-    );
 }
 
 #[test]

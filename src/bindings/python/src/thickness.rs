@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use sculptd_geometry::CentredMesh;
 use sculptd_geometry::thickness::check::{ThicknessLimits, check};
+use sculptd_geometry::thickness::partition::PartitionSettings;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
@@ -185,6 +186,38 @@ impl Thickness {
         })?
         .map_err(|e| errors::thickness(&e))?;
         plain(py, &found.answer)
+    }
+
+    /// Divides the surface into parts of equal wall. Returns uint32, one a triangle of the mesh:
+    /// the number of its part, 4294967295 for none; and a dict of `levels` and `parts`, the largest
+    /// first. Needs `faces=True`. `levels`: 1 to 16; None: as few as the walls need. A spot of
+    /// another level belongs to its surroundings if its radius is below `smoothing` walls.
+    #[pyo3(signature = (levels=None, smoothing=1.25))]
+    fn parts<'py>(
+        &self,
+        py: Python<'py>,
+        levels: Option<usize>,
+        smoothing: f32,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let how = PartitionSettings { levels, smoothing };
+        let (measured, centre) = (self.measured.clone(), self.part.centre);
+        let found = py.detach(move || measured.partition(how));
+        let found = found.map_err(|e| errors::thickness(&e))?.moved(centre);
+        let facts = plain(py, &found)?;
+        let of = Arc::new(found.of);
+        Ok((shared(py, of.clone(), &of, vec![of.len()])?, facts))
+    }
+
+    /// The lines along the middle of the part's limbs: a dict of `nodes` (`position`, `thickness`,
+    /// `area`) and `branches` (`nodes`, `length`, `mean`, `thinnest`, `joined`), the longest first.
+    /// Needs `method='sphere'` and `faces=True`.
+    fn medial_curve<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.measured.settings.method != ThicknessMethod::Sphere {
+            return Err(PyValueError::new_err("medial_curve: expected method='sphere'"));
+        }
+        let measured = self.measured.clone();
+        let found = py.detach(move || measured.medial_curve());
+        plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.centre))
     }
 
     fn __repr__(&self) -> String {

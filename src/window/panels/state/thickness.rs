@@ -29,6 +29,13 @@ pub struct ThicknessSummary {
 
 impl ThicknessSummary {
     pub const CLASSES: usize = 48;
+
+    /// The middle of the class with the most vertices.
+    pub fn usual(&self) -> f32 {
+        let most = (0..self.histogram.len()).rev().max_by_key(|&i| self.histogram[i]);
+        let width = (self.high - self.min) / self.histogram.len().max(1) as f32;
+        most.map_or(self.median, |i| self.min + (i as f32 + 0.5) * width)
+    }
 }
 
 #[derive(Debug)]
@@ -38,10 +45,21 @@ pub struct WallsPage {
     /// Index into `presets`; `None`: the person's own limit.
     pub preset: Option<usize>,
     pub limit: f32,
+    /// The ends of the scale, set by hand; `None`: they follow the map.
+    pub scale: Option<(f32, f32)>,
+    /// The wall under the pointer, along the normal.
+    pub here: Option<f32>,
 }
 
 impl Default for WallsPage {
     fn default() -> Self {
-        WallsPage { found: None, presets: Vec::new(), preset: None, limit: 1.0 }
+        WallsPage {
+            found: None,
+            presets: Vec::new(),
+            preset: None,
+            limit: 1.0,
+            scale: None,
+            here: None,
+        }
     }
 }

@@ -1,0 +1,47 @@
+//! The wall under the pointer, by the definition *ray*: where the ray along the normal leaves the
+//! clay again. Looked up in the clay itself, not in the map, so it holds between vertices too.
+
+use glam::Vec3;
+
+use sculptd_clay::{Hit, Ray};
+use sculptd_daemon::Published;
+
+/// The ray begins this far below the surface, of the largest coordinate: beyond the rounding of the
+/// point where it begins.
+const BELOW: f32 = 2e-6;
+
+/// A wall at a place of the surface, in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProbedWall {
+    /// On the surface.
+    pub place: Vec3,
+    /// Outward.
+    pub normal: Vec3,
+    /// Along the normal to the opposite side.
+    pub thickness: f32,
+    /// Outward on the opposite side.
+    pub opposite: Vec3,
+}
+
+/// Returns the wall behind the surface that is seen on a ray, along the normal of the triangle that
+/// is hit; `None` where nothing is hit, or no surface lies behind.
+pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
+    let to_world = state.transform();
+    let own = to_world.inverse().ray(ray);
+    // Vertex normals of a hard-edged part are no face's.
+    let flat = |hit: &Hit| {
+        let [a, b, c] = state.mesh.page(hit.page).corners(hit.triangle as usize);
+        (b - a).cross(c - a).normalize_or(hit.normal)
+    };
+    let near = state.mesh.pick(own)?;
+    let normal = flat(&near);
+    let (lo, hi) = state.mesh.bounds();
+    let below = lo.abs().max(hi.abs()).max_element() * BELOW;
+    let far = state.mesh.pick(Ray { origin: near.position - normal * below, dir: -normal })?;
+    Some(ProbedWall {
+        place: to_world.point(near.position),
+        normal: to_world.direction(normal),
+        thickness: (f64::from(far.t + below) * to_world.scale) as f32,
+        opposite: to_world.direction(flat(&far)),
+    })
+}

@@ -1,0 +1,164 @@
+//! The page of walls and its map: thin spots, the scale set by hand, steps of colour, the wall
+//! under the pointer.
+
+use egui::{Pos2, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::{DQuat, DVec3, Vec3};
+use sculptd_clay::Ray;
+use sculptd_engine::command::Command;
+use sculptd_engine::scene::{ObjectTransform, SceneCommand};
+use sculptd_geometry::shapes;
+use sculptd_window::look::{Look, Map};
+use sculptd_window::panels::state::{Tab, ThicknessSummary, ThinSpot, UiRequest};
+use sculptd_window::viewer::pages::MapValues;
+use sculptd_window::viewer::renderer::Scene;
+use sculptd_window::viewer::wall_probe::wall_on;
+
+use super::check::world_of;
+use super::panels::{State, harness};
+use super::pictures::{framed, painter};
+use crate::clay::sphere;
+
+const SPOT: Vec3 = Vec3::new(0.1, 0.9, 0.0);
+
+/// The page of walls with a map from 0.4 to 2.4 mm.
+fn page() -> Harness<'static, State> {
+    let mut h = harness(Tab::Walls);
+    h.state_mut().ui_state.look.map = Map::Thickness;
+    let mut histogram = vec![3; 48];
+    histogram[12] = 9;
+    h.state_mut().ui_state.walls.found = Some(Box::new(ThicknessSummary {
+        min: 0.4,
+        max: 3.0,
+        median: 1.5,
+        high: 2.4,
+        measured: 90,
+        vertices: 100,
+        below: 0.07,
+        histogram,
+        spots: vec![ThinSpot { place: SPOT, thickness: 0.4 }],
+    }));
+    h.run_steps(2);
+    h
+}
+
+#[test]
+fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
+    let mut h = page();
+    // The class with the most vertices.
+    h.get_by_label("0.921 mm");
+    h.get_by_label("1: 0.400 mm").click();
+    h.run_steps(2);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::FlyTo(p)] if p == SPOT),
+        "{:?}",
+        h.state().asked
+    );
+}
+
+/// Drags within the histogram, from and to shares of its width.
+fn drag(h: &mut Harness<'static, State>, from: f32, to: f32) {
+    let rect = h.get_by_label("Thickness histogram").rect();
+    let at = |x: f32| -> Pos2 { pos2(rect.left() + x * rect.width(), rect.center().y) };
+    h.drag_at(at(from));
+    h.run_steps(2);
+    h.hover_at(at(0.5 * (from + to)));
+    h.run_steps(2);
+    h.hover_at(at(to));
+    h.run_steps(2);
+    h.drop_at(at(to));
+    h.run_steps(2);
+}
+
+#[test]
+fn the_ends_of_the_scale_and_the_limit_are_dragged_in_the_histogram() {
+    let mut h = page();
+    h.state_mut().ui_state.walls.limit = 1.4;
+    h.run_steps(2);
+    let near = |a: f32, b: f32| (a - b).abs() < 0.05;
+    // The limit stands in the middle.
+    drag(&mut h, 0.5, 0.3);
+    let walls = &h.state().ui_state.walls;
+    assert!(near(walls.limit, 1.0) && walls.scale.is_none(), "{walls:?}");
+    // The upper end of the scale.
+    drag(&mut h, 0.99, 0.6);
+    let (low, high) = h.state().ui_state.walls.scale.expect("set by hand");
+    assert!(near(low, 0.4) && near(high, 1.6), "{low} {high}");
+    assert!(near(h.state().ui_state.walls.limit, 1.0));
+    h.get_by_label("About the limit").click();
+    h.run_steps(2);
+    let limit = h.state().ui_state.walls.limit;
+    assert_eq!(h.state().ui_state.walls.scale, Some((0.0, 2.0 * limit)));
+    h.get_by_label("Follow the map").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.walls.scale, None);
+}
+
+#[test]
+fn steps_of_colour_show_equal_walls_as_equal() {
+    let Some(mut painter) = painter() else { return };
+    let mut mesh = sphere(40_000);
+    let camera = framed(&mesh, 1.0);
+    let snapshot = mesh.snapshot();
+    let pages = snapshot.pages().map(|p| (0..p.own()).map(|v| p.point(v).y).collect()).collect();
+    let values = MapValues { pages };
+    let mut tones = |bands: bool| {
+        // Without shading each pixel has its step's colour, but for where two meet.
+        let plain = Look { shade: 0.0, cavity: 0.0, material: 3, ..Look::default() };
+        let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), bands, ..plain };
+        let scene = Scene {
+            mesh: &snapshot,
+            camera: &camera,
+            brush: None,
+            lines: &[],
+            look,
+            values: Some(&values),
+            beside: Default::default(),
+        };
+        let picture = painter.paint(&scene, 240, 240).expect("a picture");
+        // The ratio of green to red along the middle, which the light hardly changes.
+        let ratio = |y: u32| {
+            let p = picture.get_pixel(120, y).0;
+            f32::from(p[1]) / f32::from(p[0]).max(1.0)
+        };
+        let column: Vec<f32> = (50..190).map(ratio).collect();
+        column.windows(2).filter(|two| (two[0] - two[1]).abs() < 0.004).count()
+    };
+    let (smooth, banded) = (tones(false), tones(true));
+    assert!(banded > smooth + 20, "{banded} equal neighbours with steps, {smooth} without");
+}
+
+#[test]
+fn the_wall_under_the_pointer_is_that_of_the_part_wherever_it_stands() {
+    // Walls of 3, 8 and 40 mm, whose corners' normals are no face's.
+    let slab = shapes::cuboid(DVec3::ZERO, DVec3::new(40.0, 3.0, 8.0)).triangulate().0;
+    let mut world = world_of(&slab);
+    let turn = DQuat::from_scaled_axis(DVec3::new(0.4, -1.1, 0.6));
+    let shift = DVec3::new(70.0, -20.0, 5.0);
+    let transforms = [ObjectTransform::NONE, ObjectTransform { shift, turn, scale: 2.5 }];
+    for transform in transforms {
+        let id = super::published(&mut world).scene.active().expect("an object").id;
+        let tick = world.tick() + 1;
+        world.step(tick, &[], &[Command::Scene(SceneCommand::Transform(id, transform))]);
+        let state = super::published(&mut world);
+        let scale = transform.scale as f32;
+        let cases = [
+            (Vec3::new(11.0, 30.0, 3.5), Vec3::NEG_Y, 3.0),
+            (Vec3::new(31.0, 1.2, 30.0), Vec3::NEG_Z, 8.0),
+            (Vec3::new(60.0, 1.7, 2.0), Vec3::NEG_X, 40.0),
+            // Aslant, the wall is still along the normal.
+            (Vec3::new(8.0, 10.0, 4.0), Vec3::new(0.3, -1.0, 0.1).normalize(), 3.0),
+        ];
+        for (origin, dir, wall) in cases {
+            let ray = Ray { origin: transform.point(origin), dir: transform.direction(dir) };
+            let found = wall_on(&state, ray).expect("a wall");
+            let off = (found.thickness - wall * scale).abs();
+            assert!(off < 1e-3 * scale, "{} for {}", found.thickness, wall * scale);
+            let outward = found.normal.dot(found.opposite);
+            assert!((outward + 1.0).abs() < 1e-5, "the sides face away from each other");
+        }
+        let beside = Ray { origin: transform.point(Vec3::splat(500.0)), dir: Vec3::X };
+        assert!(wall_on(&state, beside).is_none());
+    }
+}
