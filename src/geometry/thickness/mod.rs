@@ -27,6 +27,7 @@ pub mod overlap;
 pub mod preset;
 pub mod probe;
 pub mod ray;
+pub mod ready;
 pub mod refine;
 pub mod report;
 pub mod samples;
