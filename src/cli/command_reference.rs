@@ -1,4 +1,4 @@
-//! The guide's command reference, generated from the definition of the command line, in tests alone.
+//! Generates the guide's command reference from the definition of the command line, in tests.
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
 
@@ -6,8 +6,8 @@ use super::Cli;
 
 const HEAD: &str = "<!-- Generated from the help: the first paragraph says how. -->\n\n\
     # Command reference\n\n\
-    This page is the help of the program: `sculptd COMMAND --help` prints the same. Change the help \
-    in `src/cli` or `src/mesh_commands`, then write the page again: \
+    This page is the help of the program: `sculptd COMMAND --help` prints the same. Change the \
+    help in `src/cli` or `src/mesh_commands`, then write the page again: \
     `SCULPTD_BLESS=1 cargo test --release --workspace --lib command_reference`. A test fails where \
     page and help differ. A build with `--features network` has the commands `fleet` and `invite` \
     and more options of `run`, which are in its help alone.\n";

@@ -18,8 +18,8 @@ use crate::{FaceAttributes, GroupName, PolyMesh};
 const KEPT: &str = "kept";
 const DROPPED: &str = "dropped";
 
-/// Two squares of different groups, a triangle and a vertex of no face. The two squares do not share
-/// the vertices of their common edge.
+/// Two squares of different groups, a triangle and a vertex of no face. The two squares do not
+/// share the vertices of their common edge.
 fn everything() -> PolyMesh {
     let mut mesh = PolyMesh::new();
     // A tenth has no end in binary: single precision rounds it.

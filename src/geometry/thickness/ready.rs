@@ -35,9 +35,9 @@ pub struct ReadyPart {
 }
 
 impl ReadyPart {
-    /// Prepares `part`. `scale`: millimetres a unit of the mesh. `spacing`: the longest edge between
-    /// two places, in millimetres; without it a coarse part gets places by itself. `crease`: the
-    /// angle of a sharp edge, in degrees.
+    /// Prepares `part`. `scale`: millimetres a unit of the mesh. `spacing`: the longest edge
+    /// between two places, in millimetres; without it a coarse part gets places by itself.
+    /// `crease`: the angle of a sharp edge, in degrees.
     ///
     /// # Errors
     /// Returns an error if shells overlap and their union fails.

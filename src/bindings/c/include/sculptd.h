@@ -249,7 +249,7 @@ const char *sculptd_error_message(void);
 const char *sculptd_version(void);
 
 // Judges the walls of a part in millimetres by one ray along each normal, as `sculptd thickness`
-// does. `preset`: a process or a material ("fdm", "sla", "sls", "abs", "pc", "pp", "pa", "pom"), or
+// does. `preset`: a process or a material ("fdm", "sla", "sls", "abs", "pc", "pp", "pa", "pom") or
 // null. `limits` replace those of the preset, or are null.
 //
 // # Safety
@@ -351,8 +351,8 @@ enum SculptdStatus sculptd_mesh_unread(const struct SculptdMesh *mesh,
 // otherwise, one sentence each. Nothing is written; the ending of the name decides.
 //
 // # Safety
-// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to a
-// pointer.
+// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to
+// a pointer.
 enum SculptdStatus sculptd_mesh_unwritten(const struct SculptdMesh *mesh,
                                           const char *file,
                                           struct SculptdSentences **sentences);
@@ -384,9 +384,9 @@ const uint32_t *sculptd_mesh_face_starts(const struct SculptdMesh *mesh, size_t 
 // `mesh` is null or came from this library, and is not used any more.
 void sculptd_mesh_free(struct SculptdMesh *mesh);
 
-// Cuts a mesh by the planes `normal . p = offset`, one for each of `count` offsets. A plane through
-// a flat face gives the section just below the face. A closed mesh gives closed contours alone; an
-// open mesh gives what it has, with open contours marked.
+// Cuts a mesh by the planes `normal . p = offset`, one for each of `count` offsets. A plane
+// through a flat face gives the section just below the face. A closed mesh gives closed contours
+// alone; an open mesh gives what it has, with open contours marked.
 //
 // # Safety
 // `mesh` came from this library and was not freed; `normal` has 3 numbers and `offsets` has

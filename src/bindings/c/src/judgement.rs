@@ -103,7 +103,7 @@ fn preset_limits(name: &CStr) -> Result<ThicknessLimits, Failure> {
 }
 
 /// Judges the walls of a part in millimetres by one ray along each normal, as `sculptd thickness`
-/// does. `preset`: a process or a material ("fdm", "sla", "sls", "abs", "pc", "pp", "pa", "pom"), or
+/// does. `preset`: a process or a material ("fdm", "sla", "sls", "abs", "pc", "pp", "pa", "pom") or
 /// null. `limits` replace those of the preset, or are null.
 ///
 /// # Safety
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn sculptd_judge(
         }
         let (settings, job) = (ThicknessSettings::default(), Job::default());
         let part = ReadyPart::new(poly, 1.0, None, settings.crease, &job)?;
-        // How long it took is not reported.
+        // The duration is not reported.
         let answer = part.judge("", &settings, all, &job, || 0.0)?.answer;
         let worst = answer.worst.iter().map(|w| SculptdThinPlace {
             position: w.position,

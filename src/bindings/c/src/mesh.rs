@@ -203,8 +203,8 @@ pub unsafe extern "C" fn sculptd_mesh_unread(
 /// otherwise, one sentence each. Nothing is written; the ending of the name decides.
 ///
 /// # Safety
-/// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to a
-/// pointer.
+/// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to
+/// a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sculptd_mesh_unwritten(
     mesh: *const SculptdMesh,

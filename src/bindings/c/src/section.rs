@@ -59,9 +59,9 @@ pub struct SculptdContour {
     pub closed: bool,
 }
 
-/// Cuts a mesh by the planes `normal . p = offset`, one for each of `count` offsets. A plane through
-/// a flat face gives the section just below the face. A closed mesh gives closed contours alone; an
-/// open mesh gives what it has, with open contours marked.
+/// Cuts a mesh by the planes `normal . p = offset`, one for each of `count` offsets. A plane
+/// through a flat face gives the section just below the face. A closed mesh gives closed contours
+/// alone; an open mesh gives what it has, with open contours marked.
 ///
 /// # Safety
 /// `mesh` came from this library and was not freed; `normal` has 3 numbers and `offsets` has

@@ -368,8 +368,8 @@ fn line(py: Python<'_>, points: Vec<glam::DVec3>) -> PyResult<Bound<'_, PyAny>> 
 /// Sections of a mesh by the planes `normal . p = offset` with their sizes: for each offset a dict
 /// of `area`, `perimeter`, `folded`, `centroid` (None without area), `contours` and `open`, the
 /// contours that the mesh leaves open. `folded` is the length of lines that run out and back, such
-/// as doubled faces, and not part of the perimeter. Contours are as in `slices`: outer ones run counter-clockwise, seen
-/// against the normal, and holes clockwise.
+/// as doubled faces, and not part of the perimeter. Contours are as in `slices`: outer ones run
+/// counter-clockwise, seen against the normal, and holes clockwise.
 #[pyfunction]
 #[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
 fn sections<'py>(
