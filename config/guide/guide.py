@@ -7,10 +7,14 @@
     guide.py run BINARY [PAGE] runs every command of the pages, in order, in an empty home
 
 Generated: a page and a picture for each brush (config/brushes, the golden sheet), the list of
-tablets (devices/tablets), the control protocol (src/control/schema.json), the summary.
+tablets (devices/tablets), the control protocol (src/control/schema.json), the tables of the pages
+on files and units (src/geometry/io/formats.json, which a test measures), the summary.
+
+The command reference is generated from the help by a test of src/cli/command_reference.rs.
 
 A block of code that begins with ```sh is run; one that begins with ```console is not, because it
-needs a network, a device or a person.
+needs a network, a device or a person. A picture that a block makes under the name of a file in
+pictures/gallery must be that file; with SCULPTD_BLESS=1 it replaces the file.
 """
 
 import json
@@ -43,12 +47,14 @@ CHAPTERS = [
         ("Brushes", "brushes/"),
         ("Gestures", "gestures.md"),
         ("Solids: join, measure, check", "solids.md"),
+        ("What you can make: a gallery", "gallery.md"),
         ("Ready to print, ready to mould", "check.md"),
         ("Join from a phone or an iPad", "join.md"),
         ("A kiosk, from an empty computer to opening day", "kiosk.md"),
         ("A fleet of installations", "fleet.md"),
         ("One sculpture, several people", "together.md"),
         ("Troubleshooting", "troubleshooting.md"),
+        ("Questions and answers", "faq.md"),
     ]),
     ("Programs", [
         ("Python", "python.md"),
@@ -56,11 +62,15 @@ CHAPTERS = [
         ("C and C++", "c.md"),
         ("The control protocol", "protocol.md"),
         ("Session files", "sessions.md"),
+        ("Command reference", "commands.md"),
     ]),
     ("Facts", [
+        ("Files: formats and what survives", "formats.md"),
+        ("Units and scale", "units.md"),
         ("Tablets", "tablets.md"),
         ("Accuracy and speed", "accuracy.md"),
         ("Beside other programs", "comparison.md"),
+        ("Glossary", "glossary.md"),
     ]),
 ]
 
@@ -275,6 +285,80 @@ def protocol():
     return {"protocol.md": MARK + "\n".join(out)}
 
 
+# The formats, in the order of the tables.
+FORMATS = ["obj", "ply", "off", "stl", "3mf", "glb", "gltf"]
+
+
+def rows(head, lines):
+    """A table in Markdown."""
+    cells = [head, ["---"] * len(head), *lines]
+    return "".join("| " + " | ".join(str(c) for c in line) + " |\n" for line in cells)
+
+
+def format_tables():
+    facts = json.loads((ROOT / "src/geometry/io/formats.json").read_text(encoding="utf-8"))
+    head = ["", *(f".{kind}" for kind in FORMATS)]
+
+    def fates(table, names):
+        found = {name for kind in FORMATS for name in facts[table][kind]}
+        if found != set(names):
+            raise SystemExit(f"formats.json, {table}: expected {sorted(names)}, found {sorted(found)}")
+        return rows(head, ([name, *(facts[table][kind][name] for kind in FORMATS)] for name in names))
+
+    def sentences(table, mark):
+        listed = facts[table]
+        order = [f for f in FORMATS if f in listed] or sorted(listed)
+        return rows(
+            ["format", "warning"],
+            ([mark + kind, "<br>".join(told(s) for s in listed[kind]) or "none"] for kind in order),
+        )
+
+    states = {
+        "3mf": "states its unit: " + ", ".join(
+            f"{unit} (x {size:g})" for unit, size in sorted(facts["3MF units"].items(), key=lambda u: u[1])
+        ),
+        "glb": "defines the metre, y up",
+        "gltf": "defines the metre, y up",
+    }
+    unchanged = {kind: point == [1.0, 2.0, 3.0] for kind, point in facts["axes"].items()}
+    if not all(unchanged.values()):
+        raise SystemExit(f"units.md says that no format changes a coordinate: {facts['axes']}")
+    reading = {"3mf": "in millimetres"}
+    writing = {"3mf": "unchanged, states millimetres"}
+    return {
+        "formats-written": fates("written", [
+            "coordinates", "vertices", "polygons", "colours of vertices", "groups of faces", "names of groups",
+            "names of materials", "names of material files", "texture coordinates",
+        ]),
+        "formats-scenes": fates("scenes", ["objects", "names of objects", "layers"]),
+        "formats-losses": sentences("warnings when writing", "."),
+        "formats-unread": sentences("warnings when reading", ""),
+        "units": rows(
+            ["format", "the format", "reading", "writing"],
+            (
+                [f".{kind}", states.get(kind, "states no unit"), reading.get(kind, "unchanged"),
+                 writing.get(kind, "unchanged")]
+                for kind in FORMATS
+            ),
+        ),
+    }
+
+
+def filled():
+    """Pages that are written by hand, with their tables as they must be."""
+    tables, pages = format_tables(), {}
+    for name in ("formats.md", "units.md"):
+        text = (PAGES / name).read_text(encoding="utf-8")
+
+        def table(found):
+            return f"{found[1]}\n{tables[found[2]]}{found[3]}"
+
+        pages[name] = re.sub(
+            r"(<!-- generated: ([a-z-]+) -->)\n.*?(<!-- end -->)", table, text, flags=re.S
+        )
+    return pages
+
+
 def summary():
     out = ["# Summary\n"]
     for part, pages in CHAPTERS:
@@ -298,7 +382,7 @@ def pictures():
 
 
 def generated():
-    pages = {**brushes(), **tablets(), **protocol(), **summary(), **pictures()}
+    pages = {**brushes(), **tablets(), **protocol(), **filled(), **summary(), **pictures()}
     return {k: v.encode() if isinstance(v, str) else v for k, v in pages.items()}
 
 
@@ -348,6 +432,8 @@ def check():
         name = path.relative_to(PAGES).as_posix()
         if path.suffix == ".md" and name != "SUMMARY.md" and name not in listed:
             wrong.append(f"config/guide/src/{name} is not in the summary")
+        if name.startswith("pictures/gallery/") and path.stat().st_size >= 60_000:
+            wrong.append(f"config/guide/src/{name} has {path.stat().st_size} bytes: expected fewer than 60000")
         if name.startswith("brushes/") and name not in pages:
             wrong.append(f"config/guide/src/{name} is of no brush")
     for line in wrong:
@@ -355,6 +441,20 @@ def check():
     links = sum(1 for _ in PAGES.rglob("*.md"))
     print(f"the guide: {links} pages, {len(pages)} generated files, {len(wrong)} faults")
     return 1 if wrong else 0
+
+
+def gallery_differs(home):
+    """The pictures of the gallery that the page's commands did not make, or made otherwise."""
+    folder = PAGES / "pictures/gallery"
+    if os.environ.get("SCULPTD_BLESS"):
+        folder.mkdir(exist_ok=True)
+        for path in sorted(home.iterdir()):
+            if path.suffix in (".png", ".svg"):
+                shutil.copy(path, folder / path.name)
+    return [
+        path.name for path in sorted(folder.iterdir())
+        if not (home / path.name).exists() or (home / path.name).read_bytes() != path.read_bytes()
+    ]
 
 
 def run(binary, only=None):
@@ -377,6 +477,12 @@ def run(binary, only=None):
                 ["bash", "-x", "-c", script], env=environment, stdin=subprocess.DEVNULL, timeout=600,
                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
             )
+            good = done.returncode == 0 and page.name == "gallery.md"
+            stale = gallery_differs(pathlib.Path(home)) if good else []
+        for name in stale:
+            print(f"pictures/gallery/{name} is not what the page makes: run with SCULPTD_BLESS=1", file=sys.stderr)
+        if stale:
+            return 1
         if done.returncode:
             print(done.stdout[-4000:], file=sys.stderr)
             print(f"{page.relative_to(ROOT)}: a command ended with {done.returncode}", file=sys.stderr)

@@ -15,6 +15,8 @@ pub mod brush;
 mod camera;
 mod camera_errors;
 mod check_presets;
+#[cfg(all(test, unix, feature = "viewer", not(feature = "network")))]
+mod command_reference;
 pub mod config;
 #[cfg(unix)]
 pub mod ctl;

@@ -9,6 +9,7 @@ use sculptd_daemon::config::CameraConfig;
 use sculptd_daemon::startup;
 use sculptd_engine::camera::Camera;
 use sculptd_geometry::job::Job;
+use sculptd_mesh_commands::picture_size;
 use sculptd_window::look::{Light, Look, MATERIALS, RAISED};
 use sculptd_window::viewer::look_files::{read_environment, read_matcap};
 use sculptd_window::viewer::picture::{Painter, write_png};
@@ -21,7 +22,7 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Pixels.
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x800")]
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1280x800")]
     pub size: (u32, u32),
     /// Direction of the camera.
     #[arg(long, value_enum, default_value_t)]
@@ -98,14 +99,6 @@ impl ViewFrom {
 }
 
 /// Width and height from 16 to 8192, as most adapters allow.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let parts = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match parts {
-        Some((w, h)) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok((w, h)),
-        _ => Err(format!("expected WIDTHxHEIGHT, each from 16 to 8192, found '{text}'")),
-    }
-}
-
 /// `turn.png` becomes `turn-007.png`.
 fn numbered(path: &Path, frame: u32) -> PathBuf {
     let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());

@@ -6,6 +6,12 @@
 //! closed wherever the plane passes: through faces, edges or vertices. A plane through a face gives
 //! the section just below it. A shell whose lowest points are in the plane has nothing below: it is
 //! cut just above the plane.
+//!
+//! A contour bounds an area. Where a contour runs out along a line and back along the same line, it
+//! encloses nothing: at a doubled face (two triangles with the same three vertices), and in a plane
+//! through a ridge. Such lines are left out of the contours and the perimeter, and measured as
+//! [`Section::folded`], so that `perimeter + folded` is the length in which the plane meets the
+//! triangles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,6 +39,9 @@ pub struct Contour {
     pub points: Vec<DVec3>,
     /// True where the mesh closes it: an open mesh has contours with two ends.
     pub closed: bool,
+    /// In the square of the mesh's unit, below 0 for a hole. An open contour counts as if a
+    /// straight line closed it.
+    pub area: f64,
 }
 
 /// The section of a mesh by one plane.
@@ -45,6 +54,9 @@ pub struct Section {
     pub area: f64,
     /// The length of all contours, in the mesh's unit.
     pub perimeter: f64,
+    /// The length of the lines along which contours run out and back, in the mesh's unit, both
+    /// directions counted. They enclose nothing and are not part of `contours` or `perimeter`.
+    pub folded: f64,
     /// The centre of the area, where there is one.
     pub centroid: Option<DVec3>,
     /// The number of contours with two ends.
@@ -124,7 +136,8 @@ impl<'a> Slicer<'a> {
             cut.pieces.push([down, up]);
         }
         let ends = cut.joined(CRACK * self.reach);
-        Section::of(cut.trace(&ends), self.normal)
+        let (contours, folded) = cut.trace(&ends);
+        Section { folded, ..Section::of(contours, self.normal) }
     }
 
     /// The place at which the edge from `a` to `b` meets the plane.
@@ -226,8 +239,10 @@ impl Cut {
         }
     }
 
-    /// The contours: open ones first, from where they start.
-    fn trace(&self, partner: &[u32]) -> Vec<Contour> {
+    /// The contours, open ones first, from where they start; and the length of the lines along
+    /// which they run out and back.
+    fn trace(&self, partner: &[u32]) -> (Vec<Contour>, f64) {
+        let mut folded = 0.0;
         let mut done = vec![false; self.pieces.len()];
         let mut out = Vec::new();
         let open = (0..partner.len() as u32).filter(|&e| partner[e as usize] == OPEN);
@@ -242,67 +257,79 @@ impl Cut {
             let closed = loop {
                 done[at as usize / 2] = true;
                 let far = at ^ 1;
-                push(&mut points, self.end(far));
+                folded += push(&mut points, self.end(far));
                 match partner[far as usize] {
                     OPEN => break false,
                     next if next == first => break true,
                     next => at = next,
                 }
-                push(&mut points, self.end(at));
+                folded += push(&mut points, self.end(at));
             };
             if closed {
-                close(&mut points);
+                folded += close(&mut points);
             }
             if points.len() > if closed { 3 } else { 1 } {
-                out.push(Contour { points, closed });
+                out.push(Contour { points, closed, area: 0.0 });
+            } else {
+                folded += length(&points);
             }
         }
-        out
+        (out, folded)
     }
 }
 
-/// Adds a point to a line; one that is there already, or where the line turns back on itself, is
-/// left out.
-fn push(points: &mut Vec<DVec3>, p: DVec3) {
-    if points.last() == Some(&p) {
-        return;
-    }
-    match points.len().checked_sub(2).map(|i| points[i]) {
-        Some(before) if before == p => {
+/// Adds a point to a line. Leaves out a point that repeats the last one, and the piece along which
+/// the line turns back on itself; returns the length of that piece, out and back.
+fn push(points: &mut Vec<DVec3>, p: DVec3) -> f64 {
+    match points[..] {
+        [.., last] if last == p => 0.0,
+        [.., before, last] if before == p => {
             points.pop();
+            2.0 * last.distance(p)
         }
-        _ => points.push(p),
+        _ => {
+            points.push(p);
+            0.0
+        }
     }
 }
 
-/// Ends a closed line at its first point, without a spike there.
-fn close(points: &mut Vec<DVec3>) {
+/// Ends a closed line at its first point, without a spike there; returns the length of the spike,
+/// out and back.
+fn close(points: &mut Vec<DVec3>) -> f64 {
     if points.first() == points.last() {
         points.pop();
     }
-    let mut from = 0;
+    let (mut from, mut spike) = (0, 0.0);
     while points.len() > from + 2 && points[from + 1] == points[points.len() - 1] {
+        spike += 2.0 * points[from].distance(points[from + 1]);
         points.pop();
         from += 1;
     }
     points.drain(..from);
     points.extend(points.first().copied());
+    spike
+}
+
+fn length(points: &[DVec3]) -> f64 {
+    points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
 impl Section {
-    fn of(contours: Vec<Contour>, normal: DVec3) -> Section {
+    fn of(mut contours: Vec<Contour>, normal: DVec3) -> Section {
         let mut out =
             Section { open: contours.iter().filter(|c| !c.closed).count(), ..Self::default() };
         let up = normal.normalize();
         let (mut moment, mut base) = (DVec3::ZERO, None);
-        for c in &contours {
-            out.perimeter += c.points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+        for c in &mut contours {
+            out.perimeter += length(&c.points);
             let origin = *base.get_or_insert(c.points[0]);
             let round = c.points.iter().chain(c.points.first());
             for (p, q) in c.points.iter().zip(round.skip(1)) {
                 let (p, q) = (*p - origin, *q - origin);
                 let twice = p.cross(q).dot(up);
                 out.area += twice * 0.5;
+                c.area += twice * 0.5;
                 moment += (p + q) * (twice / 6.0);
             }
         }
@@ -351,7 +378,8 @@ mod tests {
         }
         // Through four edges, and along one of them alone.
         close_to(at(&mesh, DVec3::new(3.0, -4.0, 0.0), 0.0).area, 50.0 * 20.0);
-        assert_eq!(at(&mesh, DVec3::new(1.0, 1.0, 0.0), 70.0), Section::default());
+        let edge = Section { folded: 2.0 * 20.0, ..Section::default() };
+        assert_eq!(at(&mesh, DVec3::new(1.0, 1.0, 0.0), 70.0), edge);
         assert!(Slicer::new(&mesh, DVec3::ZERO).is_none());
         assert!(Slicer::new(&mesh, DVec3::splat(f64::NAN)).is_none());
     }
@@ -404,6 +432,60 @@ mod tests {
             let triangles = mesh.triangulate().0;
             let whole = measures(&triangles).volume.abs();
             assert!((volume / normal.length() - whole).abs() < 1e-6 * whole, "{volume} {whole}");
+        }
+    }
+
+    /// The sum over the triangles, without joining anything: a vertex in the plane is above it.
+    fn met(mesh: &PolyMesh, axis: usize, height: f64) -> f64 {
+        let piece = |t: &[u32; 3]| {
+            let p = t.map(|v| mesh.positions[v as usize]);
+            let cuts = [[0, 1], [1, 2], [2, 0]].map(|e| e.map(|i: usize| p[i]));
+            let cuts: Vec<DVec3> = cuts
+                .iter()
+                .filter(|[a, b]| (a[axis] >= height) != (b[axis] >= height))
+                .map(|[a, b]| *a + (*b - *a) * ((height - a[axis]) / (b[axis] - a[axis])))
+                .collect();
+            if let [a, b] = cuts[..] { a.distance(b) } else { 0.0 }
+        };
+        mesh.triangles().0.iter().map(piece).sum()
+    }
+
+    #[test]
+    fn a_line_out_and_back_is_no_perimeter_and_is_measured() {
+        // A roof: below its ridge a rectangle, in the plane of the ridge a line.
+        let corners =
+            [[0, 0, 0], [10, 0, 0], [10, 4, 0], [0, 4, 0], [0, 2, 3], [10, 2, 3]].map(|p| {
+                let [x, y, z] = p.map(f64::from);
+                DVec3::new(x, y, z)
+            });
+        let mut roof = PolyMesh { positions: corners.to_vec(), ..PolyMesh::new() };
+        for f in [&[3, 2, 1, 0][..], &[0, 1, 5, 4], &[2, 3, 4, 5], &[0, 4, 3], &[1, 2, 5]] {
+            roof.push_face(f);
+        }
+        let s = at(&roof, DVec3::Z, 3.0);
+        assert_eq!((s.contours.len(), s.area, s.perimeter, s.folded), (0, 0.0, 0.0, 20.0));
+        let s = at(&roof, DVec3::Z, 1.5);
+        assert_eq!((s.contours.len(), s.folded), (1, 0.0));
+        close_to(s.perimeter, 24.0);
+        // A doubled face on an edge of the box, which then has four faces, and one by itself.
+        let mut mesh = cuboid(DVec3::ZERO, DVec3::splat(4.0));
+        let find = |p: [f64; 3]| mesh.positions.iter().position(|q| *q == DVec3::from(p));
+        let [low, high] = [[4.0, 4.0, 0.0], [4.0; 3]].map(|p| find(p).expect("a corner") as u32);
+        let free = mesh.positions.len() as u32;
+        for p in [[6.0, 6.0, 1.0], [9.0, 0.0, 0.0], [9.0, 0.0, 4.0], [9.0, 2.0, 1.0]] {
+            mesh.positions.push(DVec3::from(p));
+        }
+        for f in [[low, high, free], [high, low, free], [free + 1, free + 2, free + 3]] {
+            mesh.push_face(&f);
+        }
+        mesh.push_face(&[free + 2, free + 1, free + 3]);
+        for (axis, height) in [(2, 0.5), (2, 1.0), (2, 3.25), (0, 5.0), (1, 1.0), (1, 4.5)] {
+            let normal = [DVec3::X, DVec3::Y, DVec3::Z][axis];
+            let s = at(&mesh, normal, height);
+            close_to(s.perimeter + s.folded, met(&mesh, axis, height));
+            close_to(s.perimeter, if axis != 0 && height < 4.0 { 16.0 } else { 0.0 });
+            assert!(s.folded > 0.1, "{axis} {height}");
+            close_to(s.contours.iter().map(|c| c.area).sum(), s.area);
         }
     }
 

@@ -76,6 +76,15 @@ impl Fail {
     }
 }
 
+/// The size of a picture on a command line, in pixels: `1200x900`.
+pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((w, h)) if (16..=8192).contains(&w) && (16..=8192).contains(&h) => Ok((w, h)),
+        _ => Err(format!("expected WIDTHxHEIGHT, each from 16 to 8192, found '{text}'")),
+    }
+}
+
 impl From<ReadError> for Fail {
     fn from(e: ReadError) -> Self {
         match &e {

@@ -45,6 +45,8 @@ struct Layer {
     height: f64,
     area: f64,
     perimeter: f64,
+    /// The length of lines along which contours run out and back; not part of the perimeter.
+    folded: f64,
     /// The number of contours, holes included.
     contours: usize,
     /// The number of contours that the mesh leaves open.
@@ -139,6 +141,7 @@ pub fn run(args: &SliceArgs, json: bool) -> Outcome {
                 height,
                 area: s.area,
                 perimeter: s.perimeter,
+                folded: s.folded,
                 contours: s.contours.len(),
                 open: s.open,
                 centroid: s.centroid.map(|c| c.to_array()),

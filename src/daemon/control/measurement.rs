@@ -3,10 +3,10 @@
 use super::host::{Host, KeptThickness, failed, locked};
 use sculptd_control::RpcError;
 use sculptd_control::edit::{ThicknessDefinition, ThicknessParams, ThicknessReply};
-use sculptd_geometry::CentredMesh;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
-use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings, overlap};
+use sculptd_geometry::thickness::check::ThicknessLimits;
+use sculptd_geometry::thickness::ready::ReadyPart;
+use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings};
 
 /// Measures the newest mesh as `sculptd thickness` does. The same question about the same mesh is
 /// answered from memory.
@@ -31,12 +31,10 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
     let limits =
         ThicknessLimits { fail_below: params.limit.filter(|l| *l > 0.0), ..Default::default() };
     let whole = mesh.to_tri().to_poly();
-    let united = overlap::united(&whole, &Job::default()).map_err(failed)?;
-    let mut part = CentredMesh::new(united.as_ref().unwrap_or(&whole), scale);
-    let vertices = part.mesh.positions.len() as u64;
-    let walls = add_places(&mut part.mesh, None, settings.crease);
-    let found = check("", &part, walls.as_ref(), &settings, limits, &Job::default(), || 0.0);
-    let found = found.map_err(failed)?;
+    let job = Job::default();
+    let part = ReadyPart::new(&whole, scale, None, settings.crease, &job).map_err(failed)?;
+    let vertices = part.whole().positions.len() as u64;
+    let found = part.judge("", &settings, limits, &job, || 0.0).map_err(failed)?;
     let (answer, values) = (found.answer, &found.thickness.values);
     let valid = values.iter().take(vertices as usize).filter(|v| v.is_finite()).count() as u64;
     let s = &answer.summary;

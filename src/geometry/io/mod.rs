@@ -8,6 +8,8 @@
 
 pub mod beside;
 mod format;
+#[cfg(test)]
+mod formats;
 mod gltf;
 pub mod height_picture;
 pub mod morph;

@@ -11,7 +11,7 @@ use crate::face_attributes::NO_UV;
 use crate::{GroupName, PolyMesh};
 
 /// The formats written, by the ending of a name.
-const ENDINGS: [&str; 7] = ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"];
+pub(super) const ENDINGS: [&str; 7] = ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"];
 
 /// The ending (lower case) by which [`write_mesh`] will write, asked for before the work is done.
 pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {

@@ -75,6 +75,26 @@ pub struct ThicknessLimits {
     pub minimum_area: f64,
 }
 
+impl ThicknessLimits {
+    /// Returns these limits, each replaced by that of `other` where `other` has one; the area is
+    /// always that of `other`.
+    pub fn replaced_by(self, other: ThicknessLimits) -> ThicknessLimits {
+        ThicknessLimits {
+            warn_below: other.warn_below.or(self.warn_below),
+            fail_below: other.fail_below.or(self.fail_below),
+            fail_above: other.fail_above.or(self.fail_above),
+            neighbour_ratio: other.neighbour_ratio.or(self.neighbour_ratio),
+            minimum_area: other.minimum_area,
+        }
+    }
+
+    /// Returns true if every limit is finite and above 0, and the area is at least 0.
+    pub fn is_valid(&self) -> bool {
+        let given = [self.fail_below, self.warn_below, self.fail_above, self.neighbour_ratio];
+        given.into_iter().flatten().all(|l| l > 0.0 && l.is_finite()) && self.minimum_area >= 0.0
+    }
+}
+
 impl From<&Preset> for ThicknessLimits {
     fn from(p: &Preset) -> Self {
         ThicknessLimits {

@@ -30,6 +30,7 @@ pub mod partition;
 pub mod preset;
 pub mod probe;
 pub mod ray;
+pub mod ready;
 pub mod refine;
 pub mod report;
 pub mod samples;

@@ -58,9 +58,28 @@ pub enum PresetError {
         /// The rule that is broken.
         expected: &'static str,
     },
+    /// No preset has this name.
+    #[error("no preset is called \"{name}\"; there are {known}")]
+    Unknown {
+        /// The name that was asked for.
+        name: String,
+        /// The names that exist, with commas between.
+        known: String,
+    },
 }
 
 impl Preset {
+    /// Returns the preset with this name.
+    ///
+    /// # Errors
+    /// Returns [`PresetError::Unknown`], which lists the names, if no preset has this name.
+    pub fn named<'a>(name: &str, presets: &'a [Preset]) -> Result<&'a Preset, PresetError> {
+        presets.iter().find(|p| p.name == name).ok_or_else(|| {
+            let known = presets.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+            PresetError::Unknown { name: name.into(), known }
+        })
+    }
+
     /// Reads a preset from its text; `name` (the file's, as a rule) is for the error. Expects
     /// `0 < fail_below <= warn_below < fail_above` and `neighbour_ratio > 1`, all finite.
     pub fn read(name: &str, text: &str) -> Result<Preset, PresetError> {

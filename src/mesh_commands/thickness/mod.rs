@@ -11,23 +11,21 @@ use glam::{DVec3, Vec3};
 use sculptd_devices::Clock;
 use serde::Serialize;
 
-use super::{Fail, Outcome, answer};
+use super::{Fail, Outcome, answer, picture_size};
 use parts::{Structure, write_skeleton};
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::picture::{Camera, Picture, draw};
-use sculptd_geometry::thickness::check::{
-    CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict, add_places, check,
-};
+use sculptd_geometry::thickness::check::{CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict};
 use sculptd_geometry::thickness::colour::colour;
-use sculptd_geometry::thickness::overlap;
 use sculptd_geometry::thickness::partition::SMOOTHING;
 use sculptd_geometry::thickness::preset::Preset;
 use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
+use sculptd_geometry::thickness::ready::ReadyPart;
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
     Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, ThicknessMethod,
-    ThicknessSettings, Walls, Weights,
+    ThicknessSettings, Weights,
 };
 use sculptd_geometry::{CentredMesh, TriMesh};
 
@@ -67,6 +65,9 @@ pub struct ThicknessArgs {
     /// from (blue) and the one that is met (orange).
     #[arg(long, value_name = "FILE")]
     pub png: Option<PathBuf>,
+    /// Pixels of the picture.
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1200x900")]
+    pub size: (u32, u32),
     /// Write the report: one HTML page that needs nothing else.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
@@ -250,73 +251,43 @@ impl LimitArgs {
                 let own = Preset::read(name, &text).map_err(|e| Fail::Config(e.to_string()))?;
                 ThicknessLimits::from(&own)
             } else {
-                ThicknessLimits::from(named(name, presets).map_err(Fail::Usage)?)
+                let found = Preset::named(name, presets);
+                ThicknessLimits::from(found.map_err(|e| Fail::Usage(e.to_string()))?)
             };
         }
-        limits.fail_below = self.fail_below.or(limits.fail_below);
-        limits.warn_below = self.warn_below.or(limits.warn_below);
-        limits.fail_above = self.fail_above.or(limits.fail_above);
-        limits.neighbour_ratio = self.neighbour_ratio.or(limits.neighbour_ratio);
-        limits.minimum_area = self.minimum_area;
-        let given =
-            [limits.fail_below, limits.warn_below, limits.fail_above, limits.neighbour_ratio];
-        if given.into_iter().flatten().any(|l| !(l > 0.0 && l.is_finite()))
-            || !(limits.minimum_area >= 0.0)
-        {
+        let limits = limits.replaced_by(ThicknessLimits {
+            warn_below: self.warn_below,
+            fail_below: self.fail_below,
+            fail_above: self.fail_above,
+            neighbour_ratio: self.neighbour_ratio,
+            minimum_area: self.minimum_area,
+        });
+        if !limits.is_valid() {
             return Err(Fail::Usage("limits must be numbers above 0".into()));
         }
         Ok(limits)
     }
 }
 
-/// Returns the preset of this name, or a sentence that lists the available ones.
-fn named<'a>(name: &str, presets: &'a [Preset]) -> Result<&'a Preset, String> {
-    let known = presets.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
-    presets
-        .iter()
-        .find(|p| p.name == name)
-        .ok_or_else(|| format!("no preset is called \"{name}\"; there are {known}"))
-}
-
-/// A part read from its file, with places to measure at.
-#[derive(Debug)]
-pub struct Part {
-    pub mesh: CentredMesh,
-    /// Its walls without those places, where any were put on them.
-    pub walls: Option<Walls>,
-}
-
-impl Part {
-    /// The part in the triangles of its file.
-    pub fn whole(&self) -> &TriMesh {
-        self.walls.as_ref().map_or(&self.mesh.mesh, |w| &w.mesh)
-    }
-}
-
-/// A part, and what to say of its file.
-pub fn load(path: &Path, how: &How, job: &Job) -> Result<(Part, Vec<String>), Fail> {
+/// Reads a part and makes it ready; the sentences are warnings about its file.
+pub fn load(path: &Path, how: &How, job: &Job) -> Result<(ReadyPart, Vec<String>), Fail> {
     let loaded = read_mesh(path, job)?;
     if loaded.mesh.face_count() == 0 {
         return Err(Fail::Input(format!("{}: expected faces, found none", path.display())));
     }
     let mut warnings = loaded.warnings;
-    let united = overlap::united(&loaded.mesh, job).map_err(|e| {
+    let scale = how.unit.scale();
+    let part = ReadyPart::new(&loaded.mesh, scale, how.spacing, how.crease, job).map_err(|e| {
         Fail::Input(format!(
             "{}: the shells overlap, and their union failed ({e}). Unite them with \
              `sculptd boolean union` and measure the result.",
             path.display()
         ))
     })?;
-    if united.is_some() {
+    if part.united {
         warnings.push("the shells overlap: measured on their union".into());
     }
-    let solid = united.as_ref().unwrap_or(&loaded.mesh);
-    let mut mesh = CentredMesh::new(solid, how.unit.scale());
-    if united.is_some() {
-        mesh.counts = CentredMesh::new(&loaded.mesh, how.unit.scale()).counts;
-    }
-    let walls = add_places(&mut mesh.mesh, how.spacing, how.crease);
-    Ok((Part { mesh, walls }, warnings))
+    Ok((part, warnings))
 }
 
 /// Three numbers with commas between.
@@ -354,7 +325,7 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
         return Err(Fail::Input(format!("{}: no surface there to measure at", path.display())));
     };
     if let Some(out) = &args.png {
-        let png = drawn(&part.mesh, &found).png();
+        let png = drawn(&part.mesh, &found, args.size).png();
         let png = png.map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
@@ -377,11 +348,12 @@ fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) 
 
 /// The part seen along the surface at a probed place, a little from above, with the rays through
 /// it and a ring around the place.
-fn drawn(mesh: &TriMesh, found: &Probe) -> Picture {
+fn drawn(mesh: &TriMesh, found: &Probe, (width, height): (u32, u32)) -> Picture {
     let (place, normal) = (Vec3::from(found.position), Vec3::from(found.normal));
     let (side, _) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
-    let camera = Camera::from_side(mesh, side + normal * 0.4, 4.0 / 3.0);
-    let mut picture = draw(mesh, None, &camera, 1200, 900);
+    let aspect = width as f32 / height as f32;
+    let camera = Camera::from_side(mesh, side + normal * 0.4, aspect);
+    let mut picture = draw(mesh, None, &camera, width as usize, height as usize);
     // The outlines of the face that is measured from, and of the one that is met.
     let faces = [(Some(found.triangle), [20, 90, 200]), (found.opposite, [230, 120, 0])];
     for (face, colour) in faces {
@@ -437,13 +409,15 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     }
     if let Some(out) = &args.png {
         let colours = checked.thickness.colours(checked.thickness.scale());
-        let camera = Camera::whole(&part.mesh, 4.0 / 3.0);
-        let mut picture = draw(&part.mesh, Some(&colours), &camera, 1200, 900);
+        let (width, height) = args.size;
+        let camera = Camera::whole(&part.mesh, width as f32 / height as f32);
+        let (width, height) = (width as usize, height as usize);
+        let mut picture = draw(&part.mesh, Some(&colours), &camera, width, height);
         let (low, high) = checked.thickness.scale();
         if !args.parts {
             picture.legend(low, high, |v| colour(v, low, high));
         }
-        found.draw(&part.mesh, part.centre, &mut picture);
+        found.draw(&part, &camera, &mut picture);
         let png = picture.png().map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
         write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
     }
@@ -479,18 +453,18 @@ fn one(
     limits: ThicknessLimits,
     job: &Job,
 ) -> Result<(CentredMesh, CheckedPart), Fail> {
-    let (Part { mesh: part, walls }, notes) = load(path, &args.how, job)?;
+    let (part, notes) = load(path, &args.how, job)?;
     let clock = Clock::monotonic();
     let seconds = || clock.now_us() as f64 * 1e-6;
     let mut settings = args.how.settings();
     if args.ply.is_some() || args.parts {
         settings.at = MeasuredPlaces::VerticesAndFaces;
     }
-    let mut checked =
-        check(&path.display().to_string(), &part, walls.as_ref(), &settings, limits, job, seconds)
-            .map_err(|e| Fail::Usage(e.to_string()))?;
+    let mut checked = part
+        .judge(&path.display().to_string(), &settings, limits, job, seconds)
+        .map_err(|e| Fail::Usage(e.to_string()))?;
     checked.answer.warnings.splice(0..0, notes);
-    Ok((part, checked))
+    Ok((part.mesh, checked))
 }
 
 /// The report of a checked part to `out`.

@@ -97,15 +97,14 @@ impl Structure {
     }
 
     /// Draws the part with a colour for each of its parts, and the lines over it.
-    pub(super) fn draw(&self, mesh: &TriMesh, centre: DVec3, picture: &mut Picture) {
-        let camera = Camera::whole(mesh, 4.0 / 3.0);
+    pub(super) fn draw(&self, part: &CentredMesh, camera: &Camera, picture: &mut Picture) {
         if let Some(found) = &self.partition {
-            *picture = in_parts(mesh, found, &camera, [picture.width, picture.height]);
+            *picture = in_parts(&part.mesh, found, camera, [picture.width, picture.height]);
         }
         let Some(MedialCurve { nodes, branches }) = &self.skeleton else { return };
         let at = |n: u32| {
-            let place = DVec3::from(nodes[n as usize].position) - centre;
-            picture.place(&camera, place.as_vec3())
+            let place = DVec3::from(nodes[n as usize].position) - part.centre;
+            picture.place(camera, place.as_vec3())
         };
         let lines: Vec<_> = branches
             .iter()

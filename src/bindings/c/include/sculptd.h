@@ -7,13 +7,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The C interface of sculptd: meshes, Booleans, wall thickness, and decoding of pen tablets.
+// The C interface of sculptd: meshes and their files, Booleans, sections, wall thickness and its
+// verdict, and decoding of pen tablets.
 //
 // Every function that can fail returns a SculptdStatus; SCULPTD_STATUS_OK is 0. After a failure
-// sculptd_error_message() says in one sentence what was expected and where. What a function hands
-// out as `SculptdMesh **` or `SculptdTablet **` belongs to the caller, who frees it. Objects may be
-// used from any thread, a mesh from several at once, a tablet from one at a time. No function
-// unwinds into C: a defect of the library comes out as SCULPTD_STATUS_DEFECT.
+// sculptd_error_message() says in one sentence what was expected and where. An object that a
+// function hands out through a pointer to a pointer belongs to the caller, who frees it with the
+// function of its type. Objects may be used from any thread, a tablet from one at a time, all others
+// from several at once. No function unwinds into C: a defect of the library comes out as
+// SCULPTD_STATUS_DEFECT.
 
 // The outcome of a call.
 typedef enum SculptdStatus {
@@ -32,6 +34,20 @@ typedef enum SculptdStatus {
     // A defect of this library.
     SCULPTD_STATUS_DEFECT = 6,
 } SculptdStatus;
+
+// The verdict of limits on a part.
+typedef enum SculptdVerdict {
+    // No limit was given, or nothing could be measured.
+    SCULPTD_VERDICT_UNJUDGED = 0,
+    // Every wall is within the limits.
+    SCULPTD_VERDICT_PASS = 1,
+    // A wall is beyond the warning limit.
+    SCULPTD_VERDICT_WARN = 2,
+    // A wall fails.
+    SCULPTD_VERDICT_FAIL = 3,
+    // The limit lies between the bounds of the least wall.
+    SCULPTD_VERDICT_UNDECIDED = 4,
+} SculptdVerdict;
 
 // The tool that touches or hovers.
 typedef enum SculptdTool {
@@ -57,12 +73,115 @@ typedef enum SculptdOperation {
     SCULPTD_OPERATION_REVERSE_DIFFERENCE = 3,
 } SculptdOperation;
 
+// Walls judged against limits. It never changes.
+typedef struct SculptdJudgement SculptdJudgement;
+
 // A surface of polygons in double precision, lengths in the unit of its file (mm as a rule). It
 // never changes.
 typedef struct SculptdMesh SculptdMesh;
 
+// The sections of a mesh by parallel planes. It never changes.
+typedef struct SculptdSections SculptdSections;
+
+// Sentences for people, one fact each. It never changes.
+typedef struct SculptdSentences SculptdSentences;
+
 // A pen tablet of a known model, and the state of its pen. One thread uses it at a time.
 typedef struct SculptdTablet SculptdTablet;
+
+// Limits of wall thickness, mm. 0 sets no limit, and keeps the one of the preset.
+typedef struct SculptdLimits {
+    // A thinner wall fails.
+    float fail_below;
+    // A thinner wall asks for a second look.
+    float warn_below;
+    // A thicker wall fails.
+    float fail_above;
+    // A larger ratio between neighbouring walls asks for a second look.
+    float neighbour_ratio;
+} SculptdLimits;
+
+// A verdict with the figures behind it.
+typedef struct SculptdJudgementFacts {
+    // The verdict.
+    enum SculptdVerdict verdict;
+    // True if the bounds of the least wall are proven over the whole surface.
+    bool certified;
+    // True if shells of the part overlapped: their union was measured.
+    bool united;
+    // No wall is thinner, mm; NaN where no place has a wall.
+    double least_lower;
+    // Some wall is no thicker, mm; NaN where no place has a wall.
+    double least_upper;
+    // The place of the least wall; NaN where there is none.
+    double least_position[3];
+    // The share of the area below the failing limit (or the warning one), 0 to 100; NaN without
+    // such a limit.
+    double below_percent;
+    // The share of the area above the upper limit, 0 to 100; NaN without such a limit.
+    double above_percent;
+    // The limits that the part was compared with; 0 where there was none.
+    struct SculptdLimits limits;
+} SculptdJudgementFacts;
+
+// A region of thin wall.
+typedef struct SculptdThinPlace {
+    // Of its thinnest place.
+    double position[3];
+    // In mm2.
+    double area;
+    // At its thinnest place, mm.
+    float thickness;
+} SculptdThinPlace;
+
+// The contents of a mesh, which a format may keep or drop.
+typedef struct SculptdMeshContents {
+    // The number of vertices.
+    size_t vertices;
+    // The number of faces.
+    size_t faces;
+    // The number of corners of the largest face: 3 in a mesh of triangles, 0 without faces.
+    size_t most_corners;
+    // The number of groups of faces; 0 where faces have no groups.
+    size_t groups;
+    // True if vertices have colours.
+    bool colours;
+    // True if groups name materials.
+    bool materials;
+    // True if corners have texture coordinates.
+    bool texture_coordinates;
+} SculptdMeshContents;
+
+// Facts of one section.
+typedef struct SculptdSectionFacts {
+    // In square units. Parts that overlap count once each; open contours count as if a straight
+    // line closed them.
+    double area;
+    // The length of all contours, holes included, in the mesh's unit.
+    double perimeter;
+    // The length of lines along which contours run out and back, both directions counted: doubled
+    // faces, and ridges in the plane. It is not part of the perimeter.
+    double folded;
+    // The centre of the area; NaN where there is none.
+    double centroid[3];
+    // The number of contours, holes included.
+    size_t contours;
+    // The number of contours with two ends: the mesh is open there.
+    size_t open;
+} SculptdSectionFacts;
+
+// One contour of a section.
+typedef struct SculptdContour {
+    // x, y, z of each point. They belong to the sections and live as long as they. The solid is to
+    // the left, seen against the normal.
+    const double *points;
+    // The number of points. A closed contour names its first point again at the end.
+    size_t count;
+    // In square units, below 0 for a hole.
+    double area;
+    // False where the mesh is open: the contour has two ends.
+    bool closed;
+} SculptdContour;
 
 // Facts of a Boolean's result.
 typedef struct SculptdBooleanFacts {
@@ -129,7 +248,56 @@ const char *sculptd_error_message(void);
 // The library's version, e.g. "0.1.0".
 const char *sculptd_version(void);
 
+// Judges the walls of a part in millimetres by one ray along each normal, as `sculptd thickness`
+// does. `preset`: a process or a material ("fdm", "sla", "sls", "abs", "pc", "pp", "pa", "pom") or
+// null. `limits` replace those of the preset, or are null.
+//
+// # Safety
+// `mesh` came from this library and was not freed; `preset` is null or ends with a zero; `limits`
+// is null or may be read; `judgement` points to a pointer.
+enum SculptdStatus sculptd_judge(const struct SculptdMesh *mesh,
+                                 const char *preset,
+                                 const struct SculptdLimits *limits,
+                                 struct SculptdJudgement **judgement);
+
+// Writes the verdict and the figures behind it.
+//
+// # Safety
+// `judgement` came from this library and was not freed; `facts` may be written.
+enum SculptdStatus sculptd_judgement_facts(const struct SculptdJudgement *judgement,
+                                           struct SculptdJudgementFacts *facts);
+
+// Returns the conclusion in one sentence, which lives as long as the judgement; null for null.
+//
+// # Safety
+// `judgement` is null or came from this library and was not freed.
+const char *sculptd_judgement_statement(const struct SculptdJudgement *judgement);
+
+// Returns at most 10 regions below the limit, the thinnest first, and in `count` their number.
+// Without a limit they are the thinnest hundredth of the area. They live as long as the judgement.
+// Null where there are none, and for null.
+//
+// # Safety
+// `judgement` is null or came from this library and was not freed; `count` is null or may be
+// written.
+const struct SculptdThinPlace *sculptd_judgement_worst(const struct SculptdJudgement *judgement,
+                                                       size_t *count);
+
+// Makes a list of the faults of the mesh that the measurement met, one sentence each.
+//
+// # Safety
+// `judgement` came from this library and was not freed; `sentences` points to a pointer.
+enum SculptdStatus sculptd_judgement_warnings(const struct SculptdJudgement *judgement,
+                                              struct SculptdSentences **sentences);
+
+// Frees a judgement; null is good.
+//
+// # Safety
+// `judgement` is null or came from this library, and is not used any more.
+void sculptd_judgement_free(struct SculptdJudgement *judgement);
+
 // Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
+// sculptd_mesh_unread() lists the parts of the file that the mesh does not have.
 //
 // # Safety
 // `file` is a path that ends with a zero; `mesh` points to a pointer.
@@ -150,12 +318,44 @@ enum SculptdStatus sculptd_mesh_new(const double *vertices,
                                     size_t face_count,
                                     struct SculptdMesh **mesh);
 
-// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf. The file
-// is written beside and renamed.
+// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .gltf or .3mf.
+// The file appears whole or not at all. sculptd_mesh_unwritten() lists what it will not hold.
 //
 // # Safety
 // `mesh` came from this library and was not freed; `file` is a path that ends with a zero.
 enum SculptdStatus sculptd_mesh_write(const struct SculptdMesh *mesh, const char *file);
+
+// Returns the format that the mesh was read from, e.g. "STL (binary)"; it lives as long as the
+// mesh. Null for null and for a mesh that comes from no file.
+//
+// # Safety
+// `mesh` is null or came from this library and was not freed.
+const char *sculptd_mesh_format(const struct SculptdMesh *mesh);
+
+// Writes the contents of the mesh.
+//
+// # Safety
+// `mesh` came from this library and was not freed; `contents` may be written.
+enum SculptdStatus sculptd_mesh_contents(const struct SculptdMesh *mesh,
+                                         struct SculptdMeshContents *contents);
+
+// Makes a list of the parts of its file that the mesh does not have, or that were guessed, one
+// sentence each. It is empty for a mesh that comes from no file.
+//
+// # Safety
+// `mesh` came from this library and was not freed; `sentences` points to a pointer.
+enum SculptdStatus sculptd_mesh_unread(const struct SculptdMesh *mesh,
+                                       struct SculptdSentences **sentences);
+
+// Makes a list of the parts of the mesh that a file of this name will not hold, or will hold
+// otherwise, one sentence each. Nothing is written; the ending of the name decides.
+//
+// # Safety
+// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to
+// a pointer.
+enum SculptdStatus sculptd_mesh_unwritten(const struct SculptdMesh *mesh,
+                                          const char *file,
+                                          struct SculptdSentences **sentences);
 
 // The coordinates x, y, z of each vertex, and in `count` the number of vertices. They belong to
 // the mesh and live as long as it. Null for a null mesh or one without vertices.
@@ -183,6 +383,67 @@ const uint32_t *sculptd_mesh_face_starts(const struct SculptdMesh *mesh, size_t 
 // # Safety
 // `mesh` is null or came from this library, and is not used any more.
 void sculptd_mesh_free(struct SculptdMesh *mesh);
+
+// Cuts a mesh by the planes `normal . p = offset`, one for each of `count` offsets. A plane
+// through a flat face gives the section just below the face. A closed mesh gives closed contours
+// alone; an open mesh gives what it has, with open contours marked.
+//
+// # Safety
+// `mesh` came from this library and was not freed; `normal` has 3 numbers and `offsets` has
+// `count`; `sections` points to a pointer.
+enum SculptdStatus sculptd_sections(const struct SculptdMesh *mesh,
+                                    const double *normal,
+                                    const double *offsets,
+                                    size_t count,
+                                    struct SculptdSections **sections);
+
+// Returns the number of sections, one for each offset; 0 for null.
+//
+// # Safety
+// `sections` is null or came from this library and was not freed.
+size_t sculptd_sections_count(const struct SculptdSections *sections);
+
+// Writes the facts of one section.
+//
+// # Safety
+// `sections` came from this library and was not freed; `facts` may be written.
+enum SculptdStatus sculptd_section_facts(const struct SculptdSections *sections,
+                                         size_t section,
+                                         struct SculptdSectionFacts *facts);
+
+// Writes one contour of one section; open contours come first.
+//
+// # Safety
+// `sections` came from this library and was not freed; `contour` may be written.
+enum SculptdStatus sculptd_section_contour(const struct SculptdSections *sections,
+                                           size_t section,
+                                           size_t index,
+                                           struct SculptdContour *contour);
+
+// Frees sections; null is good.
+//
+// # Safety
+// `sections` is null or came from this library, and is not used any more.
+void sculptd_sections_free(struct SculptdSections *sections);
+
+// Returns the number of sentences; 0 for null.
+//
+// # Safety
+// `sentences` is null or came from this library and was not freed.
+size_t sculptd_sentences_count(const struct SculptdSentences *sentences);
+
+// Returns a sentence, which lives as long as the list; null beyond the last one, and for a null
+// list.
+//
+// # Safety
+// As sculptd_sentences_count().
+const char *sculptd_sentences_get(const struct SculptdSentences *sentences, size_t index);
+
+// Frees a list of sentences; null is good.
+//
+// # Safety
+// `sentences` is null or came from this library, and is not used any more.
+void sculptd_sentences_free(struct SculptdSentences *sentences);
 
 // One Boolean of two closed solids. `operation` is a SculptdOperation. `tolerance`: the length
 // within which places are one; negative takes what the coordinates can resolve. `facts` may be

@@ -1,25 +1,59 @@
 //! Meshes across the boundary.
 
-use std::ffi::c_char;
+use std::collections::BTreeSet;
+use std::ffi::{CString, c_char};
 
 use glam::DVec3;
 use sculptd_geometry::PolyMesh;
-use sculptd_geometry::io::{read_mesh, write_mesh};
+use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
 use sculptd_geometry::job::Job;
 
 use crate::boundary::{
-    Failure, SculptdStatus, guarded, hand_out, optional, optional_mut, path, reference, slice,
-    take_back,
+    Failure, SculptdStatus, exclusive, guarded, hand_out, optional, optional_mut, path, reference,
+    slice, take_back,
 };
+use crate::sentences::SculptdSentences;
 
 /// A surface of polygons in double precision, lengths in the unit of its file (mm as a rule). It
 /// never changes.
 #[derive(Debug)]
 pub struct SculptdMesh {
     pub(crate) poly: PolyMesh,
+    /// The name of the format that it was read from.
+    format: Option<CString>,
+    /// The parts of the file that it does not have, one sentence each.
+    unread: Vec<String>,
+}
+
+impl SculptdMesh {
+    /// A mesh that comes from no file.
+    pub(crate) fn computed(poly: PolyMesh) -> SculptdMesh {
+        SculptdMesh { poly, format: None, unread: Vec::new() }
+    }
+}
+
+/// The contents of a mesh, which a format may keep or drop.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct SculptdMeshContents {
+    /// The number of vertices.
+    pub vertices: usize,
+    /// The number of faces.
+    pub faces: usize,
+    /// The number of corners of the largest face: 3 in a mesh of triangles, 0 without faces.
+    pub most_corners: usize,
+    /// The number of groups of faces; 0 where faces have no groups.
+    pub groups: usize,
+    /// True if vertices have colours.
+    pub colours: bool,
+    /// True if groups name materials.
+    pub materials: bool,
+    /// True if corners have texture coordinates.
+    pub texture_coordinates: bool,
 }
 
 /// Reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF; the content decides the format.
+/// sculptd_mesh_unread() lists the parts of the file that the mesh does not have.
 ///
 /// # Safety
 /// `file` is a path that ends with a zero; `mesh` points to a pointer.
@@ -31,9 +65,11 @@ pub unsafe extern "C" fn sculptd_mesh_read(
     guarded(|| {
         // SAFETY: as this function's caller promises.
         let file = unsafe { path(file) }?;
-        let poly = read_mesh(&file, &Job::default())?.mesh;
+        let loaded = read_mesh(&file, &Job::default())?;
+        let format = CString::new(loaded.format.name()).ok();
+        let read = SculptdMesh { poly: loaded.mesh, format, unread: loaded.warnings };
         // SAFETY: as this function's caller promises.
-        unsafe { hand_out(mesh, SculptdMesh { poly }) }
+        unsafe { hand_out(mesh, read) }
     })
 }
 
@@ -85,12 +121,12 @@ pub unsafe extern "C" fn sculptd_mesh_new(
         }
         let poly = PolyMesh { positions, face_starts: starts, corners, ..PolyMesh::new() };
         // SAFETY: as this function's caller promises.
-        unsafe { hand_out(mesh, SculptdMesh { poly }) }
+        unsafe { hand_out(mesh, SculptdMesh::computed(poly)) }
     })
 }
 
-/// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf. The file
-/// is written beside and renamed.
+/// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .gltf or .3mf.
+/// The file appears whole or not at all. sculptd_mesh_unwritten() lists what it will not hold.
 ///
 /// # Safety
 /// `mesh` came from this library and was not freed; `file` is a path that ends with a zero.
@@ -103,6 +139,84 @@ pub unsafe extern "C" fn sculptd_mesh_write(
         // SAFETY: as this function's caller promises.
         let (mesh, file) = unsafe { (reference(mesh, "mesh")?, path(file)?) };
         Ok(write_mesh(&file, &mesh.poly)?)
+    })
+}
+
+/// Returns the format that the mesh was read from, e.g. "STL (binary)"; it lives as long as the
+/// mesh. Null for null and for a mesh that comes from no file.
+///
+/// # Safety
+/// `mesh` is null or came from this library and was not freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sculptd_mesh_format(mesh: *const SculptdMesh) -> *const c_char {
+    // SAFETY: as this function's caller promises.
+    let format = unsafe { optional(mesh) }.and_then(|m| m.format.as_ref());
+    format.map_or(std::ptr::null(), |f| f.as_ptr())
+}
+
+/// Writes the contents of the mesh.
+///
+/// # Safety
+/// `mesh` came from this library and was not freed; `contents` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sculptd_mesh_contents(
+    mesh: *const SculptdMesh,
+    contents: *mut SculptdMeshContents,
+) -> SculptdStatus {
+    guarded(|| {
+        // SAFETY: as this function's caller promises.
+        let (poly, contents) =
+            unsafe { (&reference(mesh, "mesh")?.poly, exclusive(contents, "contents")?) };
+        let groups = poly.groups.as_ref();
+        *contents = SculptdMeshContents {
+            vertices: poly.positions.len(),
+            faces: poly.face_count(),
+            most_corners: poly.faces().map(<[u32]>::len).max().unwrap_or(0),
+            groups: groups.map_or(0, |g| g.iter().collect::<BTreeSet<_>>().len()),
+            colours: poly.colours.is_some(),
+            materials: poly.has_materials(),
+            texture_coordinates: poly.uvs().is_some(),
+        };
+        Ok(())
+    })
+}
+
+/// Makes a list of the parts of its file that the mesh does not have, or that were guessed, one
+/// sentence each. It is empty for a mesh that comes from no file.
+///
+/// # Safety
+/// `mesh` came from this library and was not freed; `sentences` points to a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sculptd_mesh_unread(
+    mesh: *const SculptdMesh,
+    sentences: *mut *mut SculptdSentences,
+) -> SculptdStatus {
+    guarded(|| {
+        // SAFETY: as this function's caller promises.
+        let unread = unsafe { &reference(mesh, "mesh")?.unread };
+        // SAFETY: as this function's caller promises.
+        unsafe { hand_out(sentences, SculptdSentences::new(unread)) }
+    })
+}
+
+/// Makes a list of the parts of the mesh that a file of this name will not hold, or will hold
+/// otherwise, one sentence each. Nothing is written; the ending of the name decides.
+///
+/// # Safety
+/// `mesh` came from this library and was not freed; `file` ends with a zero; `sentences` points to
+/// a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sculptd_mesh_unwritten(
+    mesh: *const SculptdMesh,
+    file: *const c_char,
+    sentences: *mut *mut SculptdSentences,
+) -> SculptdStatus {
+    guarded(|| {
+        // SAFETY: as this function's caller promises.
+        let (mesh, file) = unsafe { (reference(mesh, "mesh")?, path(file)?) };
+        let unwritten = left_out(writable_format(&file)?, &mesh.poly);
+        // SAFETY: as this function's caller promises.
+        unsafe { hand_out(sentences, SculptdSentences::new(&unwritten)) }
     })
 }
 
@@ -154,9 +268,11 @@ pub unsafe extern "C" fn sculptd_mesh_face_starts(
     unsafe { lend(starts, starts.len().saturating_sub(1), count) }
 }
 
+/// Lends an array: where it starts, and in `count` the number `told`; null for an empty one.
+///
 /// # Safety
 /// `count` is null or may be written.
-unsafe fn lend<T>(all: &[T], told: usize, count: *mut usize) -> *const T {
+pub(crate) unsafe fn lend<T>(all: &[T], told: usize, count: *mut usize) -> *const T {
     // SAFETY: as the caller promises.
     if let Some(count) = unsafe { optional_mut(count) } {
         *count = told;

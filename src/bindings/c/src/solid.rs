@@ -86,7 +86,7 @@ pub unsafe extern "C" fn sculptd_boolean(
             };
         }
         // SAFETY: as this function's caller promises.
-        unsafe { hand_out(result, SculptdMesh { poly: solid.mesh }) }
+        unsafe { hand_out(result, SculptdMesh::computed(solid.mesh)) }
     })
 }
 

@@ -366,9 +366,10 @@ fn line(py: Python<'_>, points: Vec<glam::DVec3>) -> PyResult<Bound<'_, PyAny>> 
 }
 
 /// Sections of a mesh by the planes `normal . p = offset` with their sizes: for each offset a dict
-/// of `area`, `perimeter`, `centroid` (None without area), `contours` and `open`, the contours that
-/// the mesh leaves open. Contours are as in `slices`: outer ones run counter-clockwise, seen
-/// against the normal, and holes clockwise.
+/// of `area`, `perimeter`, `folded`, `centroid` (None without area), `contours` and `open`, the
+/// contours that the mesh leaves open. `folded` is the length of lines that run out and back, such
+/// as doubled faces, and not part of the perimeter. Contours are as in `slices`: outer ones run
+/// counter-clockwise, seen against the normal, and holes clockwise.
 #[pyfunction]
 #[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
 fn sections<'py>(
@@ -382,6 +383,7 @@ fn sections<'py>(
         let out = PyDict::new(py);
         out.set_item("area", s.area)?;
         out.set_item("perimeter", s.perimeter)?;
+        out.set_item("folded", s.folded)?;
         out.set_item("centroid", s.centroid.map(|c| c.to_array()))?;
         let (closed, open): (Vec<_>, Vec<_>) = s.contours.into_iter().partition(|c| c.closed);
         for (name, contours) in [("contours", closed), ("open", open)] {

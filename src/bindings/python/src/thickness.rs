@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use sculptd_geometry::CentredMesh;
-use sculptd_geometry::thickness::check::{ThicknessLimits, check};
+use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
 use sculptd_geometry::thickness::partition::PartitionSettings;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
@@ -166,15 +166,10 @@ impl Thickness {
         fail_above: Option<f32>,
         progress: Progress,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let own = preset.map(wall_limits).transpose()?.unwrap_or_default();
-        let limits = ThicknessLimits {
-            fail_below: fail_below.or(own.fail_below),
-            warn_below: warn_below.or(own.warn_below),
-            fail_above: fail_above.or(own.fail_above),
-            ..own
-        };
-        let all = [limits.fail_below, limits.warn_below, limits.fail_above];
-        if all.iter().flatten().any(|l| !(*l > 0.0 && l.is_finite())) {
+        let limits = preset.map(wall_limits).transpose()?.unwrap_or_default();
+        let given = ThicknessLimits { fail_below, warn_below, fail_above, ..Default::default() };
+        let limits = limits.replaced_by(given);
+        if !limits.is_valid() {
             return Err(PyValueError::new_err("limits: expected numbers above 0"));
         }
         let (part, settings) = (self.part.clone(), self.measured.settings);
@@ -182,7 +177,9 @@ impl Thickness {
         let began = std::time::Instant::now();
         let seconds = move || began.elapsed().as_secs_f64();
         let found = watched(py, &progress, move |job| {
-            check("", &part, None, &settings, limits, job, seconds)
+            let mut part = (*part).clone();
+            let walls = add_places(&mut part.mesh, None, settings.crease);
+            check("", &part, walls.as_ref(), &settings, limits, job, seconds)
         })?
         .map_err(|e| errors::thickness(&e))?;
         plain(py, &found.answer)

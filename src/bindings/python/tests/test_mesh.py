@@ -113,6 +113,15 @@ class Sections(unittest.TestCase):
         centre = (np.array([20.0, 15.0]) * 1200 - np.array([15.0, 15.0]) * 100) / 1100
         np.testing.assert_allclose(half["centroid"][:2], centre)
 
+    def test_a_doubled_face_is_measured_apart_from_the_perimeter(self):
+        box = sculptd.Mesh.box([0, 0, 0], [4, 4, 4]).triangulated()
+        low, high = (int(np.flatnonzero((box.vertices == p).all(1))[0]) for p in [(4, 4, 0), (4, 4, 4)])
+        vertices = np.vstack([box.vertices, [[6, 6, 1]]])
+        faces = np.vstack([box.faces, [[low, high, len(box.vertices)], [high, low, len(box.vertices)]]])
+        (cut,) = sculptd.sections(sculptd.Mesh(vertices, faces), [0, 0, 1], [2.0])
+        self.assertAlmostEqual(cut["perimeter"], 16.0)
+        self.assertAlmostEqual(cut["folded"], 2 * 4 / 3 * 2**0.5)
+
     def test_an_open_mesh_says_where_it_is_open(self):
         box = sculptd.Mesh.box([0, 0, 0], [2, 2, 2])
         front = [f for f in box.faces if not np.all(box.vertices[f][:, 0] == 2.0)]

@@ -274,6 +274,7 @@ def union(
 class _Section(TypedDict):
     area: float
     perimeter: float
+    folded: float
     centroid: list[float] | None
     contours: list[NDArray[np.float64]]
     open: list[NDArray[np.float64]]
