@@ -287,7 +287,7 @@ class FaceSetShowParams(TypedDict):
     set: NotRequired[int | None]
 
 # Source of a face set.
-FaceSetSource: TypeAlias = Literal['mask', 'visible', 'loose', 'normals', 'crease']
+FaceSetSource: TypeAlias = Literal['mask', 'visible', 'loose', 'normals', 'crease', 'walls']
 
 # Reply of sets.list.
 class FaceSetsReply(TypedDict):
