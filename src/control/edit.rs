@@ -344,8 +344,8 @@ pub struct ThicknessReply {
     pub min: Option<f32>,
     /// The thickest.
     pub max: Option<f32>,
-    /// The mean over the area.
-    pub mean: f64,
+    /// The mean over the area; `null` where no place has a wall.
+    pub mean: Option<f32>,
     /// Half of the area is thinner.
     pub median: Option<f32>,
     /// No wall is thinner; `null` where no place has one.

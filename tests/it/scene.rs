@@ -4,6 +4,7 @@ mod arranged;
 mod face_sets;
 mod layers;
 mod local_remesh;
+mod wall_figures;
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};

@@ -46,7 +46,7 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
         valid,
         min: s.min,
         max: s.max,
-        mean: f64::from(s.mean.unwrap_or(0.0)),
+        mean: s.mean,
         median: s.median,
         lower: answer.least.map(|l| l.lower),
         upper: answer.least.map(|l| l.upper),

@@ -132,12 +132,18 @@ fn histogram(
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr!("walls-histogram")));
     let span = (found.high - found.min).max(1e-12);
     let place = |value: f32| rect.left() + (value - found.min) / span * rect.width();
-    // The mark that is nearest where the drag begins; of those beside each other the limit.
+    // The mark that is nearest where the drag begins; of those beside each other the limit. A limit
+    // beyond the histogram is not drawn and not dragged; the ends of the scale wait at its edges.
     let key = response.id.with("mark");
     if response.drag_started()
         && let Some(at) = response.interact_pointer_pos()
     {
-        let away = |i: &usize| (place(marks[*i]).clamp(rect.left(), rect.right()) - at.x).abs();
+        let away = |i: &usize| {
+            let x = place(marks[*i]);
+            let unseen = *i == 0 && !rect.x_range().contains(x);
+            let x = x.clamp(rect.left(), rect.right());
+            if unseen { f32::INFINITY } else { (x - at.x).abs() }
+        };
         let nearest = (0..marks.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
         ui.data_mut(|d| d.insert_temp(key, nearest.unwrap_or_default()));
     }

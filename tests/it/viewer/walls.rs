@@ -77,6 +77,13 @@ fn the_ends_of_the_scale_and_the_limit_are_dragged_in_the_histogram() {
     h.state_mut().ui_state.walls.limit = 1.4;
     h.run_steps(2);
     let near = |a: f32, b: f32| (a - b).abs() < 0.05;
+    // A limit beyond the histogram is not seen, and not what is dragged at its edge.
+    h.state_mut().ui_state.walls.limit = 50.0;
+    drag(&mut h, 0.99, 0.8);
+    let walls = &mut h.state_mut().ui_state.walls;
+    assert!(walls.limit == 50.0 && walls.scale.take().is_some_and(|s| near(s.1, 2.0)));
+    walls.limit = 1.4;
+    h.run_steps(2);
     // The limit stands in the middle.
     drag(&mut h, 0.5, 0.3);
     let walls = &h.state().ui_state.walls;

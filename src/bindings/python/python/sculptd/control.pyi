@@ -1116,8 +1116,8 @@ class ThicknessReply(TypedDict):
     lower: NotRequired[float | None]
     # The thickest.
     max: NotRequired[float | None]
-    # The mean over the area.
-    mean: float
+    # The mean over the area; null where no place has a wall.
+    mean: NotRequired[float | None]
     # Vertices that were measured this time: none where nothing changed since the last call.
     measured: int
     # Half of the area is thinner.
