@@ -116,6 +116,16 @@ def grid(side):
     return [("+", c) for c in cubes] + [("-", c) for c in cubes[1:]]
 
 
+def plate(count, together):
+    """A plate and a pattern of drills, one by one or as one mesh."""
+    v, t = capsule(3.0, 20.0, 32, 1)
+    drills = [(v + [5 + 10 * (i % 10), 5 + 10 * (i // 10), 5], t) for i in range(count)]
+    if together:
+        drills = [(np.concatenate([d[0] for d in drills]), np.concatenate([t + i * len(v) for i in range(count)]))]
+    corners, faces = cube(np.zeros(3), 1.0)
+    return [("+", (corners * [100, 10 * (count // 10), 10], faces))] + [("-", d) for d in drills]
+
+
 CASES = {
     "ball 10k - 50 small capsules": lambda: capsules(ball(1.0, 10_000), 50, 0.04, 0.2, 24),
     "ball 100k - 50 small capsules": lambda: capsules(ball(1.0, 100_000), 50, 0.04, 0.2, 24),
@@ -124,6 +134,8 @@ CASES = {
     "grid of 4 cubes": lambda: grid(4),
     "grid of 6 cubes": lambda: grid(6),
     "grid of 10 cubes": lambda: grid(10),
+    "plate - 50 drills": lambda: plate(50, False),
+    "plate - 50 drills in one mesh": lambda: plate(50, True),
     "dome, 100 tools": lambda: dome(100),
     "dome, 1000 tools": lambda: dome(1000),
 }

@@ -373,17 +373,26 @@ impl Intersections {
         self.edge_ids.get(&(a.min(b), a.max(b))).copied()
     }
 
-    fn closure(&self, side: usize, id: u32, t: [u32; 3], out: &mut Vec<u32>) {
-        out.clear();
-        out.extend(t);
-        for k in 0..3 {
-            if let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) {
-                out.extend(&self.edges[e as usize].inner);
-            }
-        }
-        out.extend(self.marks[side].get(&id).into_iter().flat_map(|m| &m.inner));
+    /// The points of a triangle: its corners, on its edges, and inside; some more than once.
+    fn closure(&self, side: usize, id: u32, t: [u32; 3]) -> impl Iterator<Item = u32> {
+        let edges = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| self.edge_of(a, b));
+        let on = edges.into_iter().flatten().flat_map(|e| &self.edges[e as usize].inner);
+        let inside = self.marks[side].get(&id).into_iter().flat_map(|m| &m.inner);
+        t.into_iter().chain(on.chain(inside).copied())
+    }
+
+    /// The points that two triangles share, in order. A face that many others cut has many points:
+    /// only the points of the triangle with fewer are sorted.
+    fn common(&self, sides: [usize; 2], ids: [u32; 2], tris: [[u32; 3]; 2]) -> Vec<u32> {
+        let points = |s: usize| self.closure(sides[s], ids[s], tris[s]);
+        let fewer = usize::from(points(1).count() < points(0).count());
+        let mut few: Vec<u32> = points(fewer).collect();
+        few.sort_unstable();
+        let mut out: Vec<u32> =
+            points(1 - fewer).filter(|i| few.binary_search(i).is_ok()).collect();
         out.sort_unstable();
         out.dedup();
+        out
     }
 
     /// Returns true if both points are on the same edge of the triangle.
@@ -405,10 +414,7 @@ impl Intersections {
         tris: [[u32; 3]; 2],
         eps: f64,
     ) {
-        let (mut x, mut y) = (Vec::new(), Vec::new());
-        self.closure(sides[0], ids[0], tris[0], &mut x);
-        self.closure(sides[1], ids[1], tris[1], &mut y);
-        x.retain(|i| y.binary_search(i).is_ok());
+        let mut x = self.common(sides, ids, tris);
         for &i in &x {
             self.shared[i as usize] = true;
         }

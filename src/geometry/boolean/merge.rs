@@ -88,11 +88,15 @@ pub fn joined_rings_where(rings: Vec<Vec<u32>>, accept: impl Fn(&[u32]) -> bool)
         });
         match joined {
             Some((j, r)) => {
-                rings[j] = None;
-                for (a, b) in edges(&own) {
-                    owner.remove(&(a, b));
+                for edge in edges(&own) {
+                    owner.remove(&edge);
                 }
-                owner.retain(|_, o| *o != j);
+                // All that a ring owns is among its edges: the rest of the map stays unread.
+                for edge in edges(&rings[j].take().unwrap_or_default()) {
+                    if owner.get(&edge) == Some(&j) {
+                        owner.remove(&edge);
+                    }
+                }
                 owner.extend(edges(&r).into_iter().map(|e| (e, i)));
                 rings[i] = Some(r);
             }

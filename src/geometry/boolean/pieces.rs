@@ -172,15 +172,6 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
     let mut ring = loops[0].to_vec();
     let mut left: Vec<&[u32]> = loops[1..].to_vec();
     while !left.is_empty() {
-        let mut ways: Vec<(f64, usize, usize, usize)> = Vec::new();
-        for (h, hole) in left.iter().enumerate() {
-            for (i, &p) in ring.iter().enumerate() {
-                for (j, &q) in hole.iter().enumerate() {
-                    ways.push((at[p as usize].distance_squared(at[q as usize]), i, h, j));
-                }
-            }
-        }
-        ways.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
         let crosses = |p: u32, q: u32| {
             std::iter::once(&ring[..]).chain(left.iter().copied()).any(|l| {
                 (0..l.len()).any(|k| {
@@ -202,9 +193,14 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
             let (l, r) = (robust::orient2d(p, v, spot(q)), robust::orient2d(v, x, spot(q)));
             if turn > 0.0 { l > 0.0 && r > 0.0 } else { l > 0.0 || r > 0.0 }
         };
-        let way =
-            ways.iter().find(|w| opens(w.1, left[w.2][w.3]) && !crosses(ring[w.1], left[w.2][w.3]));
-        let &(_, i, h, j) = way.unwrap_or(&ways[0]);
+        let open = |w: &Bridge| {
+            let q = left[w.hole][w.to];
+            opens(w.from, q) && !crosses(ring[w.from], q)
+        };
+        let Some(Bridge { from: i, hole: h, to: j, .. }) = shortest_bridge(&ring, &left, at, open)
+        else {
+            break;
+        };
         let hole = left.remove(h);
         let mut next = ring[..=i].to_vec();
         next.extend(hole[j..].iter().chain(&hole[..=j]));
@@ -214,10 +210,96 @@ fn bridged(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Vec<u32> {
     ring
 }
 
+/// A line from a corner of a ring to a corner of one of several holes, by their places.
+#[derive(Debug, Clone, Copy)]
+struct Bridge {
+    squared: f64,
+    from: usize,
+    hole: usize,
+    to: usize,
+}
+
+/// The shortest bridge that is `open`, or the shortest of all where none is. Looks at the shortest
+/// ones first, a few at a time: to sort all pairs of corners takes longer than all else.
+fn shortest_bridge(
+    ring: &[u32],
+    holes: &[&[u32]],
+    at: &[DVec3],
+    open: impl Fn(&Bridge) -> bool,
+) -> Option<Bridge> {
+    let each = |look: &mut dyn FnMut(Bridge)| {
+        for (hole, corners) in holes.iter().enumerate() {
+            for (from, &p) in ring.iter().enumerate() {
+                for (to, &q) in corners.iter().enumerate() {
+                    let squared = at[p as usize].distance_squared(at[q as usize]);
+                    look(Bridge { squared, from, hole, to });
+                }
+            }
+        }
+    };
+    let (mut first, mut done, mut limit) = (None, f64::NEG_INFINITY, 0.0);
+    loop {
+        let (mut ways, mut next) = (Vec::new(), f64::INFINITY);
+        let mut more = false;
+        each(&mut |w: Bridge| {
+            if w.squared > done && w.squared <= limit {
+                ways.push(w);
+            } else if w.squared > limit {
+                (next, more) = (next.min(w.squared), true);
+            }
+        });
+        ways.sort_by(|a, b| {
+            let places = |w: &Bridge| (w.from, w.hole, w.to);
+            a.squared.total_cmp(&b.squared).then(places(a).cmp(&places(b)))
+        });
+        first = first.or(ways.first().copied());
+        if let Some(w) = ways.into_iter().find(&open) {
+            return Some(w);
+        }
+        if !more {
+            return first;
+        }
+        (done, limit) = (limit, next * 4.0);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::triangulate::area_vector;
+
+    #[test]
+    fn the_shortest_open_bridge_is_that_of_a_sorted_list() {
+        let mut seed = 1u64;
+        let mut dice = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            f64::from((seed >> 40) as u32 % 40)
+        };
+        let at: Vec<DVec3> = (0..60).map(|_| DVec3::new(dice(), dice(), 0.0)).collect();
+        let all: Vec<u32> = (0..60).collect();
+        let (ring, holes) = (&all[..20], [&all[20..30], &all[30..60]]);
+        let mut sorted = Vec::new();
+        for (h, hole) in holes.iter().enumerate() {
+            for (i, &p) in ring.iter().enumerate() {
+                for (j, &q) in hole.iter().enumerate() {
+                    sorted.push((at[p as usize].distance_squared(at[q as usize]), i, h, j));
+                }
+            }
+        }
+        sorted.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
+        for n in [1, 2, 7, 40, 300, 1000] {
+            let open = |w: &Bridge| (w.from * 31 + w.hole * 17 + w.to * 7).is_multiple_of(n);
+            let made = shortest_bridge(ring, &holes, &at, open).expect("a bridge");
+            let is = |w: &&(f64, usize, usize, usize)| {
+                open(&Bridge { squared: w.0, from: w.1, hole: w.2, to: w.3 })
+            };
+            let expected = *sorted.iter().find(is).unwrap_or(&sorted[0]);
+            assert_eq!((made.squared, made.from, made.hole, made.to), expected);
+        }
+        let none = shortest_bridge(ring, &holes, &at, |_| false).expect("a bridge");
+        assert_eq!((none.squared, none.from, none.hole, none.to), sorted[0]);
+        assert!(shortest_bridge(ring, &[&[]], &at, |_| true).is_none());
+    }
 
     #[test]
     fn a_thin_hole_is_left_out_once() {
