@@ -35,12 +35,12 @@ pub struct CutGraph {
     order: Vec<u32>,
     /// Arc `a` and its reverse `a ^ 1`.
     arcs: Vec<Arc>,
-    /// What is left of the pull: above 0 to the source, below 0 to the sink.
+    /// The rest of the pull: above 0 to the source, below 0 to the sink.
     pull: Vec<i64>,
     tree: Vec<Tree>,
     /// The arc from a node to its parent.
     parent: Vec<u32>,
-    /// When a node's distance from its terminal was last known to be right, and that distance.
+    /// The time of the last exact distance of a node from its terminal, and that distance.
     seen: Vec<u32>,
     distance: Vec<u32>,
     active: VecDeque<u32>,
@@ -126,8 +126,8 @@ impl CutGraph {
         }
     }
 
-    /// What can still flow from a node's tree along arc `a` of a node: away from the source, or
-    /// towards the sink.
+    /// Returns true if flow fits into arc `a` of a node of `tree`: away from the source, or towards
+    /// the sink.
     fn open(&self, tree: Tree, a: u32) -> bool {
         let a = if tree == Tree::Source { a } else { a ^ 1 };
         self.arcs[a as usize].left > 0

@@ -45,7 +45,7 @@ pub struct MedialBranch {
     pub mean: f32,
     /// The node with the least thickness.
     pub thinnest: u32,
-    /// Whether each end meets another branch.
+    /// For each end, true if it meets another branch.
     pub joined: [bool; 2],
 }
 
@@ -202,7 +202,7 @@ impl Graph {
                     break;
                 }
             }
-            // What was merged may make its surroundings simpler again.
+            // A merged point may make its surroundings simpler again.
             at = if merged { at.saturating_sub(1).min(near[0]) } else { at + 1 };
         }
     }
@@ -353,7 +353,7 @@ mod tests {
         let expected = 2.0 * std::f64::consts::PI * 20.0;
         assert!((ring.length / expected - 1.0).abs() < 0.03, "{}", ring.length);
         assert!((ring.mean - 6.0).abs() < 0.1, "{}", ring.mean);
-        // Where the distances from both sides meet, a node is the mean of a long arc.
+        // At the place where the distances from both sides meet, a node is the mean of a long arc.
         let off = |n: &MedialNode| {
             let p = DVec3::from(n.position);
             (p.truncate().length() - 20.0).hypot(p.z)

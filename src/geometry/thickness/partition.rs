@@ -2,8 +2,8 @@
 //! 2008, "Consistent mesh partitioning and skeletonisation using the shape diameter function").
 //!
 //! The thickness of the triangles is gathered into a few levels, on a scale of ratios. Between two
-//! neighbouring levels the surface is then divided where that costs least: what lies on the wrong
-//! side pays by its area and distance, and the border pays by its length, less along a concave
+//! neighbouring levels the surface is then divided at the least cost: a triangle on the wrong side
+//! pays by its area and distance, and the border pays by its length, less along a concave
 //! crease. Each division is a minimum cut, so it is exact.
 
 use glam::DVec3;
@@ -32,7 +32,7 @@ const BINS: usize = 512;
 /// The border's price along a concave edge of 90 degrees or more, of that on a flat surface.
 const CONCAVE: f64 = 0.1;
 
-/// How to divide a surface.
+/// The settings of a division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PartitionSettings {
     /// Levels of thickness, 1 to [`MOST_LEVELS`]; `None`: as few as have walls within about 8 % of

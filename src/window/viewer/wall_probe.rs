@@ -24,7 +24,7 @@ pub struct ProbedWall {
 }
 
 /// Returns the wall behind the surface that is seen on a ray, along the normal of the triangle that
-/// is hit; `None` where nothing is hit, or no surface lies behind.
+/// is hit; `None` if nothing is hit, or if there is no surface behind.
 pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
     let to_world = state.transform();
     let own = to_world.inverse().ray(ray);

@@ -84,7 +84,7 @@ fn the_ends_of_the_scale_and_the_limit_are_dragged_in_the_histogram() {
     assert!(walls.limit == 50.0 && walls.scale.take().is_some_and(|s| near(s.1, 2.0)));
     walls.limit = 1.4;
     h.run_steps(2);
-    // The limit stands in the middle.
+    // The limit is in the middle.
     drag(&mut h, 0.5, 0.3);
     let walls = &h.state().ui_state.walls;
     assert!(near(walls.limit, 1.0) && walls.scale.is_none(), "{walls:?}");
