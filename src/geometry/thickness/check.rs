@@ -225,7 +225,10 @@ pub fn check(
         WallQuery { limit: asked.map(f64::from), thinnest: asked.is_none(), grain: part.grain };
     let thickness = measure_at_places(&part.mesh, walls, settings, query, job)?;
     let took = seconds() - began;
-    let summary = thickness.summary();
+    let mut summary = thickness.summary();
+    let in_file = |p: [f32; 3]| part.to_file(p.into()).as_vec3().to_array();
+    summary.thinnest = summary.thinnest.map(in_file);
+    summary.thickest = summary.thickest.map(in_file);
     let sizes = measures(&part.mesh);
     // Without a limit the thinnest hundredth of the area is shown.
     let limit = asked;

@@ -196,6 +196,7 @@ impl Thickness {
         levels: Option<usize>,
         smoothing: f32,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.measured_faces("parts")?;
         let how = PartitionSettings { levels, smoothing };
         let (measured, centre) = (self.measured.clone(), self.part.centre);
         let found = py.detach(move || measured.partition(how));
@@ -212,6 +213,7 @@ impl Thickness {
         if self.measured.settings.method != ThicknessMethod::Sphere {
             return Err(PyValueError::new_err("medial_curve: expected method='sphere'"));
         }
+        self.measured_faces("medial_curve")?;
         let measured = self.measured.clone();
         let found = py.detach(move || measured.medial_curve());
         plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.centre))
@@ -226,6 +228,14 @@ impl Thickness {
 }
 
 impl Thickness {
+    /// Refuses what needs a value of each triangle.
+    fn measured_faces(&self, what: &str) -> PyResult<()> {
+        if self.measured.face_values.len() == self.measured.surface.triangles.len() {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(format!("{what}: measure with thickness(mesh, faces=True)")))
+    }
+
     /// The same measured against a limit, as the command line does.
     fn against(&self, py: Python<'_>, limit: f32) -> PyResult<Arc<thickness::Thickness>> {
         let settings = self.measured.settings;

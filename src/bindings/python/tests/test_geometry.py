@@ -270,6 +270,43 @@ class Questions(unittest.TestCase):
         quads = sculptd.subdivide(Mesh.box((0, 0, 0), (1, 1, 1)), 2, scheme="catmull-clark")
         self.assertEqual(quads.faces.shape, (96, 4))
 
+    def test_places_are_where_the_mesh_has_them(self):
+        part = Mesh.box((100, 200, 300), (140, 230, 320))
+        walls = sculptd.thickness(part)
+        answer = walls.judge("fdm")
+        low, high = np.array(part.bounds)
+        for name in ("thinnest", "thickest"):
+            place = np.array(answer[name])
+            self.assertTrue(((low - 1e-3 <= place) & (place <= high + 1e-3)).all(), (name, place))
+        np.testing.assert_allclose(answer["thinnest"], answer["least"]["position"], atol=1e-3)
+
+    def test_a_part_is_divided_by_its_walls(self):
+        thin = Mesh.box((0, 0, 0), (31, 40, 2))
+        part = thin | Mesh.box((30, 0, 0), (60, 40, 5))
+        fine = sculptd.remesh(part, side=120, sharp=True)
+        with self.assertRaisesRegex(ValueError, "faces=True"):
+            sculptd.thickness(fine).parts()
+        of, answer = sculptd.thickness(fine, faces=True).parts(levels=3)
+        self.assertEqual(len(of), len(fine))
+        large = sorted(round(p["median"], 1) for p in answer["parts"][:2])
+        self.assertEqual(large, [2.0, 5.0])
+        with self.assertRaises(ValueError):
+            sculptd.thickness(fine, faces=True).parts(levels=17)
+
+    def test_a_ring_has_one_closed_line(self):
+        turn, tube = np.mgrid[0:160, 0:32].reshape(2, -1)
+        u, v = 2 * np.pi * turn / 160, 2 * np.pi * tube / 32
+        out = 20 + 3 * np.cos(v)
+        places = np.stack([out * np.cos(u), out * np.sin(u), 3 * np.sin(v)], axis=1)
+        at = lambda i, j: (i % 160) * 32 + j % 32
+        quads = [at(turn, tube), at(turn + 1, tube), at(turn + 1, tube + 1), at(turn, tube + 1)]
+        ring = Mesh(places, np.stack(quads, axis=1))
+        curve = sculptd.thickness(ring, method="sphere", faces=True).medial_curve()
+        (line,) = curve["branches"]
+        self.assertAlmostEqual(line["length"], 2 * np.pi * 20, delta=0.03 * 2 * np.pi * 20)
+        with self.assertRaisesRegex(ValueError, "sphere"):
+            sculptd.thickness(ring, faces=True).medial_curve()
+
     def test_walls_are_judged_as_the_command_does(self):
         plate = Mesh.box((0, 0, 0), (40, 40, 0.7))
         walls = sculptd.thickness(plate)

@@ -157,6 +157,8 @@ def to_pandas(rows: Iterable[Mapping[str, Any] | ThinPlace]) -> "pandas.DataFram
 
     flat: list[dict[str, Any]] = []
     for row in rows:
+        if not isinstance(row, (Mapping, ThinPlace)):
+            raise TypeError("to_pandas: expected rows such as worst(), sections() or findings")
         out: dict[str, Any] = {}
         for name, value in (row._asdict() if isinstance(row, ThinPlace) else row).items():
             if _is_place(value):
