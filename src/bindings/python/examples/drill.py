@@ -12,7 +12,7 @@ folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 sculptd.Mesh.box((0, 0, 0), (40, 30, 20)).write(folder / "part.stl")
 part = sculptd.repair(sculptd.read(folder / "part.stl"))
 
-hole = sculptd.Mesh.cylinder(radius=6, height=60).transformed(offset=(20, 15, -10))
+hole = sculptd.Mesh.cylinder(radius=6, height=60).transformed(offset=(20, 15, 10))
 made = sculptd.boolean(part, hole, "difference")
 print(f"{made.volume:.1f} mm3, {len(made.mesh)} faces, {(made.operand == 1).sum()} from the drill")
 
