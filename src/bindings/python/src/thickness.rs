@@ -199,7 +199,7 @@ impl Thickness {
         self.measured_faces("parts")?;
         let how = PartitionSettings { levels, smoothing };
         let (measured, centre) = (self.measured.clone(), self.part.centre);
-        let found = py.detach(move || measured.partition(how));
+        let found = watched(py, &None, move |_| measured.partition(how))?;
         let found = found.map_err(|e| errors::thickness(&e))?.moved(centre);
         let facts = plain(py, &found)?;
         let of = Arc::new(found.of);
@@ -215,7 +215,7 @@ impl Thickness {
         }
         self.measured_faces("medial_curve")?;
         let measured = self.measured.clone();
-        let found = py.detach(move || measured.medial_curve());
+        let found = watched(py, &None, move |_| measured.medial_curve())?;
         plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.centre))
     }
 

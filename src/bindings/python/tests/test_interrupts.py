@@ -82,11 +82,15 @@ class Interrupts(unittest.TestCase):
         heights = np.linspace(-50, 50, 200).tolist()
         solid = sculptd.Solid(part)
         walls = sculptd.thickness(part)
+        faces = sculptd.thickness(part, faces=True)
+        balls = sculptd.thickness(part, method="sphere", faces=True)
         for name, work in {
             "thickness": lambda: sculptd.thickness(part, faces=True),
             "thickness by cones": lambda: sculptd.thickness(part, method="cone"),
             "thickness by spheres": lambda: sculptd.thickness(part, method="sphere"),
             "below": lambda: walls.below(1.0),
+            "parts": lambda: faces.parts(),
+            "medial curve": lambda: balls.medial_curve(),
             "measure": lambda: sculptd.measure(part),
             "check": lambda: sculptd.check(part),
             "check to print": lambda: sculptd.check(part, process="fdm"),
