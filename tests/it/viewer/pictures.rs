@@ -72,16 +72,19 @@ fn the_clay_is_drawn_with_every_material_and_differently() {
     }
 }
 
-#[test]
-fn a_map_paints_each_vertex_by_its_own_value() {
-    let Some(mut painter) = painter() else { return };
-    let mut mesh = sphere(8_000);
-    let snapshot = mesh.snapshot();
-    let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(&mesh, 1.0) };
-    // The value is the height: the ends of the scale are at the poles.
+/// The clay in a map whose values are the heights of its vertices: the ends of the scale are at the
+/// poles of a ball.
+pub(super) fn painted_by_height(
+    painter: &mut Painter,
+    clay: &mut Clay,
+    look: Look,
+    size: u32,
+) -> image::RgbaImage {
+    let camera = Camera { yaw: 0.0, pitch: 0.0, ..framed(clay, 1.0) };
+    let snapshot = clay.snapshot();
     let pages = snapshot.pages().map(|p| (0..p.own()).map(|v| p.point(v).y).collect()).collect();
     let values = MapValues { pages };
-    let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), cavity: 0.0, ..Look::default() };
+    let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), cavity: 0.0, ..look };
     let scene = Scene {
         mesh: &snapshot,
         camera: &camera,
@@ -91,7 +94,13 @@ fn a_map_paints_each_vertex_by_its_own_value() {
         values: Some(&values),
         beside: Default::default(),
     };
-    let picture = painter.paint(&scene, 200, 200).expect("a picture");
+    painter.paint(&scene, size, size).expect("a picture")
+}
+
+#[test]
+fn a_map_paints_each_vertex_by_its_own_value() {
+    let Some(mut painter) = painter() else { return };
+    let picture = painted_by_height(&mut painter, &mut sphere(8_000), Look::default(), 200);
     let (top, bottom) = (picture.get_pixel(100, 60).0, picture.get_pixel(100, 140).0);
     // The scale runs from dark red to pale yellow.
     assert!(top[1] > bottom[1] + 60, "top {top:?}, bottom {bottom:?}");

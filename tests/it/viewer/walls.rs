@@ -11,13 +11,11 @@ use sculptd_engine::scene::{ObjectTransform, SceneCommand};
 use sculptd_geometry::shapes;
 use sculptd_window::look::{Look, Map};
 use sculptd_window::panels::state::{Tab, ThicknessSummary, ThinSpot, UiRequest};
-use sculptd_window::viewer::pages::MapValues;
-use sculptd_window::viewer::renderer::Scene;
 use sculptd_window::viewer::wall_probe::wall_on;
 
 use super::check::world_of;
 use super::panels::{State, harness};
-use super::pictures::{framed, painter};
+use super::pictures::{painted_by_height, painter};
 use crate::clay::sphere;
 
 const SPOT: Vec3 = Vec3::new(0.1, 0.9, 0.0);
@@ -106,24 +104,10 @@ fn the_ends_of_the_scale_and_the_limit_are_dragged_in_the_histogram() {
 fn steps_of_colour_show_equal_walls_as_equal() {
     let Some(mut painter) = painter() else { return };
     let mut mesh = sphere(40_000);
-    let camera = framed(&mesh, 1.0);
-    let snapshot = mesh.snapshot();
-    let pages = snapshot.pages().map(|p| (0..p.own()).map(|v| p.point(v).y).collect()).collect();
-    let values = MapValues { pages };
     let mut tones = |bands: bool| {
         // Without shading each pixel has its step's colour, but for where two meet.
-        let plain = Look { shade: 0.0, cavity: 0.0, material: 3, ..Look::default() };
-        let look = Look { map: Map::Thickness, scale: (-1.0, 1.0), bands, ..plain };
-        let scene = Scene {
-            mesh: &snapshot,
-            camera: &camera,
-            brush: None,
-            lines: &[],
-            look,
-            values: Some(&values),
-            beside: Default::default(),
-        };
-        let picture = painter.paint(&scene, 240, 240).expect("a picture");
+        let look = Look { shade: 0.0, material: 3, bands, ..Look::default() };
+        let picture = painted_by_height(&mut painter, &mut mesh, look, 240);
         // The ratio of green to red along the middle, which the light hardly changes.
         let ratio = |y: u32| {
             let p = picture.get_pixel(120, y).0;
