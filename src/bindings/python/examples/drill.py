@@ -19,7 +19,7 @@ print(f"{made.volume:.1f} mm3, {len(made.mesh)} faces, {(made.operand == 1).sum(
 walls = sculptd.thickness(made.mesh, progress=lambda done: print(f"\r{done:.0%}", end=""))
 area, share = walls.below(10.0)
 print(f"\nthinnest wall {walls.min:.2f} mm, {share:.1%} of the surface under 10 mm")
-assert abs(walls.min - 9.0) < 0.01
+assert walls.min is not None and abs(walls.min - 9.0) < 0.01
 
 facts = sculptd.check(made.mesh)
 print(f"closed: {facts['closed']}, triangles that cross: {facts['self_intersections']}")
