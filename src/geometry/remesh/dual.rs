@@ -48,17 +48,42 @@ fn face_edges(axis: usize, side: usize) -> [usize; 4] {
     [edge(b, 0, side), edge(b, 1, side), edge(c, side, 0), edge(c, side, 1)]
 }
 
-/// The two arcs of an ambiguous face: the pairs of its edges (places in [`face_edges`]) at its
-/// inside corners.
-fn arcs(axis: usize, side: usize, case: usize) -> [[usize; 2]; 2] {
-    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-    let near = case >> (side << axis) & 1 == 1;
-    debug_assert!(!near || case >> (side << axis | 1 << b | 1 << c) & 1 == 1);
-    if near { [[0, 2], [1, 3]] } else { [[0, 3], [1, 2]] }
+/// The corners of a face of a cell: the first, along the next axis, along both, along the other.
+fn face_corners(axis: usize, side: usize) -> [usize; 4] {
+    let (b, c) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+    let first = side << axis;
+    [first, first | b, first | b | c, first | c]
 }
 
-static PATTERNS: LazyLock<[CellPattern; 256]> = LazyLock::new(|| {
+/// All four edges of the face are crossed.
+fn is_ambiguous(axis: usize, side: usize, case: usize) -> bool {
+    let [a, b, c, d] = face_corners(axis, side).map(|corner| case >> corner & 1);
+    a == c && b == d && a != b
+}
+
+/// The two arcs of an ambiguous face: the pairs of its edges (places in [`face_edges`]) at the
+/// corners that it keeps apart, the inside ones or, where those are joined, the outside ones.
+fn arcs(axis: usize, side: usize, case: usize, joined: bool) -> [[usize; 2]; 2] {
+    debug_assert!(is_ambiguous(axis, side, case));
+    let near = case >> (side << axis) & 1 == 1;
+    if near != joined { [[0, 2], [1, 3]] } else { [[0, 3], [1, 2]] }
+}
+
+/// Bit `2 * axis + side`: the face is ambiguous.
+static AMBIGUOUS: LazyLock<[u8; 256]> = LazyLock::new(|| {
     std::array::from_fn(|case| {
+        let ambiguous = |f: &u8| is_ambiguous(usize::from(f / 2), usize::from(f % 2), case);
+        (0..6).filter(ambiguous).fold(0, |bits, f| bits | 1 << f)
+    })
+});
+
+/// Of the cells whose faces keep inside corners apart.
+static PATTERNS: LazyLock<[CellPattern; 256]> =
+    LazyLock::new(|| std::array::from_fn(|case| CellPattern::new(case, 0)));
+
+impl CellPattern {
+    /// `joined` has a bit for each face, as [`AMBIGUOUS`].
+    fn new(case: usize, joined: u8) -> CellPattern {
         let crossed = |e: usize| {
             let (a, b) = ends(e);
             (case >> a ^ case >> b) & 1 == 1
@@ -74,9 +99,9 @@ static PATTERNS: LazyLock<[CellPattern; 256]> = LazyLock::new(|| {
                 let hit: Vec<usize> = edges.into_iter().filter(|&e| crossed(e)).collect();
                 match hit[..] {
                     [a, b] => join(a, b),
-                    [_, _, _, _] => {
-                        arcs(axis, side, case).iter().for_each(|&[a, b]| join(edges[a], edges[b]))
-                    }
+                    [_, _, _, _] => arcs(axis, side, case, joined >> (2 * axis + side) & 1 == 1)
+                        .iter()
+                        .for_each(|&[a, b]| join(edges[a], edges[b])),
                     _ => {}
                 }
             }
@@ -91,8 +116,8 @@ static PATTERNS: LazyLock<[CellPattern; 256]> = LazyLock::new(|| {
             }
         }
         out
-    })
-});
+    }
+}
 
 /// A corner of a face being made.
 #[derive(Clone, Copy)]
@@ -102,13 +127,14 @@ enum QuadCorner {
     Middle(u64),
 }
 
-struct CrossedCells<'a> {
+struct CrossedCells<'a, S> {
     grid: &'a DistanceGrid,
+    surface: &'a S,
     cases: Vec<u8>,
     first: Vec<u32>,
 }
 
-impl CrossedCells<'_> {
+impl<S: Sampled> CrossedCells<'_, S> {
     fn step(&self, axis: usize) -> usize {
         [1, self.grid.size[0], self.grid.size[0] * self.grid.size[1]][axis]
     }
@@ -126,8 +152,33 @@ impl CrossedCells<'_> {
         self.grid.origin + p * self.grid.spacing
     }
 
-    fn pattern(&self, at: usize) -> &'static CellPattern {
-        &PATTERNS[self.cases[at] as usize]
+    /// The ends of the edge along `axis` on which `p` lies.
+    fn edge_ends(&self, p: DVec3, axis: usize) -> [DVec3; 2] {
+        let (origin, h) = (self.grid.origin[axis], self.grid.spacing);
+        let low = ((p[axis] - origin) / h).floor();
+        let (mut from, mut to) = (p, p);
+        from[axis] = origin + low * h;
+        to[axis] = origin + (low + 1.0) * h;
+        [from, to]
+    }
+
+    fn pattern(&self, at: usize) -> CellPattern {
+        let case = usize::from(self.cases[at]);
+        let unclear = AMBIGUOUS[case];
+        let joined = |f: &u8| unclear >> f & 1 == 1 && self.joined(at, f / 2, f % 2);
+        match (0..6).filter(joined).fold(0, |bits, f| bits | 1 << f) {
+            0 => PATTERNS[case],
+            joined => CellPattern::new(case, joined),
+        }
+    }
+
+    /// An ambiguous face joins its inside corners.
+    fn joined(&self, at: usize, axis: u8, side: u8) -> bool {
+        let [nx, ny, _] = self.grid.size;
+        let mut p = DVec3::new((at % nx) as f64, (at / nx % ny) as f64, (at / (nx * ny)) as f64);
+        p += 0.5;
+        p[usize::from(axis)] += f64::from(side) - 0.5;
+        self.surface.joined(self.grid.origin + p * self.grid.spacing)
     }
 
     /// The middle that the border between `low` and the next cell along `axis` needs where `e`, an
@@ -143,15 +194,50 @@ impl CrossedCells<'_> {
             return None;
         }
         let place = here.iter().position(|&x| x == e)?;
-        let arc =
-            arcs(axis, 1, self.cases[low] as usize).iter().position(|a| a.contains(&place))?;
+        let joined = self.joined(low, axis as u8, 1);
+        let arcs = arcs(axis, 1, self.cases[low] as usize, joined);
+        let arc = arcs.iter().position(|a| a.contains(&place))?;
         Some((low as u64 * 3 + axis as u64) * 2 + arc as u64)
     }
 
     fn middle_place(&self, key: u64) -> DVec3 {
         let (arc, axis, low) = (key as usize % 2, key as usize / 2 % 3, key as usize / 6);
-        let [a, b] = arcs(axis, 1, self.cases[low] as usize)[arc].map(|i| face_edges(axis, 1)[i]);
+        let joined = self.joined(low, axis as u8, 1);
+        let arcs = arcs(axis, 1, self.cases[low] as usize, joined);
+        let [a, b] = arcs[arc].map(|i| face_edges(axis, 1)[i]);
         (self.crossing_point(low, a) + self.crossing_point(low, b)) * 0.5
+    }
+}
+
+/// The surface that the grid samples, as far as the extraction asks for it.
+pub(super) trait Sampled: Sync {
+    /// Returns the place of a vertex, given the points where its patch's edges are crossed (3 to
+    /// 12).
+    fn place(&self, crossings: &[DVec3]) -> DVec3;
+
+    /// Returns the point where the edge from `from` to `to` is crossed. `guess` is where it would
+    /// be if the distance rose evenly.
+    fn crossing(&self, _from: DVec3, _to: DVec3, guess: DVec3) -> DVec3 {
+        guess
+    }
+
+    /// Returns true if `p`, the middle of a face of a cell whose four edges are all crossed, is
+    /// inside.
+    fn joined(&self, _p: DVec3) -> bool {
+        false
+    }
+
+    /// Returns the distance from the surface. A quadrilateral that is not flat is cut along the
+    /// diagonal whose middle is nearer: the other one cuts across a sharp edge or, where a rim bends
+    /// away from the quadrilateral, folds it over. Where they are equal, the shorter one is taken.
+    fn off(&self, _p: DVec3) -> f64 {
+        0.0
+    }
+}
+
+impl<F: Fn(&[DVec3]) -> DVec3 + Sync> Sampled for F {
+    fn place(&self, crossings: &[DVec3]) -> DVec3 {
+        self(crossings)
     }
 }
 
@@ -162,9 +248,19 @@ pub fn extract(
     place: impl Fn(&[DVec3]) -> DVec3 + Sync,
     job: &Job,
 ) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), Cancelled> {
+    extract_sampled(grid, &place, job)
+}
+
+/// The zero surface, by what is known of the surface that was sampled.
+pub(super) fn extract_sampled(
+    grid: &DistanceGrid,
+    surface: &impl Sampled,
+    job: &Job,
+) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), Cancelled> {
     let [nx, ny, nz] = grid.size;
     let plane = nx * ny;
-    let mut cells = CrossedCells { grid, cases: vec![0; plane * nz], first: vec![0; plane * nz] };
+    let mut cells =
+        CrossedCells { grid, surface, cases: vec![0; plane * nz], first: vec![0; plane * nz] };
     // Patterns, and in each plane the list of cells that are crossed.
     let active: Vec<Vec<u32>> = cells
         .cases
@@ -199,7 +295,7 @@ pub fn extract(
     let mut count = 0u32;
     for &at in active.iter().flatten() {
         cells.first[at as usize] = count;
-        count += PATTERNS[cells.cases[at as usize] as usize].count as u32;
+        count += u32::from(cells.pattern(at as usize).count);
     }
     job.check()?;
     let cells = &cells;
@@ -214,8 +310,12 @@ pub fn extract(
                 for patch in 0..pattern.count {
                     points.clear();
                     let edges = (0..12).filter(|&e| pattern.patch[e] == patch);
-                    points.extend(edges.map(|e| cells.crossing_point(at as usize, e)));
-                    out.push(place(&points).as_vec3());
+                    points.extend(edges.map(|e| {
+                        let guess = cells.crossing_point(at as usize, e);
+                        let [from, to] = cells.edge_ends(guess, e / 4);
+                        surface.crossing(from, to, guess)
+                    }));
+                    out.push(surface.place(&points).as_vec3());
                 }
             }
             Ok(out)
@@ -261,10 +361,25 @@ pub fn extract(
     Ok((positions, triangles))
 }
 
+/// The cosine of the angle by which the halves of a flat quadrilateral may be turned.
+const FLAT: f32 = 0.95;
+
+/// Returns true if a quadrilateral is to be cut from its first corner to its third.
+fn cut_at_first([p, q, r, s]: [Vec3; 4], surface: &impl Sampled) -> bool {
+    let first = p.distance_squared(r) <= q.distance_squared(s);
+    let halves = if first { [[p, q, r], [p, r, s]] } else { [[p, q, s], [q, r, s]] };
+    let [a, b] = halves.map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero());
+    if a.dot(b) > FLAT {
+        return first;
+    }
+    let [one, other] = [p.midpoint(r), q.midpoint(s)].map(|m| surface.off(m.as_dvec3()));
+    if one == other { first } else { one < other }
+}
+
 /// The faces of the edges that start at the lower corner of each listed cell; those with a middle
 /// apart.
-fn faces(
-    cells: &CrossedCells,
+fn faces<S: Sampled>(
+    cells: &CrossedCells<'_, S>,
     list: &[u32],
     positions: &[Vec3],
 ) -> (Vec<[u32; 3]>, Vec<Vec<QuadCorner>>) {
@@ -306,14 +421,8 @@ fn faces(
                 continue;
             }
             let [p, q, r, s] = if outward { ids } else { [ids[0], ids[3], ids[2], ids[1]] };
-            let v = |i: u32| positions[i as usize];
-            if v(p).distance_squared(v(r)) <= v(q).distance_squared(v(s)) {
-                triangles.push([p, q, r]);
-                triangles.push([p, r, s]);
-            } else {
-                triangles.push([p, q, s]);
-                triangles.push([q, r, s]);
-            }
+            let first = cut_at_first([p, q, r, s].map(|i| positions[i as usize]), cells.surface);
+            triangles.extend(if first { [[p, q, r], [p, r, s]] } else { [[p, q, s], [q, r, s]] });
         }
     }
     (triangles, odd)

@@ -6,9 +6,10 @@
 
 pub mod dual;
 mod lost;
+mod sharp;
 mod untangle;
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::distance::DistanceSolid;
@@ -18,6 +19,7 @@ use crate::bvh::REACH;
 use crate::job::{Cancelled, Job};
 pub use lost::LostParts;
 pub(crate) use lost::lost_parts;
+use sharp::{Middles, SharpSurface};
 use untangle::{CalmPlaces, untangle};
 
 /// The resolution of the new mesh, and the treatment of sharp edges.
@@ -123,21 +125,24 @@ pub fn remesh(
 ) -> Result<Remade, RemeshError> {
     let mut grid = DistanceGrid::band([solid], |[d]| d, layout(solid, 0.0, settings.side)?, job)?;
     let h = grid.spacing;
-    let place = |points: &[DVec3]| {
-        let middle = middle(points);
-        let start = if settings.sharp { corner(solid, points, middle, h) } else { middle };
-        onto(solid, start, h)
+    let sharp = SharpSurface { solid, origin: grid.origin, h };
+    let (mut positions, triangles) = if settings.sharp {
+        dual::extract_sampled(&grid, &sharp, job)?
+    } else {
+        dual::extract(&grid, |points: &[DVec3]| onto(solid, middle(points), h), job)?
     };
-    let (mut positions, triangles) = dual::extract(&grid, place, job)?;
     if triangles.is_empty() {
         return Err(RemeshError::Empty);
     }
     let calm = || {
-        let middles = dual::extract(&grid, middle, job)?.0;
+        // Joined as the surface is, so that the vertices correspond.
+        let calm = Middles(settings.sharp.then_some(&sharp));
+        let middles = dual::extract_sampled(&grid, &calm, job)?.0;
         grid.values.par_iter_mut().for_each(|v| *v = if *v < 0.0 { -1.0 } else { 1.0 });
-        Ok(CalmPlaces { middles, halves: dual::extract(&grid, middle, job)?.0 })
+        Ok(CalmPlaces { middles, halves: dual::extract_sampled(&grid, &calm, job)?.0 })
     };
-    let crossings = untangle(&mut positions, &triangles, calm, job)?;
+    let is_folded = |corners| settings.sharp && sharp.is_folded(corners);
+    let crossings = untangle(&mut positions, &triangles, is_folded, calm, job)?;
     let colours = colours(mesh, solid, &positions, job)?;
     let lost = lost_parts(mesh, solid, &positions, h);
     job.progress(1.0);
@@ -156,20 +161,6 @@ fn onto(solid: &DistanceSolid, p: DVec3, h: f64) -> DVec3 {
         Some(n) => p + (n.point - p) * 0.98,
         None => p,
     }
-}
-
-/// Returns the point where the planes of the surface at `points` meet, as near to `middle` as they
-/// permit; at most a spacing away.
-fn corner(solid: &DistanceSolid, points: &[DVec3], middle: DVec3, h: f64) -> DVec3 {
-    // A weak pull to the middle decides along a flat or an edge.
-    let (mut a, mut b) = (DMat3::from_diagonal(DVec3::splat(0.01)), DVec3::ZERO);
-    for &p in points {
-        let Some(n) = solid.tree.nearest(p, h) else { continue };
-        let normal = solid.topology.face_normals[n.triangle as usize].normalize_or_zero();
-        a += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
-        b += normal * normal.dot(n.point - middle);
-    }
-    middle + (a.inverse() * b).clamp_length_max(h)
 }
 
 /// The old colours at new places.

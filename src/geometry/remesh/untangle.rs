@@ -6,7 +6,8 @@
 //! "Intersection-free contouring on an octree grid", 2006). Then it moves to the corresponding
 //! place on the surface that halves every edge of the grid, where sheets are farthest apart. Only
 //! vertices of triangles that cross move; once all of those have reached the end, their neighbours
-//! follow.
+//! follow. Triangles that lie back on their neighbours, without crossing them, are treated the same
+//! until their vertices are in the middles.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -37,33 +38,45 @@ impl CalmPlaces {
     }
 }
 
-/// Untangles the surface; how many pairs of triangles cross after it. `calm` is asked for only
-/// where some cross.
+/// Untangles the surface; how many pairs of triangles cross after it. `is_folded` tells triangles
+/// that lie back on others by their corners. `calm` is asked for only where there are some of
+/// either.
 pub(super) fn untangle(
     positions: &mut [Vec3],
     triangles: &[[u32; 3]],
+    is_folded: impl Fn([DVec3; 3]) -> bool + Sync,
     calm: impl FnOnce() -> Result<CalmPlaces, Cancelled>,
     job: &Job,
 ) -> Result<usize, Cancelled> {
     let mut exact: Vec<DVec3> = positions.par_iter().map(|p| p.as_dvec3()).collect();
     let mut found = pairs(&exact, triangles, job)?;
-    if found.is_empty() {
+    let folded =
+        |exact: &[DVec3], t: u32| is_folded(triangles[t as usize].map(|v| exact[v as usize]));
+    let all = 0..triangles.len() as u32;
+    let mut folds: Vec<u32> = all.into_par_iter().filter(|&t| folded(&exact, t)).collect();
+    if found.is_empty() && folds.is_empty() {
         return Ok(0);
     }
     let calm = calm()?;
     let wanted = positions.to_vec();
     let mut steps = vec![0u8; positions.len()];
     for _ in 0..ROUNDS {
-        let mut crossed = vec![false; positions.len()];
-        let mut mark = |t: u32| triangles[t as usize].map(|v| crossed[v as usize] = true);
+        // How far each vertex may go: what is only folded, no further than to the middles.
+        let mut until = vec![0u8; positions.len()];
+        let mut mark = |t: u32, step: u8| {
+            for v in triangles[t as usize] {
+                until[v as usize] = until[v as usize].max(step);
+            }
+        };
+        folds.iter().for_each(|&t| mark(t, STEPS));
         found.iter().for_each(|&(a, b)| {
-            mark(a);
-            mark(b);
+            mark(a, 2 * STEPS);
+            mark(b, 2 * STEPS);
         });
-        let moves = |v: &usize| crossed[*v] && steps[*v] < 2 * STEPS;
-        let mut moved: Vec<usize> = (0..positions.len()).filter(moves).collect();
+        let mut moved: Vec<usize> = (0..positions.len()).filter(|&v| steps[v] < until[v]).collect();
         if moved.is_empty() {
-            let beside = triangles.iter().filter(|t| t.iter().any(|&v| crossed[v as usize]));
+            let crossed = |v: &u32| until[*v as usize] == 2 * STEPS;
+            let beside = triangles.iter().filter(|t| t.iter().any(crossed));
             moved = beside.flatten().map(|&v| v as usize).collect();
             moved.sort_unstable();
             moved.dedup();
@@ -84,7 +97,9 @@ pub(super) fn untangle(
             (0..triangles.len() as u32).into_par_iter().filter(|&t| changed(t)).collect();
         found.retain(|&(a, b)| !changed(a) && !changed(b));
         found.extend(pairs_with(&exact, triangles, &list, job)?);
-        if found.is_empty() {
+        folds.retain(|&t| !changed(t));
+        folds.par_extend(list.par_iter().copied().filter(|&t| folded(&exact, t)));
+        if found.is_empty() && folds.is_empty() {
             break;
         }
     }
@@ -131,7 +146,7 @@ mod tests {
             }
             let before = [&places, &middles, &halves].map(|p| crossings(p));
             let calm = || Ok(CalmPlaces { middles: middles.clone(), halves: halves.clone() });
-            let left = untangle(&mut places, &triangles, calm, &job).unwrap();
+            let left = untangle(&mut places, &triangles, |_| false, calm, &job).unwrap();
             println!(
                 "seed {seed}: {} triangles, crossings {before:?}, {left} left",
                 triangles.len()

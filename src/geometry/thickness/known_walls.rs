@@ -5,7 +5,9 @@ use glam::{DQuat, DVec2, DVec3};
 use super::least::Comparison;
 use super::refine::refine;
 use super::{Thickness, ThicknessMethod, ThicknessSettings, WallQuery, measure_at_places};
+use crate::distance::DistanceSolid;
 use crate::job::Job;
+use crate::remesh::{RemeshSettings, remesh};
 use crate::shapes::uv_sphere;
 use crate::{CentredMesh, PolyMesh, TriMesh};
 
@@ -471,4 +473,29 @@ fn a_wall_in_the_profile_of_a_star_is_where_it_should_be() {
     assert!((least.value - 1.0).abs() < 1e-4, "{least:?}");
     let place = least.place() + part.centre;
     assert!((place.x - 10.0).abs() < 1e-3 && place.z.abs() < 1e-3, "{place}");
+}
+
+/// A voxel mesh with sharp edges has no ledges along them, and a fold in at most one part of twenty.
+#[test]
+fn a_part_remeshed_with_sharp_edges_keeps_its_wall() {
+    let mut r = Random(21);
+    let mut bad = Vec::new();
+    let rounds = parts() / 4;
+    for n in 0..rounds {
+        let part = part([1, 3, 5, 0][n as usize % 4], &mut r);
+        let mesh = placed(&part, 1.0, &mut r).mesh;
+        let (lo, hi) = mesh.bounds();
+        let side = f64::from((hi - lo).max_element()) / part.wall * r.between(3.0, 5.0);
+        let settings = RemeshSettings { side: side.clamp(8.0, 160.0) as usize, sharp: true };
+        let solid = DistanceSolid::build(&mesh, &Job::default()).expect("built");
+        let made = remesh(&mesh, &solid, settings, &Job::default()).expect("made");
+        assert_eq!(made.crossings, 0);
+        let placed = CentredMesh::new(&made.mesh.to_poly(), 1.0);
+        let least = measured(&placed, None).least.expect("a wall").value;
+        let voxel = f64::from((hi - lo).max_element()) / settings.side as f64;
+        if (least - part.wall).abs() > voxel {
+            bad.push(format!("{n} {} at {}: {least} for {}", part.name, settings.side, part.wall));
+        }
+    }
+    assert!(bad.len() as u64 * 20 <= rounds, "{} of {rounds}: {bad:#?}", bad.len());
 }

@@ -6,10 +6,11 @@
 //! the pairs; the walk skips everything deeper than the least wall found so far. So the result
 //! depends neither on the positions of samples, nor on the triangles that a flat facet is cut into.
 //!
-//! Edges: a place measures an edge and has no wall if the opposite side is turned by more than 40
-//! degrees from parallel, and an acute edge or tip (less than 90 degrees of material) is within 1.5
-//! times the value. An edge of less than 40 degrees is a wall that runs out to zero. A wedge that
-//! ends in a land or a rounding is as thick as that land or rounding.
+//! Edges: a wall has two sides. What the ray meets is the other side if it is turned by at most 40
+//! degrees from parallel, or if it is the bottom of a valley in the surface: the root of a groove
+//! or the tip of a pit, however steep. A side that is turned more and goes on beside the ray makes
+//! an edge with this one, and an edge is not a wall. An edge of less than 40 degrees is a wall that
+//! runs out to zero; one that ends in a land or a rounding is as thick as that land or rounding.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -20,6 +21,7 @@ use serde::Serialize;
 use super::shaft::{FacetShaft, Patch};
 use super::sharp_edges::{AcuteEdges, REACH, distance_squared, grazing};
 use super::surface::WeldedSurface;
+use super::valley::Valley;
 use crate::bvh::{Bvh8, Ray};
 use crate::job::{Cancelled, Job};
 
@@ -29,7 +31,7 @@ pub(super) const OPPOSED: f64 = 0.766_044_443;
 const ROUNDINGS: f64 = 4.0;
 /// Slope beyond which sides are a wall beside the shaft and not below it.
 const STEEPEST: f64 = 50.0;
-/// The number of parts into which a patch is cut to decide which of them belong to an edge.
+/// The number of parts into which a patch is cut to decide which of them are hidden.
 const PARTS: usize = 256;
 /// Facets in a task; what one task finds bounds the later facets of the same task.
 const CHUNK: usize = 512;
@@ -138,7 +140,7 @@ struct Search {
     /// Thinner walls than this, by more than the tolerance, are searched for.
     best: f64,
     found: Option<FoundWall>,
-    /// The least depth of places that may belong to an edge, which was not decided.
+    /// The least depth of places that may be hidden, which was not decided.
     open: f64,
     /// The least depth that rounding may have hidden at the sides of a shaft.
     low: f64,
@@ -257,6 +259,10 @@ impl Solid<'_> {
         shaft.each_below(self.tree, depth, |u, corners| {
             let facing = self.facing(&shaft, u);
             if u != t && facing > grazing(self.tilts, t, u).max(from) {
+                if facing < OPPOSED {
+                    self.valley(&shaft, t, u, search);
+                    return search.best - tolerance;
+                }
                 let patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
                 let low = patch.lowest().map_or(f64::INFINITY, |c| c.z);
                 if low < search.best - tolerance && !patch.narrow(2.0 * self.grain) {
@@ -268,10 +274,9 @@ impl Solid<'_> {
     }
 
     /// Finds the least wall of a patch that is below what is known. Cuts it until the lowest place
-    /// of a part is a wall, or the part is an edge's or hidden behind one.
+    /// of a part is not hidden behind another side.
     fn settle(&self, shaft: &FacetShaft, t: u32, facing: f64, patch: Patch, search: &mut Search) {
         let tolerance = self.step();
-        let turned = facing < OPPOSED;
         let mut parts = vec![patch];
         let mut count = 0;
         while let Some(part) = parts.pop() {
@@ -286,62 +291,50 @@ impl Solid<'_> {
                 search.open = search.open.min(low.z);
                 continue;
             }
-            if turned {
-                match self.belongs_to_edge(shaft, &part, low) {
-                    Some(true) => continue,
-                    Some(false) => {}
-                    None => {
-                        parts.extend(part.halves().0);
-                        continue;
-                    }
-                }
-            }
-            if self.hidden_by_edge(shaft, t, &part, low) {
+            if self.hidden(shaft, t, low, part.middle()) {
                 parts.extend(part.halves().0);
                 continue;
             }
             // The sides of shafts were moved inwards, and narrow patches left out.
-            let slope = (1.0 / (facing * facing) - 1.0).max(0.0).sqrt().min(STEEPEST);
-            search.low = search.low.min(low.z - ROUNDINGS * self.grain * slope);
-            search.best = low.z;
-            search.found = Some(FoundWall {
-                depth: low.z,
-                foot: shaft.foot(low),
-                hit: shaft.place(low),
-                away: -shaft.into,
-            });
+            let slope = (1.0 / (facing * facing) - 1.0).max(0.0).sqrt();
+            self.found(shaft, low, slope, search);
         }
     }
 
-    /// Returns true if a part of a turned patch belongs to an edge, false if its lowest place does
-    /// not, and `None` if that differs within it.
-    fn belongs_to_edge(&self, shaft: &FacetShaft, part: &Patch, low: DVec3) -> Option<bool> {
-        let own = self.edges.nearest(shaft.foot(low), REACH * low.z + 4.0 * self.grain);
-        if own.is_none() {
-            return Some(false);
-        }
-        let middle = shaft.foot(part.middle());
-        let size = part.corners().iter().map(|c| shaft.foot(*c).distance(middle));
-        let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
-        let (segment, _) = self.edges.nearest(middle, reach)?;
-        // The distance from a segment is convex and the depth linear: corners decide.
-        let near = |c: &DVec3| {
-            let d = distance_squared(shaft.foot(*c), segment).sqrt();
-            d <= REACH * c.z + 8.0 * self.grain
-        };
-        part.corners().iter().all(near).then_some(true)
+    /// A wall at `low`, lower than what is known. `slope` is by how much the depth changes beside.
+    fn found(&self, shaft: &FacetShaft, low: DVec3, slope: f64, search: &mut Search) {
+        search.low = search.low.min(low.z - ROUNDINGS * self.grain * slope.min(STEEPEST));
+        search.best = low.z;
+        search.found = Some(FoundWall {
+            depth: low.z,
+            foot: shaft.foot(low),
+            hit: shaft.place(low),
+            away: -shaft.into,
+        });
     }
 
-    /// The first thing under the lowest place of a part is an edge's: what comes behind does not
-    /// count.
-    fn hidden_by_edge(&self, shaft: &FacetShaft, t: u32, part: &Patch, low: DVec3) -> bool {
-        if self.edges.is_empty() {
-            return false;
-        }
-        let inside = low.lerp(part.middle(), 1e-3);
+    /// Looks for the bottoms of valleys along the sides of facet `u`, which is turned too far to be
+    /// a wall's other side.
+    fn valley(&self, shaft: &FacetShaft, t: u32, u: u32, search: &mut Search) {
+        let valley = Valley { surface: self.surface, into: shaft.into, grain: self.grain };
+        valley.each_bottom(u, |ends| {
+            // A line has no width: between two shafts it would be in neither.
+            let (least, wider) = (ROUNDINGS * self.grain, 4.0 * self.grain);
+            let Some(ends) = shaft.clip_line(ends, least, wider) else { return };
+            let [low, high] = if ends[0].z <= ends[1].z { ends } else { [ends[1], ends[0]] };
+            if low.z < search.best - self.step() && !self.hidden(shaft, t, low, low) {
+                let along = (high - low).truncate().length().max(self.grain);
+                self.found(shaft, low, (high.z - low.z) / along, search);
+            }
+        });
+    }
+
+    /// Something that is not opposite comes before a place: what lies behind it does not count.
+    /// `middle` is where to look for it, a little beside the place.
+    fn hidden(&self, shaft: &FacetShaft, t: u32, low: DVec3, middle: DVec3) -> bool {
+        let inside = low.lerp(middle, 1e-3);
         let Some((u, depth)) = self.first_hit(shaft, t, shaft.foot(inside)) else { return false };
-        let nearer = depth < inside.z - 16.0 * self.grain;
-        nearer && self.facing(shaft, u) < OPPOSED && self.edge_at(shaft, inside, depth)
+        depth < inside.z - 16.0 * self.grain && self.facing(shaft, u) < OPPOSED
     }
 
     /// Returns true if a value to a turned side, measured at `place`, belongs to an edge.

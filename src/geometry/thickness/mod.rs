@@ -38,6 +38,7 @@ mod shaft;
 pub mod sharp_edges;
 pub mod summary;
 pub mod surface;
+mod valley;
 mod walls;
 pub mod warnings;
 pub mod worst;

@@ -358,8 +358,9 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
         out,
         "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that \
          face the same way.</p>\
-         <p>A place beside an acute edge or tip, whose opposite side is turned by more than 40 \
-         degrees, belongs to the edge and has no wall.</p>\
+         <p>An edge is no wall. The least wall is between sides that are within 40 degrees of \
+         parallel, or above the bottom of a groove or pit. In the map, a place beside an acute \
+         edge or tip has no wall if its opposite side is turned by more than that.</p>\
          <p>Error bound: every value of the map away from edges is within {:.4} mm of the surface \
          that the triangles stand for.</p>\
          <p>Limits: warn below {}, fail below {}, fail above {}; a wall fails when it is \

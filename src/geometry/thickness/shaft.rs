@@ -172,6 +172,30 @@ impl FacetShaft {
         patch
     }
 
+    /// The part of a line in the shaft, made wider by `wider` on each side, from depth `least` on.
+    pub fn clip_line(&self, ends: [DVec3; 2], least: f64, wider: f64) -> Option<[DVec3; 2]> {
+        let [a, b] = ends.map(|p| {
+            let p = p - self.origin;
+            DVec3::new(p.dot(self.x), p.dot(self.y), p.dot(self.into))
+        });
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        let mut cut = |at_a: f64, at_b: f64| {
+            if at_a < 0.0 && at_b < 0.0 {
+                to = -1.0;
+            } else if at_a < 0.0 {
+                from = from.max(at_a / (at_a - at_b));
+            } else if at_b < 0.0 {
+                to = to.min(at_a / (at_a - at_b));
+            }
+        };
+        for (inward, side) in self.sides {
+            let side = side - wider;
+            cut(inward.dot(a.truncate()) - side, inward.dot(b.truncate()) - side);
+        }
+        cut(a.z - least, b.z - least);
+        (from <= to).then(|| [a.lerp(b, from), a.lerp(b, to)])
+    }
+
     /// The whole facet as a patch at depth 0.
     pub fn four(&self) -> [[DVec3; 3]; 4] {
         let [a, b, c] = self.flat.map(|p| self.foot(p.extend(0.0)));
