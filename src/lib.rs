@@ -199,9 +199,9 @@
 //!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
-//! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, `sculptd-check`, made by
-//!   `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits for: a
-//!   request; a newer one replaces it.
+//! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, `sculptd-section`, `sculptd-check`,
+//!   made by `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits
+//!   for: a request; a newer one replaces it.
 //! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the
 //!   history. Waits for: the disk.
 //! * `sculptd-earlier`, made by `window::viewer::earlier_pictures`: reads the pictures of earlier

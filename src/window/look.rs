@@ -1,6 +1,9 @@
 //! How the clay is shown: materials drawn by formula, facets, cavities. Nothing here changes the
 //! world.
 
+use glam::Vec3;
+use sculptd_clay::Ray;
+
 /// A material, lit from the eye's own frame. Colours are linear, 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
@@ -258,6 +261,43 @@ pub struct Look {
     /// What a map of angles compares with.
     #[serde(skip)]
     pub angles: AngleMap,
+    /// The plane in front of which nothing is drawn.
+    #[serde(skip)]
+    pub cut: Option<CutPlane>,
+}
+
+/// A plane across an axis of the world, which cuts off what is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CutPlane {
+    /// 0 to 2: x, y, z.
+    pub axis: usize,
+    /// Its place along the axis, in millimetres.
+    pub at: f32,
+    /// True to cut off what is below the plane instead of what is above.
+    pub below: bool,
+}
+
+impl CutPlane {
+    /// Towards what is cut off, one long, and how far along that the plane is.
+    pub fn numbers(self) -> [f32; 4] {
+        let sign = if self.below { -1.0 } else { 1.0 };
+        let mut plane = [0.0, 0.0, 0.0, sign * self.at];
+        plane[self.axis.min(2)] = sign;
+        plane
+    }
+
+    /// A ray from where it is seen: what is cut off lies behind its origin. `None`: the ray stays
+    /// in what is cut off.
+    pub fn seen(self, ray: Ray) -> Option<Ray> {
+        let [x, y, z, at] = self.numbers();
+        let towards = Vec3::new(x, y, z);
+        let beyond = ray.origin.dot(towards) - at;
+        if beyond <= 0.0 {
+            return Some(ray);
+        }
+        let speed = -ray.dir.dot(towards);
+        (speed > 0.0).then(|| Ray { origin: ray.origin + ray.dir * (beyond / speed), ..ray })
+    }
 }
 
 impl Default for Look {
@@ -280,6 +320,7 @@ impl Default for Look {
             sets: true,
             scale: (0.0, 1.0),
             angles: AngleMap::default(),
+            cut: None,
         }
     }
 }
@@ -298,10 +339,11 @@ impl Look {
         [raised.cos() * around.sin(), raised.sin(), raised.cos() * around.cos()]
     }
 
-    /// Returns the share of the main light that shadows remove, 0 to 1: 0 if another light or a map
-    /// is shown.
+    /// Returns the share of the main light that shadows remove, 0 to 1: 0 if another light, a map
+    /// or a cut is shown.
     pub fn cast(&self) -> f32 {
-        let studio = self.light == Light::Studio && self.map == Map::None;
+        // What is cut off would still cast a shadow.
+        let studio = self.light == Light::Studio && self.map == Map::None && self.cut.is_none();
         if studio && self.shadow.is_finite() { self.shadow.clamp(0.0, 1.0) } else { 0.0 }
     }
 

@@ -217,7 +217,7 @@ pub(super) trait Sampled: Sync {
 
     /// Returns the point where the edge from `from` to `to` is crossed. `guess` is where it would
     /// be if the distance rose evenly.
-    fn crossing(&self, _from: DVec3, _to: DVec3, guess: DVec3) -> DVec3 {
+    fn crossed_at(&self, _from: DVec3, _to: DVec3, guess: DVec3) -> DVec3 {
         guess
     }
 
@@ -228,8 +228,8 @@ pub(super) trait Sampled: Sync {
     }
 
     /// Returns the distance from the surface. A quadrilateral that is not flat is cut along the
-    /// diagonal whose middle is nearer: the other one cuts across a sharp edge or, where a rim bends
-    /// away from the quadrilateral, folds it over. Where they are equal, the shorter one is taken.
+    /// diagonal whose middle is nearer: the other one cuts across a sharp edge or, where a rim
+    /// bends away from the quadrilateral, folds it over. Of equal ones the shorter is taken.
     fn off(&self, _p: DVec3) -> f64 {
         0.0
     }
@@ -313,7 +313,7 @@ pub(super) fn extract_sampled(
                     points.extend(edges.map(|e| {
                         let guess = cells.crossing_point(at as usize, e);
                         let [from, to] = cells.edge_ends(guess, e / 4);
-                        surface.crossing(from, to, guess)
+                        surface.crossed_at(from, to, guess)
                     }));
                     out.push(surface.place(&points).as_vec3());
                 }

@@ -50,11 +50,11 @@ impl Sampled for SharpSurface<'_> {
             let normal = self.solid.topology.face_normals[n.triangle as usize].normalize_or_zero();
             planes.add(normal, normal.dot(n.point - middle));
         }
-        let way = planes.meet_within(low - middle, high - middle);
+        let way = planes.nearest_point_within(low - middle, high - middle);
         onto(self.solid, middle + way, self.h)
     }
 
-    fn crossing(&self, from: DVec3, to: DVec3, guess: DVec3) -> DVec3 {
+    fn crossed_at(&self, from: DVec3, to: DVec3, guess: DVec3) -> DVec3 {
         let way = (to - from).normalize();
         let ray = Ray { t_max: self.h as f32, ..Ray::new(from.as_vec3(), way.as_vec3()) };
         self.solid
@@ -100,10 +100,10 @@ impl Planes {
 
     /// Returns the point of a box nearest to all planes, and of those one near the origin. A
     /// coordinate in which it would be outside is held at the box's side, the farthest first.
-    fn meet_within(&self, low: DVec3, high: DVec3) -> DVec3 {
+    fn nearest_point_within(&self, low: DVec3, high: DVec3) -> DVec3 {
         let mut held = [None; 3];
         loop {
-            let p = self.meet(held);
+            let p = self.nearest_point(held);
             let beyond = (p - high).max(low - p);
             let free = (0..3).filter(|&k| held[k].is_none() && beyond[k] > 0.0);
             let Some(k) = free.max_by(|&a, &b| beyond[a].total_cmp(&beyond[b])) else { return p };
@@ -112,7 +112,7 @@ impl Planes {
     }
 
     /// Returns the point nearest to all planes with some coordinates held.
-    fn meet(&self, held: [Option<f64>; 3]) -> DVec3 {
+    fn nearest_point(&self, held: [Option<f64>; 3]) -> DVec3 {
         let (mut squares, mut sides) = (self.squares, self.sides);
         for (k, at) in held.iter().enumerate().filter_map(|(k, h)| h.map(|at| (k, at))) {
             sides -= squares.col(k) * at;

@@ -16,9 +16,9 @@
 
 use glam::Vec3;
 
-use super::least::OPPOSED;
 use super::ray::{Caster, Site};
 use super::sharp_edges::AcuteEdges;
+use super::sharp_edges::OPPOSED;
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 

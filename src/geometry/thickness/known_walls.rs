@@ -475,7 +475,7 @@ fn a_wall_in_the_profile_of_a_star_is_where_it_should_be() {
     assert!((place.x - 10.0).abs() < 1e-3 && place.z.abs() < 1e-3, "{place}");
 }
 
-/// A voxel mesh with sharp edges has no ledges along them, and a fold in at most one part of twenty.
+/// A voxel mesh with sharp edges has no ledges along them, and at most one part of twenty a fold.
 #[test]
 fn a_part_remeshed_with_sharp_edges_keeps_its_wall() {
     let mut r = Random(21);

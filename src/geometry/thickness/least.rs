@@ -19,14 +19,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::shaft::{FacetShaft, Patch};
-use super::sharp_edges::{AcuteEdges, REACH, distance_squared, grazing};
+use super::sharp_edges::{AcuteEdges, OPPOSED, REACH, distance_squared, grazing};
 use super::surface::WeldedSurface;
 use super::valley::Valley;
 use crate::bvh::{Bvh8, Ray};
 use crate::job::{Cancelled, Job};
 
-/// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
-pub(super) const OPPOSED: f64 = 0.766_044_443;
 /// Rounding of a coordinate moves the distance of two facets by at most this many of it.
 const ROUNDINGS: f64 = 4.0;
 /// Slope beyond which sides are a wall beside the shaft and not below it.

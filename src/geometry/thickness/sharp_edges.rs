@@ -8,6 +8,8 @@ use super::surface::WeldedSurface;
 /// An acute edge within this many times a value to a turned side makes the value the edge's. Sides
 /// that meet at 40 degrees need 1.2.
 pub(super) const REACH: f64 = 1.5;
+/// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
+pub(super) const OPPOSED: f64 = 0.766_044_443;
 /// Cosine below which rounding may have turned a right angle: 89.99 degrees. A side that is turned
 /// so far is beside a ray and not ahead.
 pub(super) const GRAZING: f64 = 2e-4;

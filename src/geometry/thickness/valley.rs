@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::least::OPPOSED;
+use super::sharp_edges::OPPOSED;
 use super::surface::WeldedSurface;
 
 /// A surface seen along a direction.

@@ -1,5 +1,6 @@
 //! Wall thickness: the live map's figures, limits of processes, the worst spots.
 
+use super::cut;
 use super::rows;
 use super::state::{Action, ThicknessSummary, UiRequest, UiState, View};
 use super::theme;
@@ -9,6 +10,11 @@ use crate::look::{Look, Map};
 use sculptd_geometry::thickness::preset::Preset;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
+    walls(ui, view, ui_state, out);
+    cut::ui(ui, ui_state, view);
+}
+
+fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong(tr!("walls-heading"));
     let mut on = ui_state.look.map == Map::Thickness;

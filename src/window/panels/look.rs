@@ -1,7 +1,7 @@
 //! How the clay is shown.
 
 use super::state::{Action, UiRequest, UiState, View};
-use super::{light, rows};
+use super::{cut, light, rows};
 use crate::language::tr;
 use crate::look::Map;
 
@@ -37,6 +37,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
             ui.selectable_value(&mut ui_state.look.map, map, tr!(map.title())).on_hover_text(tip);
         }
     });
+    cut::ui(ui, ui_state, view);
     light::reference(ui, ui_state);
     rows::heading(ui, &tr!("look-camera"));
     let mut camera = view.camera;

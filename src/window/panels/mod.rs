@@ -17,6 +17,7 @@ pub mod chooser;
 mod colours;
 pub mod cube;
 pub mod curve_stroke;
+mod cut;
 pub mod devices;
 pub mod face_sets;
 pub mod files;

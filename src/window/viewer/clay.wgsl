@@ -46,6 +46,8 @@ struct Frame {
     angle_up: vec4<f32>,
     // Up to this height a face is on the plate; the limit and the end of the scale, radians.
     angle_ends: vec4<f32>,
+    // xyz: towards what a plane cuts off; w: how far along that the plane is. Zeros: none.
+    cut: vec4<f32>,
     led: array<LedDab, 8>,
     // The falloff's values at even steps from the middle to the rim.
     profile: array<vec4<f32>, 3>,
@@ -291,11 +293,24 @@ fn shaded(n: vec3<f32>, base: vec3<f32>, place: vec3<f32>) -> vec3<f32> {
     return lit(n, base, reaches);
 }
 
+// A plane cuts this place off.
+fn is_cut_off(place: vec3<f32>) -> bool {
+    return dot(place, frame.cut.xyz) > frame.cut.w;
+}
+
 @fragment
 fn clay_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // How the surface bends across the screen: how fast the normal turns along either axis.
     let bend = dot(dpdx(in.normal), frame.right.xyz) - dot(dpdy(in.normal), frame.up.xyz);
     let facet = cross(dpdy(in.place), dpdx(in.place));
+    if (is_cut_off(in.place)) {
+        discard;
+    }
+    if (!front && dot(frame.cut.xyz, frame.cut.xyz) > 0.0) {
+        // The inside of a closed form, through the cut: as if it were solid, and hatched.
+        let stripe = step(0.5, fract((in.clip.x + in.clip.y) / 9.0));
+        return vec4<f32>(mix(vec3<f32>(0.43, 0.19, 0.08), vec3<f32>(0.54, 0.25, 0.11), stripe), 1.0);
+    }
     var n = normalize(in.normal);
     if (frame.base.w > 0.5 && dot(facet, facet) > 0.0) {
         n = normalize(facet);
@@ -359,6 +374,7 @@ fn overlay_fragment(in: Corner) -> @location(0) vec4<f32> {
 struct LineCorner {
     @builtin(position) clip: vec4<f32>,
     @location(0) colour: vec4<f32>,
+    @location(1) place: vec3<f32>,
 };
 
 fn line_corner(place: vec3<f32>, colour: vec4<f32>) -> LineCorner {
@@ -367,6 +383,7 @@ fn line_corner(place: vec3<f32>, colour: vec4<f32>) -> LineCorner {
     // A hair nearer, so that a line on the surface is not eaten by it.
     out.clip.z -= frame.map.w;
     out.colour = colour;
+    out.place = place;
     return out;
 }
 
@@ -406,12 +423,16 @@ fn edge_vertex(
     let place = led(at, normal).place;
     out.clip = frame.view_projection * vec4<f32>(place, 1.0);
     out.clip.z -= 0.5 * frame.map.w;
+    out.place = place;
     out.colour = vec4<f32>(0.0, 0.0, 0.0, 0.3);
     return out;
 }
 
 @fragment
 fn edge_fragment(in: LineCorner) -> @location(0) vec4<f32> {
+    if (is_cut_off(in.place)) {
+        discard;
+    }
     return in.colour;
 }
 

@@ -60,6 +60,13 @@ impl WindowState {
                 );
             }
         }
+        let section = self.ui_state.look.cut.map(|cut| (clay, state.transform(), cut));
+        if section != self.asked_section {
+            self.asked_section = section;
+            if let Some((_, transform, cut)) = section {
+                self.workers.section((state.mesh.clone(), transform, cut), &self.tasks);
+            }
+        }
         let direction = self.ui_state.sizes.direction;
         let rests = now.saturating_sub(self.rested.1) > REST_US;
         if self.ui_state.tab == Tab::Measure

@@ -29,6 +29,7 @@ pub(super) struct Frame {
     pub(super) shadow: [[f32; 4]; 4],
     pub(super) angle_up: [f32; 4],
     pub(super) angle_ends: [f32; 4],
+    pub(super) cut: [f32; 4],
     pub(super) led: ProvisionalDabs,
 }
 
@@ -51,6 +52,14 @@ pub(super) fn own_angles([up, ends]: [[f32; 4]; 2], transform: &ObjectTransform)
     let plate = (f64::from(ends[0]) - shift) / transform.scale;
     let plate = plate.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
     [own, [plate, ends[1], ends[2], ends[3]]]
+}
+
+/// A plane of the world in the frame of an object.
+pub(super) fn own_plane([x, y, z, at]: [f32; 4], transform: &ObjectTransform) -> [f32; 4] {
+    let direction = Vec3::new(x, y, z);
+    let own = transform.inverse().direction(direction);
+    let shift = transform.shift.dot(direction.as_dvec3());
+    own.extend(((f64::from(at) - shift) / transform.scale) as f32).to_array()
 }
 
 /// Returns true if a page's box may be visible: not wholly beyond one plane of the view.

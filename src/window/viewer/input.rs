@@ -195,7 +195,8 @@ impl WindowState {
             // The pen's own samples sculpt, and its buttons have actions of their own.
             MouseButton::Left if on_clay() && self.press_is_a_pens(wiring) => Drag::None,
             MouseButton::Right | MouseButton::Middle if self.pointer_is_a_pen(wiring) => Drag::None,
-            MouseButton::Left if on_clay() => Drag::Sculpt,
+            // The clay that a press would meet may be cut off: the form is only looked at.
+            MouseButton::Left if on_clay() && self.ui_state.look.cut.is_none() => Drag::Sculpt,
             MouseButton::Left => Drag::Orbit,
             MouseButton::Right if self.mods.shift_key() => Drag::Pan,
             MouseButton::Right => Drag::Orbit,

@@ -51,6 +51,7 @@ pub mod provisional;
 pub mod renderer;
 mod requests;
 mod scene_pointer;
+pub mod section_figures;
 mod shadow;
 mod shots;
 mod snapshot_workers;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Mat4, Vec3};
 
-use super::frame_uniform::{Frame, in_view, own_angles};
+use super::frame_uniform::{Frame, in_view, own_angles, own_plane};
 use super::pages::Pages;
 use super::provisional::ProvisionalDabs;
 use crate::viewer::gpu::Gpu;
@@ -99,6 +99,7 @@ impl Frame {
             back: direction(self.back),
             angle_up,
             angle_ends,
+            cut: own_plane(self.cut, transform),
             brush: place.extend(radius * own.scale as f32).to_array(),
             led: self.led.seen_from(transform),
             ..*self

@@ -49,7 +49,9 @@ impl WindowState {
             }
         };
         // While nobody is there the recording plays by itself: no tool is seen.
-        let nobody = self.drawn_kiosk.is_some_and(|k| k.stage == Stage::Attract);
+        // And none on a form that is cut.
+        let nobody = self.drawn_kiosk.is_some_and(|k| k.stage == Stage::Attract)
+            || self.ui_state.look.cut.is_some();
         let p = &self.pointer;
         let scale = self.egui.egui_ctx().pixels_per_point();
         let over_panel = self.over_panel(self.pointer.at);
@@ -121,6 +123,8 @@ impl WindowState {
         let at = self.pointer.at;
         let on_clay = self.pointer.inside && self.is_in_view(at) && !self.over_panel(at);
         let shown = on_clay && self.ui_state.look.map == Map::Thickness;
-        shown.then(|| wall_on(state, self.camera.ray(self.view_point(at)))).flatten()
+        let ray = shown.then(|| self.camera.ray(self.view_point(at)))?;
+        let seen = self.ui_state.look.cut.map_or(Some(ray), |cut| cut.seen(ray))?;
+        wall_on(state, seen)
     }
 }

@@ -221,6 +221,7 @@ impl WindowState {
                 }
                 TaskReport::Checked(report) => self.checked(*report, state),
                 TaskReport::Measured(found) => self.ui_state.sizes.found = Some(found),
+                TaskReport::Section(found) => self.ui_state.sizes.section = Some(found),
                 TaskReport::NoDialog(purpose) => {
                     let folder = self.usual_folder();
                     self.ui_state.chooser = Some(FileChooser::new(purpose, folder.clone()));

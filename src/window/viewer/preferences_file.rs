@@ -93,6 +93,7 @@ impl PreferencesFile {
         // A map is for a moment.
         now.look.map = Default::default();
         now.look.scale = self.kept.look.scale;
+        now.look.cut = None;
         let path = self.path.as_ref().filter(|_| now != self.kept)?;
         let text = toml::to_string(&now).map_err(std::io::Error::other);
         let done = text.and_then(|text| {

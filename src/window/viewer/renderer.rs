@@ -13,7 +13,7 @@ use super::preview::Preview;
 use super::provisional::ProvisionalDabs;
 use super::shadow::{Shadow, light_matrix};
 use super::surroundings::Surroundings;
-use crate::look::{Light, Look, Map, linear};
+use crate::look::{CutPlane, Light, Look, Map, linear};
 use crate::viewer::overlay_mesh::{OverlayMesh, Triangles};
 use crate::viewer::ssao::Ssao;
 use sculptd_clay::{Page, Snapshot};
@@ -372,6 +372,7 @@ impl Renderer {
             shadow: sun.unwrap_or_default().to_cols_array_2d(),
             angle_up,
             angle_ends,
+            cut: scene.look.cut.map_or([0.0; 4], CutPlane::numbers),
             led: scene.beside.led.copied().unwrap_or_default(),
         };
         gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));

@@ -7,6 +7,7 @@ use super::check_task::CheckWork;
 use super::distance_field::{self, DistanceField, SizesRequest};
 use super::latest_wins::LatestWins;
 use super::preview;
+use super::section_figures::{SectionRequest, section};
 use super::tasks::{TaskReport, Tasks};
 use sculptd_geometry::job::Job;
 
@@ -22,6 +23,7 @@ pub struct SnapshotWorkers {
     field: Option<LatestWins<distance_field::DistanceRequest>>,
     sizes: Option<LatestWins<SizesRequest>>,
     check: Option<LatestWins<CheckWork>>,
+    section: Option<LatestWins<SectionRequest>>,
 }
 
 impl SnapshotWorkers {
@@ -57,6 +59,16 @@ impl SnapshotWorkers {
                     Ok(found) => say.send(TaskReport::Measured(Box::new(found))).is_ok(),
                     Err(_) => true,
                 }
+            })
+        });
+        thread.request(wanted);
+    }
+
+    pub fn section(&mut self, wanted: SectionRequest, tasks: &Tasks) {
+        let say = tasks.reporter();
+        let thread = self.section.get_or_insert_with(|| {
+            LatestWins::start("sculptd-section", move |wanted: SectionRequest, _| {
+                section(&wanted).is_none_or(|found| say.send(TaskReport::Section(found)).is_ok())
             })
         });
         thread.request(wanted);

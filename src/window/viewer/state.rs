@@ -33,7 +33,7 @@ use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
 use super::wiring::Wiring;
 use crate::language::{set_current, tr};
-use crate::look::{MATERIALS, Material};
+use crate::look::{CutPlane, MATERIALS, Material};
 use crate::panels::hand_menu::MenuBall;
 use crate::panels::state::{FrameFigures, KeyMap, ObjectVersion, UiState, Views};
 use sculptd_camera::camera_thread::CameraPreview;
@@ -124,6 +124,7 @@ pub(super) struct WindowState {
     pub(super) before_of: Option<ObjectId>,
     pub(super) asked_distance: Option<(ClayState, ClayState, Option<Similarity>, ObjectTransform)>,
     pub(super) asked_sizes: Option<(ClayState, DVec3, ObjectTransform)>,
+    pub(super) asked_section: Option<(ClayState, ObjectTransform, CutPlane)>,
     /// The check that was asked for last; the objects that one looks at, and since when they are
     /// so.
     pub(super) asked_check: Option<CheckKey>,
@@ -305,6 +306,7 @@ impl WindowState {
             before_of: None,
             asked_distance: None,
             asked_sizes: None,
+            asked_section: None,
             asked_check: None,
             check_rested: Default::default(),
             plate: PlateHeight::default(),

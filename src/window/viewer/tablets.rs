@@ -189,6 +189,13 @@ impl WindowState {
             };
             *slot = Some((*id, place));
         }
+        // A form that is cut is only looked at.
+        if self.ui_state.look.cut.is_some() {
+            let all = self.tablets.in_range.iter().map(|id| Some((*id, PenPlace::Unknown)));
+            let places = all.chain(std::iter::repeat(None));
+            desktop.tablets.iter_mut().zip(places).for_each(|(slot, place)| *slot = place);
+            return desktop;
+        }
         // An installation has the whole screen, and nothing covers it.
         let follows = desktop.tablets.iter().any(Option::is_some);
         if self.views.are_four() {

@@ -23,7 +23,8 @@ use crate::language::{current, set_current, tr};
 use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
-    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, ThicknessSummary,
+    DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, SectionFigures,
+    ThicknessSummary,
 };
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_clay::measured_mask::MaskMeasure;
@@ -73,6 +74,7 @@ pub enum TaskReport {
     Preview(Result<Option<Arc<Preview>>, String>),
     Distances(MapValues, DistanceSummary),
     Measured(Box<Measured>),
+    Section(SectionFigures),
     Checked(Box<CheckReport>),
     /// A dialog's answer.
     Chosen(FilePurpose, PathBuf),

@@ -24,7 +24,7 @@ pub struct ProbedWall {
 }
 
 /// Returns the wall behind the surface that is seen on a ray, along the normal of the triangle that
-/// is hit; `None` if nothing is hit, or if there is no surface behind.
+/// is hit; `None` if nothing is hit, if it is hit from inside, or if there is no surface behind.
 pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
     let to_world = state.transform();
     let own = to_world.inverse().ray(ray);
@@ -35,6 +35,10 @@ pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
     };
     let near = state.mesh.pick(own)?;
     let normal = flat(&near);
+    // The inside of a form, through a cut.
+    if normal.dot(own.dir) > 0.0 {
+        return None;
+    }
     let (lo, hi) = state.mesh.bounds();
     let below = lo.abs().max(hi.abs()).max_element() * BELOW;
     let far = state.mesh.pick(Ray { origin: near.position - normal * below, dir: -normal })?;

@@ -62,7 +62,7 @@ pub use request::UiRequest;
 pub use retopology::{CREASE, Retopology};
 pub use sculptd_daemon::window_link::NextSculpture;
 pub use search::SearchBox;
-pub use sizes::{DistanceSummary, DistanceTarget, Measured, SizesPage};
+pub use sizes::{DistanceSummary, DistanceTarget, Measured, SectionFigures, SizesPage};
 pub use tab::Tab;
 pub use tablet_keys::{TabletKeys, TabletKeysPage};
 pub use thickness::{ThicknessSummary, ThinSpot, WallsPage};

@@ -1,5 +1,6 @@
 //! What the size page shows: measures, the shadow along a direction, distances to another shape.
 
+use crate::look::CutPlane;
 use glam::DVec3;
 use sculptd_geometry::projection::PlaneRegion;
 
@@ -16,6 +17,17 @@ pub struct Measured {
     pub direction: DVec3,
     pub shadow: f64,
     pub outline: Vec<PlaneRegion>,
+}
+
+/// The section of the object by a plane; lengths in the world's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionFigures {
+    pub cut: CutPlane,
+    pub area: f64,
+    pub perimeter: f64,
+    pub contours: usize,
+    /// Contours with two ends: the object is open there.
+    pub open: usize,
 }
 
 /// Reference of distances.
@@ -45,6 +57,8 @@ pub struct SizesPage {
     pub direction: DVec3,
     pub against: DistanceTarget,
     pub distances: Option<DistanceSummary>,
+    /// Of the plane that cuts the object.
+    pub section: Option<SectionFigures>,
     /// The drawing's file.
     pub file: String,
 }
@@ -56,6 +70,7 @@ impl Default for SizesPage {
             direction: DVec3::NEG_Z,
             against: DistanceTarget::default(),
             distances: None,
+            section: None,
             file: "outline.svg".into(),
         }
     }
