@@ -18,8 +18,9 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
 
 use super::emit::{BooleanFacts, FaceOrigin, finish, separate};
-use super::merge::{is_flat, joined_rings};
+use super::merge::is_flat;
 use super::points::Map;
+use super::ring_joining::joined_rings;
 use super::{Operation, attributes};
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};

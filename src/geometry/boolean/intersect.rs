@@ -52,6 +52,13 @@ pub fn c3(p: DVec3) -> Coord3D<f64> {
 /// Pairs that one thread looks at before another may take some.
 const PAIRS: usize = 512;
 
+/// The points of triangles with many, sorted, by side and triangle.
+#[derive(Default)]
+struct SortedPoints(Map<(u32, u32), Vec<u32>>);
+
+/// More points of a triangle are sorted.
+const MANY_POINTS: usize = 24;
+
 struct Finder<'a> {
     points: &'a mut PointSet,
     eps: f64,
@@ -72,14 +79,27 @@ pub fn intersect(
 ) -> Result<Intersections, Cancelled> {
     let [a, b] = triangles;
     let at = &points.at;
-    let near = |&(i, j): &(u32, u32)| {
-        let (s, t) = (a[i as usize], b[j as usize]);
-        near_plane(at, s, t, eps)
-            && near_plane(at, t, s, eps)
-            && !beside(at, s, t, eps)
-            && !beside(at, t, s, eps)
+    // Where each triangle is in several pairs, its plane is computed once.
+    let several = pairs.len() > 2 * b.len();
+    let planes: Vec<(DVec3, DVec3)> =
+        if several { b.iter().map(|&t| plane(at, t)).collect() } else { Vec::new() };
+    let near = |group: &[(u32, u32)]| -> Vec<(u32, u32)> {
+        let Some(&(i, _)) = group.first() else { return Vec::new() };
+        let s = a[i as usize];
+        let own = plane(at, s);
+        let near = |&&(_, j): &&(u32, u32)| {
+            let t = b[j as usize];
+            near_plane(at, own, t, eps)
+                && {
+                    let other = planes.get(j as usize).copied();
+                    near_plane(at, other.unwrap_or_else(|| plane(at, t)), s, eps)
+                }
+                && !beside(at, s, t, eps)
+                && !beside(at, t, s, eps)
+        };
+        group.iter().filter(near).copied().collect()
     };
-    pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
+    pairs = by_first(&pairs, near);
     job.check()?;
     met(triangles, &pairs, [0, 1], points, eps, job)
 }
@@ -97,7 +117,10 @@ pub fn intersect_itself(
     let near = |&(i, j): &(u32, u32)| {
         let (s, t) = (triangles[i as usize], triangles[j as usize]);
         let apart = |s, t| beyond_shared(at, s, t, eps) || beside(at, s, t, eps);
-        near_plane(at, s, t, eps) && near_plane(at, t, s, eps) && !apart(s, t) && !apart(t, s)
+        near_plane(at, plane(at, s), t, eps)
+            && near_plane(at, plane(at, t), s, eps)
+            && !apart(s, t)
+            && !apart(t, s)
     };
     pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
     job.check()?;
@@ -136,19 +159,38 @@ fn met(
         e.inner.retain(|&i| i != p && i != q);
     }
     m.shared.resize(points.at.len(), false);
+    let mut sorted = SortedPoints::default();
     for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;
         }
-        m.segments(&points.at, sides, [i, j], [a[i as usize], b[j as usize]], eps);
+        m.segments(&points.at, sides, [i, j], [a[i as usize], b[j as usize]], eps, &mut sorted);
     }
     Ok(m)
 }
 
-/// Whether `t` reaches the plane of `s`.
-fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
-    let [a, b, c] = s.map(|i| at[i as usize]);
-    let n = (b - a).cross(c - a).normalize_or_zero();
+/// The pairs of `keep`, which takes those with the same first triangle together.
+fn by_first(
+    pairs: &[(u32, u32)],
+    keep: impl Fn(&[(u32, u32)]) -> Vec<(u32, u32)> + Sync,
+) -> Vec<(u32, u32)> {
+    let of = |part: &[(u32, u32)]| -> Vec<(u32, u32)> {
+        part.chunk_by(|p, q| p.0 == q.0).flat_map(&keep).collect()
+    };
+    if pairs.len() <= PAIRS {
+        return of(pairs);
+    }
+    pairs.par_chunks(PAIRS).map(of).collect::<Vec<_>>().concat()
+}
+
+/// A place in the plane of a triangle, and its normal.
+fn plane(at: &[DVec3], t: [u32; 3]) -> (DVec3, DVec3) {
+    let [a, b, c] = t.map(|i| at[i as usize]);
+    (a, (b - a).cross(c - a).normalize_or_zero())
+}
+
+/// Whether `t` reaches a plane.
+fn near_plane(at: &[DVec3], (a, n): (DVec3, DVec3), t: [u32; 3], eps: f64) -> bool {
     let d = t.map(|i| (at[i as usize] - a).dot(n));
     d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
 }
@@ -373,6 +415,13 @@ impl Intersections {
         self.edge_ids.get(&(a.min(b), a.max(b))).copied()
     }
 
+    /// The number of points of [`Intersections::closure`].
+    fn closure_len(&self, side: usize, id: u32, t: [u32; 3]) -> usize {
+        let edges = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| self.edge_of(a, b));
+        let on = edges.into_iter().flatten().map(|e| self.edges[e as usize].inner.len());
+        3 + on.sum::<usize>() + self.marks[side].get(&id).map_or(0, |m| m.inner.len())
+    }
+
     /// The points of a triangle: its corners, on its edges, and inside; some more than once.
     fn closure(&self, side: usize, id: u32, t: [u32; 3]) -> impl Iterator<Item = u32> {
         let edges = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| self.edge_of(a, b));
@@ -382,14 +431,30 @@ impl Intersections {
     }
 
     /// The points that two triangles share, in order. A face that many others cut has many points:
-    /// only the points of the triangle with fewer are sorted.
-    fn common(&self, sides: [usize; 2], ids: [u32; 2], tris: [[u32; 3]; 2]) -> Vec<u32> {
+    /// they are sorted once, and those of the other triangle are looked for among them.
+    fn common(
+        &self,
+        sides: [usize; 2],
+        ids: [u32; 2],
+        tris: [[u32; 3]; 2],
+        sorted: &mut SortedPoints,
+    ) -> Vec<u32> {
         let points = |s: usize| self.closure(sides[s], ids[s], tris[s]);
-        let fewer = usize::from(points(1).count() < points(0).count());
-        let mut few: Vec<u32> = points(fewer).collect();
-        few.sort_unstable();
-        let mut out: Vec<u32> =
-            points(1 - fewer).filter(|i| few.binary_search(i).is_ok()).collect();
+        let counts = [0, 1].map(|s| self.closure_len(sides[s], ids[s], tris[s]));
+        let fewer = usize::from(counts[1] < counts[0]);
+        let more = 1 - fewer;
+        let mut out: Vec<u32> = if counts[more] > MANY_POINTS {
+            let key = (sides[more] as u32, ids[more]);
+            let all = sorted.0.entry(key).or_insert_with(|| {
+                let mut all: Vec<u32> = points(more).collect();
+                all.sort_unstable();
+                all
+            });
+            points(fewer).filter(|i| all.binary_search(i).is_ok()).collect()
+        } else {
+            let all: Vec<u32> = points(more).collect();
+            points(fewer).filter(|i| all.contains(i)).collect()
+        };
         out.sort_unstable();
         out.dedup();
         out
@@ -413,8 +478,9 @@ impl Intersections {
         ids: [u32; 2],
         tris: [[u32; 3]; 2],
         eps: f64,
+        sorted: &mut SortedPoints,
     ) {
-        let mut x = self.common(sides, ids, tris);
+        let mut x = self.common(sides, ids, tris, sorted);
         for &i in &x {
             self.shared[i as usize] = true;
         }

@@ -55,6 +55,7 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
+mod ring_joining;
 mod routes;
 mod self_arrangement;
 mod self_cuts;

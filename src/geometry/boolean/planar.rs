@@ -195,7 +195,7 @@ fn assemble(
 }
 
 /// The triangles of a polygon with holes, as few thin ones as can be (constrained Delaunay, Chew
-/// 1989). None where rounding makes the loops cross.
+/// 1989). None where rounding makes the loops cross or touch.
 pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]>> {
     use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
     let flat = flatten(n);
@@ -213,38 +213,45 @@ pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]
             } else if names[h.index()] != v {
                 return None;
             }
-            ring.push((h, c));
+            ring.push(h);
         }
         rings.push(ring);
     }
     for ring in &rings {
         for i in 0..ring.len() {
-            let (a, b) = (ring[i].0, ring[(i + 1) % ring.len()].0);
+            let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
             if !cdt.can_add_constraint(a, b) {
                 return None;
             }
             cdt.add_constraint(a, b);
         }
     }
-    let inside = |p: Coord<f64>| {
-        let mut odd = false;
-        for ring in &rings {
-            for i in 0..ring.len() {
-                let (a, b) = (ring[i].1, ring[(i + 1) % ring.len()].1);
-                if (a.y > p.y) != (b.y > p.y) {
-                    let side = orient2d(a, b, p);
-                    odd ^= if b.y > a.y { side > 0.0 } else { side < 0.0 };
-                }
-            }
+    // Each edge of a loop parts inside from outside, from the outer face on.
+    let mut parts = vec![false; cdt.num_undirected_edges()];
+    for ring in &rings {
+        for i in 0..ring.len() {
+            let edge = cdt.get_edge_from_neighbors(ring[i], ring[(i + 1) % ring.len()])?;
+            let part = &mut parts[edge.as_undirected().fix().index()];
+            *part = !*part;
         }
-        odd
-    };
+    }
+    let mut inside: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
+    let outer = cdt.outer_face().fix();
+    inside[outer.index()] = Some(false);
+    let mut todo: Vec<_> = cdt.convex_hull().flat_map(|e| [e, e.rev()]).collect();
+    todo.retain(|e| e.face().fix() == outer);
+    while let Some(edge) = todo.pop() {
+        let (from, to) = (edge.face().fix().index(), edge.rev().face());
+        if inside[to.fix().index()].is_none() {
+            let part = parts[edge.as_undirected().fix().index()];
+            inside[to.fix().index()] = Some(inside[from]? != part);
+            todo.extend(to.as_inner()?.adjacent_edges());
+        }
+    }
     let mut out = Vec::new();
     for face in cdt.inner_faces() {
-        let v = face.vertices();
-        let [a, b, c] = [0, 1, 2].map(|k| v[k].position());
-        if inside(Coord { x: (a.x + b.x + c.x) / 3.0, y: (a.y + b.y + c.y) / 3.0 }) {
-            out.push([0, 1, 2].map(|k| names[v[k].index()]));
+        if inside[face.fix().index()] == Some(true) {
+            out.push(face.vertices().map(|v| names[v.index()]));
         }
     }
     // Corners, one border and holes: what a triangulation must count.
