@@ -103,7 +103,7 @@ impl ResultFaces {
     fn triangles(self, operands: [&PolyMesh; 2]) -> bool {
         let all = |m: &PolyMesh| {
             m.corners.len() == 3 * m.face_count()
-                && m.face_starts.par_windows(2).all(|w| w[1] - w[0] == 3)
+                && m.face_starts.par_windows(2).with_min_len(common::FEW).all(|w| w[1] - w[0] == 3)
         };
         match self {
             ResultFaces::Triangles => true,

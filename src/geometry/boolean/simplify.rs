@@ -60,6 +60,8 @@ struct Region {
     facet: Vec<u32>,
     facets: Vec<Facet>,
     alive: Vec<bool>,
+    /// Triangles that changed since edges were last flipped, where all that could be were.
+    changed: Vec<bool>,
     /// Triangles at each vertex.
     around: Vec<Vec<u32>>,
 }
@@ -103,6 +105,7 @@ pub fn retriangulated(
         facet: vec![NONE; count],
         facets: Vec::new(),
         alive: vec![true; count],
+        changed: vec![true; count],
         around,
     };
     region.find_facets(flat, group);
@@ -284,6 +287,7 @@ impl Region {
                 }
             } else {
                 c.iter_mut().filter(|x| **x == v).for_each(|x| *x = u);
+                self.changed[t as usize] = true;
                 self.around[u as usize].push(t);
             }
         }
@@ -328,19 +332,28 @@ impl Region {
 
     /// Flips edges within facets until each facet's triangles are Delaunay.
     fn flip(&mut self) {
-        let mut queue: Vec<(u32, u32)> = Vec::new();
+        let (mut queue, mut kept) = (Vec::new(), 0);
         for (t, c) in self.triangles.iter().enumerate().filter(|(t, _)| self.alive[*t]) {
             let facet = self.facet[t];
             for k in 0..3 {
                 let (a, b) = (c[k], c[(k + 1) % 3]);
-                if a < b && self.twin(a, b).is_some_and(|u| self.facet[u as usize] == facet) {
+                let Some(u) = self.twin(a, b).filter(|_| a < b) else { continue };
+                if self.facet[u as usize] != facet {
+                    continue;
+                }
+                // Between two triangles that are as they were, the edge stays.
+                if self.changed[t] || self.changed[u as usize] {
                     queue.push((a, b));
+                } else {
+                    kept += 1;
                 }
             }
         }
-        let mut left = 16 * queue.len() + 64;
+        let mut left = 16 * (queue.len() + kept) + 64;
+        self.changed.fill(false);
         while let Some((a, b)) = queue.pop() {
             if left == 0 {
+                self.changed.fill(true);
                 return;
             }
             left -= 1;
