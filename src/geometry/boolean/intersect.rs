@@ -87,7 +87,7 @@ pub fn intersect(
 ) -> Result<Intersections, Cancelled> {
     let [a, b] = triangles;
     let at = &points.at;
-    // Where each triangle is in several pairs, its plane is computed once.
+    // The plane of a triangle in several pairs is computed once.
     let several = pairs.len() > 2 * b.len();
     let planes: Vec<(DVec3, DVec3)> =
         if several { b.iter().map(|&t| plane(at, t)).collect() } else { Vec::new() };
@@ -189,7 +189,7 @@ fn met(
     Ok(m)
 }
 
-/// The pairs that `keep` appends, which is called with those that have one first triangle.
+/// Calls `keep` with all pairs of one first triangle at a time; returns the pairs that it appends.
 fn by_first(
     pairs: &[(u32, u32)],
     keep: impl Fn(&[(u32, u32)], &mut Vec<(u32, u32)>) + Sync,

@@ -59,7 +59,7 @@ struct LinkedRing {
 struct LinkedRings<F> {
     rings: Vec<LinkedRing>,
     corners: Vec<RingCorner>,
-    /// The ring that has a vertex, of those that have grown. The vertices are numbered by first use.
+    /// The last grown ring that has a vertex. The vertices are numbered by first use.
     holder: Vec<u32>,
     names: Vec<u32>,
     accept: F,
@@ -200,7 +200,7 @@ impl<F: Fn(u32, u32, u32) -> bool> LinkedRings<F> {
         }
     }
 
-    /// Takes an edge out of the list of those that may join.
+    /// Removes an edge from the list.
     fn close(&mut self, c: u32) {
         let RingCorner { open_before: b, open_after: a, .. } = self.corners[c as usize];
         self.corners[b as usize].open_after = a;
@@ -249,8 +249,8 @@ impl<F: Fn(u32, u32, u32) -> bool> LinkedRings<F> {
         (common == length + 1 && bad == 0).then_some(chain)
     }
 
-    /// Joins a ring along a chain, with `open` edges in the list of those that may join. Returns the
-    /// first edge of the list from now on, and the number of edges that came into it.
+    /// Joins a ring along a chain, with `open` edges in the list. Returns the first edge of the
+    /// list from now on, and the number of edges that came into it.
     fn join(&mut self, ring: u32, chain: &CommonChain, open: usize) -> (u32, usize) {
         let other = self.corners[chain.first_twin as usize].ring as usize;
         let mut c = chain.first;

@@ -51,7 +51,7 @@ struct Facet {
     normal: DVec3,
 }
 
-/// Vertices are numbered anew, in the order of the points.
+/// Its vertices have numbers in the order of their points.
 struct Region {
     at: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -130,8 +130,8 @@ impl Region {
         (b - a).cross(c - a)
     }
 
-    /// The triangles in which an edge runs from `a` to `b` and from `b` to `a`, where exactly one does
-    /// each.
+    /// The triangles in which an edge runs from `a` to `b` and from `b` to `a`, where there is
+    /// exactly one of each.
     fn at_edge(&self, a: u32, b: u32) -> Option<(u32, u32)> {
         let (mut same, mut back) = (NONE, NONE);
         for &t in &self.around[a as usize] {
