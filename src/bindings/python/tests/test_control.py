@@ -1,5 +1,6 @@
 """The client against a real daemon; skipped unless SCULPTD_BINARY names one."""
 
+import asyncio
 import pathlib
 import subprocess
 import sys
@@ -31,6 +32,21 @@ class Absent(unittest.TestCase):
         with self.assertRaises(control.DaemonAbsent) as caught:
             control.Client("/nowhere/sculptd.sock")
         self.assertEqual(caught.exception.path, "/nowhere/sculptd.sock")
+
+    def test_a_client_waits_no_longer_than_told(self):
+        began = time.monotonic()
+        with self.assertRaises(control.DaemonAbsent):
+            control.Client("/nowhere/sculptd.sock", wait=0.3)
+        self.assertLess(abs(time.monotonic() - began - 0.3), 0.25)
+
+        async def connect():
+            async with control.AsyncClient("/nowhere/sculptd.sock", wait=0.3):
+                pass
+
+        began = time.monotonic()
+        with self.assertRaises(control.DaemonAbsent):
+            asyncio.run(connect())
+        self.assertLess(abs(time.monotonic() - began - 0.3), 0.25)
 
 
 @unittest.skipUnless(BINARY, "SCULPTD_BINARY is not set")

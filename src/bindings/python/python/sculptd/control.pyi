@@ -1354,7 +1354,13 @@ class _Sets:
 class Client:
     path: str
     patience: float
-    def __init__(self, path: str | PathLike[str] | None = None, patience: float = 120.0) -> None: ...
+    wait: float
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        patience: float = 120.0,
+        wait: float = 0.0,
+    ) -> None: ...
     def call(
         self, method: str, params: dict[str, Any] | None = None, patience: float | None = None
     ) -> Any: ...
@@ -1643,7 +1649,13 @@ class _AsyncSets:
 class AsyncClient:
     path: str
     patience: float
-    def __init__(self, path: str | PathLike[str] | None = None, patience: float = 120.0) -> None: ...
+    wait: float
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        patience: float = 120.0,
+        wait: float = 0.0,
+    ) -> None: ...
     async def call(
         self, method: str, params: dict[str, Any] | None = None, patience: float | None = None
     ) -> Any: ...
