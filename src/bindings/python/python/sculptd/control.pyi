@@ -167,7 +167,9 @@ class CurveReply(TypedDict):
 
 # Parameters of decimate.
 class DecimateParams(TypedDict):
-    # Stop before the surface moves by more than about this, in the mesh's unit.
+    # Stop before the error of a collapse exceeds this, in the mesh's unit: the root of the mean
+    # square distance of the new vertex from the planes of the triangles that it stands for. It is
+    # no bound on the distance between the surfaces.
     max_error: NotRequired[float | None]
     # Stop at this many triangles; at least 4, or 0 with max_error.
     triangles: NotRequired[int]
