@@ -174,7 +174,7 @@ impl SpanTree {
 
 /// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to
 /// the branch's root. A cancelled job leaves branches out.
-fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<SpanNode> {
+fn branch(items: &mut [TreeItem], first: u32, spans: &[Span], job: &Job) -> Vec<SpanNode> {
     if items.len() <= FORK {
         let mut out = Vec::with_capacity(items.len());
         small_branch(items, first, spans, &mut out);
@@ -199,7 +199,7 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> 
 }
 
 /// Appends the nodes of a branch to those of a tree.
-fn small_branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], out: &mut Vec<SpanNode>) {
+fn small_branch(items: &mut [TreeItem], first: u32, spans: &[Span], out: &mut Vec<SpanNode>) {
     let (span, own) = (span_of(items, spans), out.len());
     if items.len() <= LEAF {
         out.push(SpanNode { span, at: first, count: items.len() as u32 });
@@ -213,12 +213,15 @@ fn small_branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], out: &mu
     small_branch(r, second, spans, out);
 }
 
-fn span_of(items: &[(u32, DVec3)], spans: &[Span]) -> Span {
+/// An item, and the middle of its box.
+type TreeItem = (u32, DVec3);
+
+fn span_of(items: &[TreeItem], spans: &[Span]) -> Span {
     items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]))
 }
 
 /// Divides the items at the median along the side in which they spread most.
-fn halves(items: &mut [(u32, DVec3)]) -> (&mut [(u32, DVec3)], &mut [(u32, DVec3)]) {
+fn halves(items: &mut [TreeItem]) -> (&mut [TreeItem], &mut [TreeItem]) {
     let c = Span::of(items.iter().map(|i| i.1));
     let d = c.hi - c.lo;
     let axis = if d.x >= d.y && d.x >= d.z {

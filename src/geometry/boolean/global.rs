@@ -192,7 +192,7 @@ impl HeldOperands {
             let flat = !triangles
                 && rings.len() > 1
                 && is_flat(source, face as usize, &source.positions, self.eps);
-            let rings = if flat { joined_rings(rings, &at) } else { rings };
+            let rings = if flat { joined_rings(&rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
                 origins.push(FaceOrigin { operand, face });

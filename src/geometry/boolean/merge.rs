@@ -50,7 +50,7 @@ pub fn polygons(
         }
     }
     if flat && rings.len() > 1 {
-        rings = joined_rings(rings, at);
+        rings = joined_rings(&rings, at);
     }
     rings.into_iter().map(|corners| ResultPolygon { side, face, corners }).collect()
 }

@@ -9,14 +9,14 @@ const NONE: u32 = u32::MAX;
 
 /// Joins polygons that share one chain of edges and touch nowhere else, until none do. No joined
 /// polygon runs back along itself.
-pub fn joined_rings(rings: Vec<Vec<u32>>, at: &[DVec3]) -> Vec<Vec<u32>> {
+pub fn joined_rings(rings: &[Vec<u32>], at: &[DVec3]) -> Vec<Vec<u32>> {
     joined_rings_where(rings, |a, o, b| !spike(at, a, o, b))
 }
 
 /// As [`joined_rings`], where `accept` takes each corner of the polygon that two become: the corner
 /// before it, the corner, and the one after it.
 pub fn joined_rings_where(
-    rings: Vec<Vec<u32>>,
+    rings: &[Vec<u32>],
     accept: impl Fn(u32, u32, u32) -> bool,
 ) -> Vec<Vec<u32>> {
     let mut all = LinkedRings::new(rings, accept);
@@ -77,7 +77,7 @@ struct CommonChain {
 }
 
 impl<F: Fn(u32, u32, u32) -> bool> LinkedRings<F> {
-    fn new(rings: Vec<Vec<u32>>, accept: F) -> Self {
+    fn new(rings: &[Vec<u32>], accept: F) -> Self {
         let mut numbers: Map<u32, u32> = Map::default();
         let mut out = LinkedRings {
             rings: Vec::with_capacity(rings.len()),
@@ -396,12 +396,8 @@ mod tests {
                 let [a, o, b] = [a, o, b].map(|v| at[v as usize]);
                 (o - a).cross(b - o).z >= 0.0
             };
-            assert_eq!(
-                joined_rings(rings.clone(), &at),
-                joined_slowly(&rings, no_spike),
-                "{round}"
-            );
-            let made = joined_rings_where(rings.clone(), convex);
+            assert_eq!(joined_rings(&rings, &at), joined_slowly(&rings, no_spike), "{round}");
+            let made = joined_rings_where(&rings, convex);
             assert_eq!(made, joined_slowly(&rings, convex), "{round}");
         }
     }
@@ -410,7 +406,7 @@ mod tests {
     fn rings_that_touch_themselves_or_share_an_edge_stay() {
         let at = vec![DVec3::ZERO; 8];
         let twice = vec![vec![0, 1, 2, 3, 1, 4], vec![1, 0, 5], vec![6, 7, 0], vec![6, 7, 1]];
-        assert_eq!(joined_rings(twice.clone(), &at), twice);
-        assert!(joined_rings(vec![Vec::new()], &at).is_empty());
+        assert_eq!(joined_rings(&twice, &at), twice);
+        assert!(joined_rings(&[Vec::new()], &at).is_empty());
     }
 }

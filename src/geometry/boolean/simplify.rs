@@ -43,7 +43,8 @@ pub fn convex(corners: &[u32], at: &[DVec3]) -> Vec<Vec<u32>> {
     }
     let mut triangles = Vec::new();
     triangulate::face(at, corners, &mut triangles);
-    joined_rings_where(triangles.into_iter().map(|t| t.to_vec()).collect(), good)
+    let triangles: Vec<Vec<u32>> = triangles.into_iter().map(|t| t.to_vec()).collect();
+    joined_rings_where(&triangles, good)
 }
 
 /// Triangles of one plane.

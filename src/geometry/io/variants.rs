@@ -5,9 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::problem::ParseError;
-use super::write::lost;
 use super::write_packed::base64;
-use super::{LoadedMesh, encode, parse, rounding};
+use super::{LoadedMesh, encode, lost, parse, rounding};
 use crate::job::Job;
 
 fn read(name: &str, bytes: &[u8]) -> LoadedMesh {

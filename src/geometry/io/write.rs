@@ -72,7 +72,7 @@ pub fn rounding(kind: &str, mesh: &PolyMesh) -> f64 {
 
 /// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.
 /// The surface is the same, so polygons that are cut into triangles are none of them.
-pub(super) fn lost(kind: &str, mesh: &PolyMesh) -> Vec<String> {
+pub fn lost(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     let mut out = Vec::new();
     let clear = |colours: &Vec<[u8; 4]>| colours.iter().any(|c| c[3] != 255);
     if kind == "obj" && mesh.colours.as_ref().is_some_and(clear) {

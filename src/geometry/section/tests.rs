@@ -199,7 +199,7 @@ fn faces_that_are_turned_leave_the_area_and_are_measured() {
             let (old, new) = (whole.centroid.expect("an area"), s.centroid.expect("an area"));
             assert!(old.distance(new) < 1e-9);
         }
-        // A surface that is inside out as a whole says so by its area.
+        // A surface that is inside out as a whole has a negative area.
         let s = at(&turned(&part, |_| true), normal, 0.3);
         close_to(s.area, -whole.area);
         assert_eq!(s.turned, 0.0);

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{
-    self as files, LoadedMesh, WriteError, encode, left_out, read_mesh, rounding, writable_format,
-    write_beside,
+    self as files, LoadedMesh, WriteError, encode, left_out, lost, read_mesh, rounding,
+    writable_format, write_beside,
 };
 use sculptd_geometry::job::Job;
 
@@ -156,7 +156,8 @@ pub fn write(
         ),
         _ => errors::write(&e),
     })?;
-    let mut losses = left_out(kind, &mesh);
+    // Primitives and results are polygons: to cut them changes no surface, so only `strict` minds.
+    let mut losses = if strict { left_out(kind, &mesh) } else { lost(kind, &mesh) };
     losses.extend(rounded(kind, &mesh, strict));
     tell(py, &losses, strict)?;
     match place {

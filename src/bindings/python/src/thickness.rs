@@ -78,7 +78,7 @@ impl Thickness {
     ///
     /// A limit between the bounds of a certified wall is a tie, and a tie passes: the bounds hold
     /// the rounding of the file's coordinates. So True says that no wall is proven to be thinner.
-    /// Where the limit must be kept for sure, test `least['lower'] >= limit`.
+    /// To keep the limit for sure, test `least['lower'] >= limit`.
     fn reaches(&self, limit: f32) -> Option<bool> {
         match self.measured.compare(limit) {
             Comparison::Reached => Some(true),
