@@ -27,6 +27,14 @@ class WithoutTheNativeModule(unittest.TestCase):
         self.assertEqual((out.stdout.split(), out.stderr), (["Client", "ImportError"], ""))
 
 
+class Submodules(unittest.TestCase):
+    def test_control_and_convert_are_there_after_one_import(self):
+        script = "import sculptd; print(sculptd.control.Client, sculptd.convert.to_trimesh)"
+        out = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertEqual((out.returncode, out.stderr), (0, ""))
+        self.assertTrue({"control", "convert"} <= set(dir(sculptd)))
+
+
 class Absent(unittest.TestCase):
     def test_no_daemon_is_an_error_with_the_path(self):
         with self.assertRaises(control.DaemonAbsent) as caught:
