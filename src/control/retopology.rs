@@ -91,7 +91,9 @@ pub struct DecimateParams {
     /// Stop at this many triangles; at least 4, or 0 with `max_error`.
     #[cfg_attr(test, schemars(range(min = 0, max = 67_108_864)))]
     pub triangles: u32,
-    /// Stop before the surface moves by more than about this, in the mesh's unit.
+    /// Stop before the error of a collapse exceeds this, in the mesh's unit: the root of the mean
+    /// square distance of the new vertex from the planes of the triangles that it stands for. It
+    /// is no bound on the distance between the surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, schemars(range(min = 0.0, max = COORDINATE.max)))]
     pub max_error: Option<f32>,

@@ -12,6 +12,10 @@
 //! through a ridge. Such lines are left out of the contours and the perimeter, and measured as
 //! [`Section::folded`], so that `perimeter + folded` is the length in which the plane meets the
 //! triangles.
+//!
+//! Triangles say on which side of a contour the solid is. Where neighbours disagree, for faces of
+//! the mesh are turned, the contours around which they do are directed by the even-odd rule: one
+//! within an odd number of others is a hole. [`Section::turned`] is then above 0.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,6 +46,9 @@ pub struct Contour {
     /// In the square of the mesh's unit, below 0 for a hole. An open contour counts as if a
     /// straight line closed it.
     pub area: f64,
+    /// The length of the pieces whose triangles have the solid on the other side, in the mesh's
+    /// unit.
+    pub turned: f64,
 }
 
 /// The section of a mesh by one plane.
@@ -57,6 +64,10 @@ pub struct Section {
     /// The length of the lines along which contours run out and back, in the mesh's unit, both
     /// directions counted. They enclose nothing and are not part of `contours` or `perimeter`.
     pub folded: f64,
+    /// The length of the pieces whose triangles have the solid on the other side than their contour
+    /// does, in the mesh's unit. 0 where neighbouring triangles agree. Above 0, `area` is that of
+    /// the even-odd rule, and a sum over the triangles is another.
+    pub turned: f64,
     /// The centre of the area, where there is one.
     pub centroid: Option<DVec3>,
     /// The number of contours with two ends.
@@ -239,9 +250,9 @@ impl Cut {
         }
     }
 
-    /// The contours, open ones first, from where they start; and the length of the lines along
-    /// which they run out and back.
-    fn trace(&self, partner: &[u32]) -> (Vec<Contour>, f64) {
+    /// The contours, open ones first, from where they start, each with the length of its pieces;
+    /// and the length of the lines along which they run out and back.
+    fn trace(&self, partner: &[u32]) -> (Vec<(Contour, f64)>, f64) {
         let mut folded = 0.0;
         let mut done = vec![false; self.pieces.len()];
         let mut out = Vec::new();
@@ -254,9 +265,12 @@ impl Cut {
                 continue;
             }
             let (mut points, mut at) = (vec![self.end(first)], first);
+            // The length of the pieces along the contour, and of those against it.
+            let mut along = [0.0; 2];
             let closed = loop {
                 done[at as usize / 2] = true;
                 let far = at ^ 1;
+                along[at as usize % 2] += self.end(at).distance(self.end(far));
                 folded += push(&mut points, self.end(far));
                 match partner[far as usize] {
                     OPEN => break false,
@@ -269,7 +283,8 @@ impl Cut {
                 folded += close(&mut points);
             }
             if points.len() > if closed { 3 } else { 1 } {
-                out.push(Contour { points, closed, area: 0.0 });
+                let contour = Contour { points, closed, area: 0.0, turned: along[1] };
+                out.push((contour, along[0] + along[1]));
             } else {
                 folded += length(&points);
             }
@@ -315,199 +330,83 @@ fn length(points: &[DVec3]) -> f64 {
     points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
+impl Contour {
+    /// Turns the contour, whose pieces have this length.
+    fn turn(&mut self, length: f64) {
+        self.points.reverse();
+        (self.area, self.turned) = (-self.area, length - self.turned);
+    }
+
+    /// Returns true if a place of the plane is within the contour, seen along an axis.
+    fn surrounds(&self, p: DVec3, [x, y]: [usize; 2]) -> bool {
+        let crosses = |w: &&[DVec3]| {
+            let (a, b) = (w[0] - p, w[1] - p);
+            (a[y] > 0.0) != (b[y] > 0.0) && {
+                let side = a[x] * b[y] - a[y] * b[x];
+                (side > 0.0) == (b[y] > a[y])
+            }
+        };
+        self.points.windows(2).filter(crosses).count() % 2 == 1
+    }
+}
+
+/// Directs the contours whose triangles disagree, each with the length of its pieces, by the
+/// even-odd rule.
+fn direct(contours: &mut [(Contour, f64)], up: DVec3) {
+    let axes = [[1, 2], [2, 0], [0, 1]][up.abs().max_position()];
+    let hole = |i: usize| {
+        let p = (contours[i].0.points[0] + contours[i].0.points[1]) * 0.5;
+        let others = contours.iter().enumerate().filter(|(j, _)| *j != i);
+        others.filter(|(_, (c, _))| c.closed && c.surrounds(p, axes)).count() % 2 == 1
+    };
+    let disagree = |c: &Contour| c.closed && c.turned > 0.0;
+    let wrong: Vec<usize> = (0..contours.len())
+        .filter(|&i| disagree(&contours[i].0) && (contours[i].0.area < 0.0) != hole(i))
+        .collect();
+    for i in wrong {
+        let (contour, length) = &mut contours[i];
+        contour.turn(*length);
+    }
+}
+
 impl Section {
-    fn of(mut contours: Vec<Contour>, normal: DVec3) -> Section {
-        let mut out =
-            Section { open: contours.iter().filter(|c| !c.closed).count(), ..Self::default() };
+    fn of(mut contours: Vec<(Contour, f64)>, normal: DVec3) -> Section {
         let up = normal.normalize();
-        let (mut moment, mut base) = (DVec3::ZERO, None);
-        for c in &mut contours {
-            out.perimeter += length(&c.points);
-            let origin = *base.get_or_insert(c.points[0]);
-            let round = c.points.iter().chain(c.points.first());
-            for (p, q) in c.points.iter().zip(round.skip(1)) {
+        let base = contours.first().map(|(c, _)| c.points[0]);
+        let origin = base.unwrap_or_default();
+        // Twice the area between each piece and the origin.
+        let fans = |c: &Contour| -> Vec<(DVec3, f64)> {
+            let round = c.points.iter().chain(c.points.first()).skip(1);
+            let fan = |(p, q): (&DVec3, &DVec3)| {
                 let (p, q) = (*p - origin, *q - origin);
-                let twice = p.cross(q).dot(up);
+                (p + q, p.cross(q).dot(up))
+            };
+            c.points.iter().zip(round).map(fan).collect()
+        };
+        if contours.iter().any(|(c, _)| c.turned > 0.0) {
+            for (c, _) in &mut contours {
+                c.area = fans(c).iter().map(|f| f.1 * 0.5).sum();
+            }
+            direct(&mut contours, up);
+        }
+        let mut out = Self::default();
+        let mut moment = DVec3::ZERO;
+        for (mut c, _) in contours {
+            out.open += usize::from(!c.closed);
+            out.perimeter += length(&c.points);
+            out.turned += c.turned;
+            c.area = 0.0;
+            for (sum, twice) in fans(&c) {
                 out.area += twice * 0.5;
                 c.area += twice * 0.5;
-                moment += (p + q) * (twice / 6.0);
+                moment += sum * (twice / 6.0);
             }
+            out.contours.push(c);
         }
         out.centroid = base.map(|o| o + moment / out.area).filter(|c| c.is_finite());
-        out.contours = contours;
         out
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::measure::measures;
-    use crate::shapes::{cuboid, cylinder, icosphere, torus};
-
-    fn at(mesh: &PolyMesh, normal: DVec3, offset: f64) -> Section {
-        let section = Slicer::new(mesh, normal).expect("a direction").at(offset);
-        assert_eq!((section.open, section.contours.iter().all(|c| c.closed)), (0, true));
-        section
-    }
-
-    fn close_to(value: f64, expected: f64) {
-        assert!((value - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{value} {expected}");
-    }
-
-    fn both(a: &PolyMesh, b: &PolyMesh) -> PolyMesh {
-        let mut out = a.clone();
-        let base = a.positions.len() as u32;
-        out.positions.extend(&b.positions);
-        b.faces().for_each(|f| out.push_face(&f.iter().map(|v| v + base).collect::<Vec<_>>()));
-        out
-    }
-
-    #[test]
-    fn a_box_has_its_outline_in_its_faces_too() {
-        let mesh = cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 20.0));
-        for z in [0.0, 1e-9, 5.0, 20.0 - 1e-9, 20.0] {
-            let s = at(&mesh, DVec3::Z, z);
-            assert_eq!(s.contours.len(), 1);
-            close_to(s.area, 1200.0);
-            close_to(s.perimeter, 140.0);
-            assert!(s.centroid.expect("an area").distance(DVec3::new(20.0, 15.0, z)) < 1e-9);
-        }
-        for z in [-1e-9, 20.0 + 1e-9] {
-            assert_eq!(at(&mesh, DVec3::Z, z), Section::default());
-        }
-        // Through four edges, and along one of them alone.
-        close_to(at(&mesh, DVec3::new(3.0, -4.0, 0.0), 0.0).area, 50.0 * 20.0);
-        let edge = Section { folded: 2.0 * 20.0, ..Section::default() };
-        assert_eq!(at(&mesh, DVec3::new(1.0, 1.0, 0.0), 70.0), edge);
-        assert!(Slicer::new(&mesh, DVec3::ZERO).is_none());
-        assert!(Slicer::new(&mesh, DVec3::splat(f64::NAN)).is_none());
-    }
-
-    #[test]
-    fn a_step_is_cut_below_it_and_a_hole_runs_clockwise() {
-        let (lo, hi) = (DVec3::ZERO, DVec3::splat(4.0));
-        let mut hole = cuboid(DVec3::ONE, DVec3::new(2.0, 2.0, 3.0));
-        crate::repair::flip(&mut hole);
-        let part = both(&cuboid(lo, hi), &hole);
-        let part = both(&part, &cuboid(DVec3::new(9.0, 0.0, 2.0), DVec3::new(12.0, 3.0, 7.0)));
-        for (z, area, contours) in
-            [(0.0, 16.0, 1), (1.0, 15.0, 2), (2.0, 24.0, 3), (3.0, 24.0, 3), (7.0, 9.0, 1)]
-        {
-            let s = at(&part, DVec3::Z, z);
-            close_to(s.area, area);
-            assert_eq!(s.contours.len(), contours, "at {z}");
-        }
-    }
-
-    /// Between two heights of vertices the area is a polynomial of degree two: two points of Gauss
-    /// give the volume exactly.
-    #[test]
-    fn sections_of_closed_meshes_add_up_to_the_volume() {
-        let prism = cylinder(3.0, 5.0, 7);
-        let lens = both(&torus(9.0, 2.0, 24, 12), &icosphere(4.0, 6).to_poly());
-        let tilted = DVec3::new(0.3, -0.5, 0.8);
-        for (mesh, normal) in [
-            (&prism, DVec3::Z),
-            (&prism, DVec3::X),
-            (&prism, tilted),
-            (&lens, DVec3::Y),
-            (&lens, DVec3::Z),
-            (&lens, tilted),
-        ] {
-            let slicer = Slicer::new(mesh, normal).expect("a direction");
-            let mut heights = slicer.heights.clone();
-            heights.sort_by(f64::total_cmp);
-            let mut volume = 0.0;
-            for w in heights.windows(2).filter(|w| w[1] - w[0] > 1e-9) {
-                let (middle, half) = ((w[0] + w[1]) * 0.5, (w[1] - w[0]) * 0.5);
-                let x = half / 3f64.sqrt();
-                volume +=
-                    half * (at(mesh, normal, middle - x).area + at(mesh, normal, middle + x).area);
-                // At a vertex: what is just below it.
-                let (here, below) =
-                    (at(mesh, normal, w[1]).area, at(mesh, normal, w[1] - 1e-10).area);
-                assert!((here - below).abs() < 1e-6, "{here} {below}");
-            }
-            let triangles = mesh.triangulate().0;
-            let whole = measures(&triangles).volume.abs();
-            assert!((volume / normal.length() - whole).abs() < 1e-6 * whole, "{volume} {whole}");
-        }
-    }
-
-    /// The sum over the triangles, without joining anything: a vertex in the plane is above it.
-    fn met(mesh: &PolyMesh, axis: usize, height: f64) -> f64 {
-        let piece = |t: &[u32; 3]| {
-            let p = t.map(|v| mesh.positions[v as usize]);
-            let cuts = [[0, 1], [1, 2], [2, 0]].map(|e| e.map(|i: usize| p[i]));
-            let cuts: Vec<DVec3> = cuts
-                .iter()
-                .filter(|[a, b]| (a[axis] >= height) != (b[axis] >= height))
-                .map(|[a, b]| *a + (*b - *a) * ((height - a[axis]) / (b[axis] - a[axis])))
-                .collect();
-            if let [a, b] = cuts[..] { a.distance(b) } else { 0.0 }
-        };
-        mesh.triangles().0.iter().map(piece).sum()
-    }
-
-    #[test]
-    fn a_line_out_and_back_is_no_perimeter_and_is_measured() {
-        // A roof: below its ridge a rectangle, in the plane of the ridge a line.
-        let corners =
-            [[0, 0, 0], [10, 0, 0], [10, 4, 0], [0, 4, 0], [0, 2, 3], [10, 2, 3]].map(|p| {
-                let [x, y, z] = p.map(f64::from);
-                DVec3::new(x, y, z)
-            });
-        let mut roof = PolyMesh { positions: corners.to_vec(), ..PolyMesh::new() };
-        for f in [&[3, 2, 1, 0][..], &[0, 1, 5, 4], &[2, 3, 4, 5], &[0, 4, 3], &[1, 2, 5]] {
-            roof.push_face(f);
-        }
-        let s = at(&roof, DVec3::Z, 3.0);
-        assert_eq!((s.contours.len(), s.area, s.perimeter, s.folded), (0, 0.0, 0.0, 20.0));
-        let s = at(&roof, DVec3::Z, 1.5);
-        assert_eq!((s.contours.len(), s.folded), (1, 0.0));
-        close_to(s.perimeter, 24.0);
-        // A doubled face on an edge of the box, which then has four faces, and one by itself.
-        let mut mesh = cuboid(DVec3::ZERO, DVec3::splat(4.0));
-        let find = |p: [f64; 3]| mesh.positions.iter().position(|q| *q == DVec3::from(p));
-        let [low, high] = [[4.0, 4.0, 0.0], [4.0; 3]].map(|p| find(p).expect("a corner") as u32);
-        let free = mesh.positions.len() as u32;
-        for p in [[6.0, 6.0, 1.0], [9.0, 0.0, 0.0], [9.0, 0.0, 4.0], [9.0, 2.0, 1.0]] {
-            mesh.positions.push(DVec3::from(p));
-        }
-        for f in [[low, high, free], [high, low, free], [free + 1, free + 2, free + 3]] {
-            mesh.push_face(&f);
-        }
-        mesh.push_face(&[free + 2, free + 1, free + 3]);
-        for (axis, height) in [(2, 0.5), (2, 1.0), (2, 3.25), (0, 5.0), (1, 1.0), (1, 4.5)] {
-            let normal = [DVec3::X, DVec3::Y, DVec3::Z][axis];
-            let s = at(&mesh, normal, height);
-            close_to(s.perimeter + s.folded, met(&mesh, axis, height));
-            close_to(s.perimeter, if axis != 0 && height < 4.0 { 16.0 } else { 0.0 });
-            assert!(s.folded > 0.1, "{axis} {height}");
-            close_to(s.contours.iter().map(|c| c.area).sum(), s.area);
-        }
-    }
-
-    #[test]
-    fn an_open_mesh_has_contours_with_two_ends_and_a_crack_is_closed() {
-        let mesh = cylinder(3.0, 5.0, 12);
-        let z = mesh.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min) + 2.0;
-        let mut open = PolyMesh::new();
-        open.positions.clone_from(&mesh.positions);
-        mesh.faces().filter(|f| f.len() == 4).skip(2).for_each(|f| open.push_face(f));
-        let s = Slicer::new(&open, DVec3::Z).expect("a direction").at(z);
-        assert_eq!((s.open, s.contours.len(), s.contours[0].closed), (1, 1, false));
-        // Each face with vertices of its own, off by less than single precision holds.
-        let mut torn = PolyMesh::new();
-        for (i, f) in mesh.faces().enumerate() {
-            let base = torn.positions.len() as u32;
-            let shift = DVec3::new(1.0, -1.0, 0.0) * (i % 3) as f64 * 1e-7;
-            torn.positions.extend(f.iter().map(|&v| mesh.positions[v as usize] + shift));
-            torn.push_face(&(base..base + f.len() as u32).collect::<Vec<_>>());
-        }
-        let s = at(&torn, DVec3::Z, z);
-        assert_eq!(s.contours.len(), 1);
-        assert!((s.area - at(&mesh, DVec3::Z, z).area).abs() < 1e-5);
-    }
-}
+mod tests;

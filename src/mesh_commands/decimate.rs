@@ -15,7 +15,9 @@ pub struct DecimateArgs {
     /// Stop at this many triangles.
     #[arg(long, default_value_t = 0, required_unless_present = "max_error")]
     pub faces: usize,
-    /// Stop before the surface moves by more than about this, in the mesh's unit.
+    /// Stop before the error of a collapse exceeds this, in the mesh's unit: the root of the mean
+    /// square distance of the new vertex from the planes of the triangles that it stands for. It
+    /// is no bound on the distance between the surfaces.
     #[arg(long, value_name = "DISTANCE")]
     pub max_error: Option<f64>,
     #[arg(short, long, value_name = "FILE")]

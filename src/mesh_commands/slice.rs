@@ -47,6 +47,9 @@ struct Layer {
     perimeter: f64,
     /// The length of lines along which contours run out and back; not part of the perimeter.
     folded: f64,
+    /// The length of contours along faces that are turned; above 0, the area is that of the
+    /// even-odd rule.
+    turned: f64,
     /// The number of contours, holes included.
     contours: usize,
     /// The number of contours that the mesh leaves open.
@@ -119,6 +122,14 @@ pub fn run(args: &SliceArgs, json: bool) -> Outcome {
             sections.len()
         ));
     }
+    let turned = sections.iter().filter(|s| s.turned > 0.0).count();
+    if turned > 0 {
+        warnings.push(format!(
+            "{turned} of {} sections run along faces that disagree on the outside: their areas \
+             are those of the even-odd rule. Turn the faces with sculptd convert --mend",
+            sections.len()
+        ));
+    }
     if args.height.is_some_and(|h| h < low || h > high) {
         warnings.push(format!(
             "the plane does not meet the part: its heights run from {low} to {high}"
@@ -142,6 +153,7 @@ pub fn run(args: &SliceArgs, json: bool) -> Outcome {
                 area: s.area,
                 perimeter: s.perimeter,
                 folded: s.folded,
+                turned: s.turned,
                 contours: s.contours.len(),
                 open: s.open,
                 centroid: s.centroid.map(|c| c.to_array()),

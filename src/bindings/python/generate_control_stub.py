@@ -52,7 +52,13 @@ def default_path() -> str: ...
 SHARED = '''\
     path: str
     patience: float
-    def __init__(self, path: str | PathLike[str] | None = None, patience: float = 120.0) -> None: ...
+    wait: float
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        patience: float = 120.0,
+        wait: float = 0.0,
+    ) -> None: ...
     {d} call(
         self, method: str, params: dict[str, Any] | None = None, patience: float | None = None
     ) -> Any: ...

@@ -174,11 +174,54 @@ impl SpanTree {
 
 /// Nodes of a branch, indices from `base` on of the whole tree's items, child indices relative to
 /// the branch's root. A cancelled job leaves branches out.
-fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> Vec<SpanNode> {
-    let span = items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]));
-    if items.len() <= LEAF || (items.len() > FORK && job.cancelled()) {
+fn branch(items: &mut [TreeItem], first: u32, spans: &[Span], job: &Job) -> Vec<SpanNode> {
+    if items.len() <= FORK {
+        let mut out = Vec::with_capacity(items.len());
+        small_branch(items, first, spans, &mut out);
+        return out;
+    }
+    let span = span_of(items, spans);
+    if job.cancelled() {
         return vec![SpanNode { span, at: first, count: items.len() as u32 }];
     }
+    let (l, r) = halves(items);
+    let second = first + l.len() as u32;
+    let (l, r) = rayon::join(|| branch(l, first, spans, job), || branch(r, second, spans, job));
+    let mut out = Vec::with_capacity(1 + l.len() + r.len());
+    let (one, two) = (1, 1 + l.len() as u32);
+    out.push(SpanNode { span, at: two, count: 0 });
+    let shifted = |by: u32| {
+        move |n: SpanNode| SpanNode { at: if n.count == 0 { n.at + by } else { n.at }, ..n }
+    };
+    out.extend(l.into_iter().map(shifted(one)));
+    out.extend(r.into_iter().map(shifted(two)));
+    out
+}
+
+/// Appends the nodes of a branch to those of a tree.
+fn small_branch(items: &mut [TreeItem], first: u32, spans: &[Span], out: &mut Vec<SpanNode>) {
+    let (span, own) = (span_of(items, spans), out.len());
+    if items.len() <= LEAF {
+        out.push(SpanNode { span, at: first, count: items.len() as u32 });
+        return;
+    }
+    out.push(SpanNode { span, at: 0, count: 0 });
+    let (l, r) = halves(items);
+    let second = first + l.len() as u32;
+    small_branch(l, first, spans, out);
+    out[own].at = out.len() as u32;
+    small_branch(r, second, spans, out);
+}
+
+/// An item, and the middle of its box.
+type TreeItem = (u32, DVec3);
+
+fn span_of(items: &[TreeItem], spans: &[Span]) -> Span {
+    items.iter().fold(Span::EMPTY, |s, i| s.join(spans[i.0 as usize]))
+}
+
+/// Divides the items at the median along the side in which they spread most.
+fn halves(items: &mut [TreeItem]) -> (&mut [TreeItem], &mut [TreeItem]) {
     let c = Span::of(items.iter().map(|i| i.1));
     let d = c.hi - c.lo;
     let axis = if d.x >= d.y && d.x >= d.z {
@@ -190,20 +233,5 @@ fn branch(items: &mut [(u32, DVec3)], first: u32, spans: &[Span], job: &Job) -> 
     };
     let half = items.len() / 2;
     items.select_nth_unstable_by(half, |a, b| a.1[axis].total_cmp(&b.1[axis]).then(a.0.cmp(&b.0)));
-    let large = items.len() > FORK;
-    let (l, r) = items.split_at_mut(half);
-    let (l, r) = if large {
-        rayon::join(|| branch(l, first, spans, job), || branch(r, first + half as u32, spans, job))
-    } else {
-        (branch(l, first, spans, job), branch(r, first + half as u32, spans, job))
-    };
-    let mut out = Vec::with_capacity(1 + l.len() + r.len());
-    let (one, two) = (1, 1 + l.len() as u32);
-    out.push(SpanNode { span, at: two, count: 0 });
-    let shifted = |by: u32| {
-        move |n: SpanNode| SpanNode { at: if n.count == 0 { n.at + by } else { n.at }, ..n }
-    };
-    out.extend(l.into_iter().map(shifted(one)));
-    out.extend(r.into_iter().map(shifted(two)));
-    out
+    items.split_at_mut(half)
 }

@@ -71,7 +71,11 @@ pub fn pairs(
     let [first, second] = if few {
         // The marks of the grid alone would take longer.
         let near = |s: usize| {
-            let meets = |t: &u32| surfaces[s].span(*t).grown(slack).meets(&both);
+            let other = bounds[1 - s];
+            let meets = |t: &u32| {
+                let corners = surfaces[s].corners(*t);
+                Span::of(corners).grown(slack).meets(&both) && reaches(corners, other, slack)
+            };
             all(s).filter(meets).collect::<Vec<u32>>()
         };
         [near(0), near(1)]
@@ -117,6 +121,22 @@ pub fn pairs(
         out.par_sort_unstable();
     }
     Ok(out)
+}
+
+/// Returns false where a box is on one side of a triangle's plane, or beyond one of its edges, by
+/// much more than `slack`. Long triangles have boxes that meet a small tool far beside them.
+fn reaches([a, b, c]: [DVec3; 3], other: Span, slack: f64) -> bool {
+    let n = (b - a).cross(c - a);
+    let (middle, half) = ((other.lo + other.hi) * 0.5, (other.hi - other.lo) * 0.5);
+    // The least and the largest distance along a direction, in its length.
+    let along = |o: DVec3, d: DVec3| ((middle - o).dot(d), half.dot(d.abs()));
+    let (height, room) = along(a, n);
+    height.abs() <= room + 4.0 * slack * n.length()
+        && [(a, b), (b, c), (c, a)].iter().all(|&(o, p)| {
+            let out = (p - o).cross(n);
+            let (far, room) = along(o, out);
+            far <= room + 4.0 * slack * out.length()
+        })
 }
 
 /// A grid over the box in which both surfaces are.

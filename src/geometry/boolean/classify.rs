@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::orient3d;
 
+use super::common::{FEW, join_where};
 use super::pieces::{FacePiece, Placement, triangles as parts_of};
 use super::points::{Map, PointSet};
 use crate::PolyMesh;
@@ -119,7 +120,8 @@ pub fn classify(
         }
         one_side(&meshes[s], pieces, &settled[s], m, &points.at, other, job)
     };
-    let (a, b) = rayon::join(|| one(0, first), || one(1, second));
+    let large = triangles.iter().any(|t| t.len() >= FEW);
+    let (a, b) = join_where(large, || one(0, first), || one(1, second));
     let ((a, first), (b, second)) = (a?, b?);
     Ok(([a, b], first.or(second)))
 }
@@ -148,7 +150,7 @@ fn one_side(
     // Places beyond the other's box are in one set, whatever joins them: what hangs together with
     // them is outside, and needs no further look.
     let beyond = base + pieces.len() as u32;
-    let is_beyond: Vec<bool> = at.par_iter().map(|p| other.beyond(*p)).collect();
+    let is_beyond: Vec<bool> = at.par_iter().with_min_len(FEW).map(|p| other.beyond(*p)).collect();
     let mut sets = DisjointSets::new(at.len() + pieces.len() + 1);
     let mut part = vec![0; mesh.face_count()];
     pieces.iter().for_each(|p| part[p.face as usize] = NONE);
@@ -371,8 +373,8 @@ impl<'a> WindingOracle<'a> {
         self.asked += 1;
         if self.asked > WITHOUT_TREE && self.tree.is_none() {
             let count = self.surface.triangles.len() as u32;
-            let spans: Vec<Span> =
-                (0..count).into_par_iter().map(|t| self.surface.span(t)).collect();
+            let spans = (0..count).into_par_iter().with_min_len(FEW);
+            let spans: Vec<Span> = spans.map(|t| self.surface.span(t)).collect();
             self.tree = Some(SpanTree::build(&spans, job)?);
         }
         let reach = (self.bounds.hi - self.bounds.lo).length() * 2.0;

@@ -11,6 +11,18 @@ use crate::boolean::broad_phase::SurfaceView;
 use crate::job::{Cancelled, Job};
 use crate::{PolyMesh, triangulate};
 
+/// With fewer faces, one thread is as quick as several.
+pub(super) const FEW: usize = 1 << 12;
+
+/// Both results, at once where the work is `large`: to wake a thread takes longer than a small one.
+pub(super) fn join_where<A: Send, B: Send>(
+    large: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if large { rayon::join(a, b) } else { (a(), b()) }
+}
+
 /// Both operands over common points.
 pub struct Common {
     /// All points of both.
@@ -75,7 +87,9 @@ pub fn common(
     let bases = [0, operands[0].positions.len() as u32];
     let slack = 4.0 * eps;
     let bounds = operands.map(|m| bounds(&m.positions));
-    let (a, b) = rayon::join(
+    let large = operands.iter().any(|m| m.face_count() >= FEW);
+    let (a, b) = join_where(
+        large,
         || split(operands[0], &operands[0].positions, job),
         || split(operands[1], &operands[1].positions, job),
     );
@@ -122,8 +136,9 @@ pub fn common(
                 again = true;
                 return Ok(mesh);
             }
-            t.par_iter_mut().for_each(|t| *t = t.map(|v| named(s, v)));
-            let corners = m.corners.par_iter().map(|&v| named(s, v)).collect();
+            t.par_iter_mut().with_min_len(FEW).for_each(|t| *t = t.map(|v| named(s, v)));
+            let corners = m.corners.par_iter().with_min_len(FEW);
+            let corners = corners.map(|&v| named(s, v)).collect();
             Ok(PolyMesh { face_starts: m.face_starts.clone(), corners, ..PolyMesh::new() })
         };
     let meshes = [one(0, &mut ta, &mut sa)?, one(1, &mut tb, &mut sb)?];
@@ -169,8 +184,11 @@ fn without_doubles(m: &PolyMesh, name: impl Fn(u32) -> u32) -> PolyMesh {
 /// Triangles, and the first of each face.
 fn split(mesh: &PolyMesh, at: &[DVec3], job: &Job) -> Result<(Vec<[u32; 3]>, Vec<u32>), Cancelled> {
     let n = mesh.face_count();
-    if mesh.corners.len() == 3 * n && mesh.face_starts.par_windows(2).all(|w| w[1] - w[0] == 3) {
-        let triangles = mesh.corners.par_chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+    if mesh.corners.len() == 3 * n
+        && mesh.face_starts.par_windows(2).with_min_len(FEW).all(|w| w[1] - w[0] == 3)
+    {
+        let triangles = mesh.corners.par_chunks_exact(3).with_min_len(FEW);
+        let triangles = triangles.map(|c| [c[0], c[1], c[2]]).collect();
         return Ok((triangles, (0..=n as u32).collect()));
     }
     let mut triangles = Vec::with_capacity(mesh.corners.len());

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::common::FEW;
 use super::points::Map;
 use crate::PolyMesh;
 use crate::disjoint_sets::DisjointSets;
@@ -211,6 +212,7 @@ pub fn separate_patch(
     }
     let mut half: Vec<(u64, u32)> = (0..n as u32)
         .into_par_iter()
+        .with_min_len(FEW)
         .map(|c| {
             let (a, b) = (mesh.corners[c as usize], mesh.corners[next[c as usize] as usize]);
             ((a.min(b) as u64) << 32 | a.max(b) as u64, c)

@@ -18,8 +18,9 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGL64, OpType, WindingRule};
 
 use super::emit::{BooleanFacts, FaceOrigin, finish, separate};
-use super::merge::{is_flat, joined_rings};
+use super::merge::is_flat;
 use super::points::Map;
+use super::ring_joining::joined_rings;
 use super::{Operation, attributes};
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
@@ -191,7 +192,7 @@ impl HeldOperands {
             let flat = !triangles
                 && rings.len() > 1
                 && is_flat(source, face as usize, &source.positions, self.eps);
-            let rings = if flat { joined_rings(rings, &at) } else { rings };
+            let rings = if flat { joined_rings(&rings, &at) } else { rings };
             for r in rings {
                 mesh.push_face(&r);
                 origins.push(FaceOrigin { operand, face });

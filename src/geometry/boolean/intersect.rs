@@ -52,6 +52,21 @@ pub fn c3(p: DVec3) -> Coord3D<f64> {
 /// Pairs that one thread looks at before another may take some.
 const PAIRS: usize = 512;
 
+/// One triangle of each surface: whose marks they have, their numbers, corners and edges.
+struct TrianglePair {
+    sides: [usize; 2],
+    ids: [u32; 2],
+    corners: [[u32; 3]; 2],
+    edges: [[u32; 3]; 2],
+}
+
+/// The points of triangles with many, sorted, by side and triangle.
+#[derive(Default)]
+struct SortedPoints(Map<(u32, u32), Vec<u32>>);
+
+/// More points of a triangle are sorted.
+const MANY_POINTS: usize = 24;
+
 struct Finder<'a> {
     points: &'a mut PointSet,
     eps: f64,
@@ -72,14 +87,25 @@ pub fn intersect(
 ) -> Result<Intersections, Cancelled> {
     let [a, b] = triangles;
     let at = &points.at;
-    let near = |&(i, j): &(u32, u32)| {
-        let (s, t) = (a[i as usize], b[j as usize]);
-        near_plane(at, s, t, eps)
-            && near_plane(at, t, s, eps)
-            && !beside(at, s, t, eps)
-            && !beside(at, t, s, eps)
+    // The plane of a triangle in several pairs is computed once.
+    let several = pairs.len() > 2 * b.len();
+    let planes: Vec<(DVec3, DVec3)> =
+        if several { b.iter().map(|&t| plane(at, t)).collect() } else { Vec::new() };
+    let near = |group: &[(u32, u32)], out: &mut Vec<(u32, u32)>| {
+        let s = a[group[0].0 as usize];
+        let own = plane(at, s);
+        out.extend(group.iter().filter(|&&(_, j)| {
+            let t = b[j as usize];
+            near_plane(at, own, t, eps)
+                && {
+                    let other = planes.get(j as usize).copied();
+                    near_plane(at, other.unwrap_or_else(|| plane(at, t)), s, eps)
+                }
+                && !beside(at, s, t, eps)
+                && !beside(at, t, s, eps)
+        }));
     };
-    pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
+    pairs = by_first(&pairs, near);
     job.check()?;
     met(triangles, &pairs, [0, 1], points, eps, job)
 }
@@ -97,7 +123,10 @@ pub fn intersect_itself(
     let near = |&(i, j): &(u32, u32)| {
         let (s, t) = (triangles[i as usize], triangles[j as usize]);
         let apart = |s, t| beyond_shared(at, s, t, eps) || beside(at, s, t, eps);
-        near_plane(at, s, t, eps) && near_plane(at, t, s, eps) && !apart(s, t) && !apart(t, s)
+        near_plane(at, plane(at, s), t, eps)
+            && near_plane(at, plane(at, t), s, eps)
+            && !apart(s, t)
+            && !apart(t, s)
     };
     pairs = pairs.into_par_iter().with_min_len(PAIRS).filter(near).collect();
     job.check()?;
@@ -120,11 +149,19 @@ fn met(
         crossings: Map::default(),
         piercings: Map::default(),
     };
+    // Edges of the triangles of each pair. Pairs with one first triangle follow each other.
+    let mut edges: Vec<[[u32; 3]; 2]> = Vec::with_capacity(pairs.len());
     for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;
         }
-        f.events([i, j], [a[i as usize], b[j as usize]]);
+        let (s, t) = (a[i as usize], b[j as usize]);
+        let own = match edges.last() {
+            Some(last) if pairs[n - 1].0 == i => last[0],
+            _ => f.edges(s),
+        };
+        edges.push([own, f.edges(t)]);
+        f.events([i, j], [s, t], edges[n]);
     }
     let mut m = f.m;
     for e in &mut m.edges {
@@ -136,19 +173,46 @@ fn met(
         e.inner.retain(|&i| i != p && i != q);
     }
     m.shared.resize(points.at.len(), false);
+    let mut sorted = SortedPoints::default();
     for (n, &(i, j)) in pairs.iter().enumerate() {
         if n % 1024 == 0 {
             job.check()?;
         }
-        m.segments(&points.at, sides, [i, j], [a[i as usize], b[j as usize]], eps);
+        let pair = TrianglePair {
+            sides,
+            ids: [i, j],
+            corners: [a[i as usize], b[j as usize]],
+            edges: edges[n],
+        };
+        m.segments(&points.at, &pair, eps, &mut sorted);
     }
     Ok(m)
 }
 
-/// Whether `t` reaches the plane of `s`.
-fn near_plane(at: &[DVec3], s: [u32; 3], t: [u32; 3], eps: f64) -> bool {
-    let [a, b, c] = s.map(|i| at[i as usize]);
-    let n = (b - a).cross(c - a).normalize_or_zero();
+/// Calls `keep` with all pairs of one first triangle at a time; returns the pairs that it appends.
+fn by_first(
+    pairs: &[(u32, u32)],
+    keep: impl Fn(&[(u32, u32)], &mut Vec<(u32, u32)>) + Sync,
+) -> Vec<(u32, u32)> {
+    let of = |part: &[(u32, u32)]| -> Vec<(u32, u32)> {
+        let mut out = Vec::new();
+        part.chunk_by(|p, q| p.0 == q.0).for_each(|group| keep(group, &mut out));
+        out
+    };
+    if pairs.len() <= 8 * PAIRS {
+        return of(pairs);
+    }
+    pairs.par_chunks(PAIRS).map(of).collect::<Vec<_>>().concat()
+}
+
+/// A place in the plane of a triangle, and its normal.
+fn plane(at: &[DVec3], t: [u32; 3]) -> (DVec3, DVec3) {
+    let [a, b, c] = t.map(|i| at[i as usize]);
+    (a, (b - a).cross(c - a).normalize_or_zero())
+}
+
+/// Whether `t` reaches a plane.
+fn near_plane(at: &[DVec3], (a, n): (DVec3, DVec3), t: [u32; 3], eps: f64) -> bool {
     let d = t.map(|i| (at[i as usize] - a).dot(n));
     d.iter().any(|&x| x <= 2.0 * eps) && d.iter().any(|&x| x >= -2.0 * eps)
 }
@@ -228,9 +292,11 @@ impl Finder<'_> {
         t > 0.0 && t < 1.0 && self.points.contact.compared((o + d * t).distance(x), self.eps)
     }
 
-    fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2]) {
-        let edges =
-            tris.map(|t| [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]);
+    fn edges(&mut self, t: [u32; 3]) -> [u32; 3] {
+        [self.edge(t[0], t[1]), self.edge(t[1], t[2]), self.edge(t[2], t[0])]
+    }
+
+    fn events(&mut self, ids: [u32; 2], tris: [[u32; 3]; 2], edges: [[u32; 3]; 2]) {
         let mut touch = [[[false; 3]; 3]; 2];
         let mut lies = [[false; 3]; 2];
         for s in 0..2 {
@@ -334,6 +400,10 @@ impl Finder<'_> {
             None => {
                 let [a, b, c] = t.map(|i| self.p(i));
                 let (p, q) = (self.p(ends[0]), self.p(ends[1]));
+                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+                if !(p.min(q).cmple(high) & low.cmple(p.max(q))).all() {
+                    return;
+                }
                 let height = |x: DVec3| orient3d(c3(a), c3(b), c3(c), c3(x));
                 let turn = |i: DVec3, j: DVec3| orient3d(c3(p), c3(q), c3(i), c3(j));
                 let (x, y) = (height(p), height(q));
@@ -373,48 +443,56 @@ impl Intersections {
         self.edge_ids.get(&(a.min(b), a.max(b))).copied()
     }
 
+    /// The points that the other surface leaves within a triangle.
+    fn inner(&self, pair: &TrianglePair, s: usize) -> &[u32] {
+        self.marks[pair.sides[s]].get(&pair.ids[s]).map_or(&[], |m| &m.inner)
+    }
+
     /// The points of a triangle: its corners, on its edges, and inside; some more than once.
-    fn closure(&self, side: usize, id: u32, t: [u32; 3]) -> impl Iterator<Item = u32> {
-        let edges = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| self.edge_of(a, b));
-        let on = edges.into_iter().flatten().flat_map(|e| &self.edges[e as usize].inner);
-        let inside = self.marks[side].get(&id).into_iter().flat_map(|m| &m.inner);
-        t.into_iter().chain(on.chain(inside).copied())
+    fn closure(&self, pair: &TrianglePair, s: usize) -> impl Iterator<Item = u32> {
+        let on = pair.edges[s].into_iter().flat_map(|e| &self.edges[e as usize].inner);
+        pair.corners[s].into_iter().chain(on.chain(self.inner(pair, s)).copied())
     }
 
     /// The points that two triangles share, in order. A face that many others cut has many points:
-    /// only the points of the triangle with fewer are sorted.
-    fn common(&self, sides: [usize; 2], ids: [u32; 2], tris: [[u32; 3]; 2]) -> Vec<u32> {
-        let points = |s: usize| self.closure(sides[s], ids[s], tris[s]);
-        let fewer = usize::from(points(1).count() < points(0).count());
-        let mut few: Vec<u32> = points(fewer).collect();
-        few.sort_unstable();
-        let mut out: Vec<u32> =
-            points(1 - fewer).filter(|i| few.binary_search(i).is_ok()).collect();
+    /// they are sorted once, and those of the other triangle are looked for among them.
+    fn common(&self, pair: &TrianglePair, sorted: &mut SortedPoints) -> Vec<u32> {
+        let count = |s: usize| {
+            let on = pair.edges[s].iter().map(|&e| self.edges[e as usize].inner.len());
+            3 + on.sum::<usize>() + self.inner(pair, s).len()
+        };
+        let counts = [count(0), count(1)];
+        let fewer = usize::from(counts[1] < counts[0]);
+        let more = 1 - fewer;
+        let mut out: Vec<u32> = if counts[more] > MANY_POINTS {
+            let key = (pair.sides[more] as u32, pair.ids[more]);
+            let all = sorted.0.entry(key).or_insert_with(|| {
+                let mut all: Vec<u32> = self.closure(pair, more).collect();
+                all.sort_unstable();
+                all
+            });
+            self.closure(pair, fewer).filter(|i| all.binary_search(i).is_ok()).collect()
+        } else {
+            let has = |i: &u32| self.closure(pair, more).any(|j| j == *i);
+            self.closure(pair, fewer).filter(has).collect()
+        };
         out.sort_unstable();
         out.dedup();
         out
     }
 
     /// Returns true if both points are on the same edge of the triangle.
-    fn on_one_edge(&self, t: [u32; 3], p: u32, q: u32) -> bool {
-        (0..3).any(|k| {
-            self.edge_of(t[k], t[(k + 1) % 3]).is_some_and(|e| {
-                let e = &self.edges[e as usize];
-                let on = |x: u32| e.ends.contains(&x) || e.inner.contains(&x);
-                on(p) && on(q)
-            })
+    fn on_one_edge(&self, edges: [u32; 3], p: u32, q: u32) -> bool {
+        edges.into_iter().any(|e| {
+            let e = &self.edges[e as usize];
+            let on = |x: u32| e.ends.contains(&x) || e.inner.contains(&x);
+            on(p) && on(q)
         })
     }
 
-    fn segments(
-        &mut self,
-        at: &[DVec3],
-        sides: [usize; 2],
-        ids: [u32; 2],
-        tris: [[u32; 3]; 2],
-        eps: f64,
-    ) {
-        let mut x = self.common(sides, ids, tris);
+    fn segments(&mut self, at: &[DVec3], pair: &TrianglePair, eps: f64, sorted: &mut SortedPoints) {
+        let TrianglePair { sides, ids, .. } = *pair;
+        let mut x = self.common(pair, sorted);
         for &i in &x {
             self.shared[i as usize] = true;
         }
@@ -449,10 +527,8 @@ impl Intersections {
             found[1] = found[0].clone();
         } else {
             for s in 0..2 {
-                let t = tris[1 - s];
                 self.marks[sides[s]].entry(ids[s]).or_default().flat = true;
-                for k in 0..3 {
-                    let Some(e) = self.edge_of(t[k], t[(k + 1) % 3]) else { continue };
+                for e in pair.edges[1 - s] {
                     let e = &self.edges[e as usize];
                     let mut on: Vec<u32> = x
                         .iter()
@@ -467,7 +543,7 @@ impl Intersections {
         for s in 0..2 {
             for (p, q) in std::mem::take(&mut found[s]) {
                 self.curve.insert((p.min(q), p.max(q)), ());
-                if !self.on_one_edge(tris[s], p, q) {
+                if !self.on_one_edge(pair.edges[s], p, q) {
                     let own = self.marks[sides[s]].entry(ids[s]).or_default();
                     own.segments.push((p.min(q), p.max(q)));
                 }

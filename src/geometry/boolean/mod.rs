@@ -55,6 +55,7 @@ mod planar;
 pub mod points;
 mod precision;
 mod refine;
+mod ring_joining;
 mod routes;
 mod self_arrangement;
 mod self_cuts;
@@ -102,7 +103,7 @@ impl ResultFaces {
     fn triangles(self, operands: [&PolyMesh; 2]) -> bool {
         let all = |m: &PolyMesh| {
             m.corners.len() == 3 * m.face_count()
-                && m.face_starts.par_windows(2).all(|w| w[1] - w[0] == 3)
+                && m.face_starts.par_windows(2).with_min_len(common::FEW).all(|w| w[1] - w[0] == 3)
         };
         match self {
             ResultFaces::Triangles => true,

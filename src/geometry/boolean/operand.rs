@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::common::FEW;
 use super::{BooleanError, emit};
 use crate::PolyMesh;
 use crate::job::{Cancelled, Job};
@@ -9,7 +10,7 @@ use crate::self_intersection;
 
 /// Checks that the mesh is closed, oriented outwards and finite. Returns its volume.
 pub fn check(mesh: &PolyMesh, operand: &'static str, job: &Job) -> Result<f64, BooleanError> {
-    if !mesh.positions.par_iter().all(|p| p.is_finite()) {
+    if !mesh.positions.par_iter().with_min_len(FEW).all(|p| p.is_finite()) {
         return Err(BooleanError::NotFinite { operand });
     }
     job.check()?;

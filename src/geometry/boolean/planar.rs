@@ -39,6 +39,9 @@ pub fn flatten(n: DVec3) -> impl Fn(DVec3) -> Coord<f64> + Copy {
     }
 }
 
+/// With fewer edges, names and edges are looked for one by one.
+const FEW: usize = 48;
+
 /// Cells of the polygon `ring` (counter-clockwise) cut by `segments`; both over global points
 /// placed by `at`. Segments that separate nothing are left out.
 pub fn cells(
@@ -46,24 +49,36 @@ pub fn cells(
     segments: &[(u32, u32)],
     at: impl Fn(u32) -> Coord<f64>,
 ) -> Vec<PlanarCell> {
+    let few = ring.len() + segments.len() <= FEW;
     let mut ids: Map<u32, usize> = Map::default();
-    let mut names: Vec<u32> = Vec::new();
+    let mut names: Vec<u32> = Vec::with_capacity(ring.len() + segments.len());
     let mut id = |v: u32| {
-        *ids.entry(v).or_insert_with(|| {
+        let next = names.len();
+        let known = match few {
+            true => names.iter().position(|&w| w == v).unwrap_or(next),
+            false => *ids.entry(v).or_insert(next),
+        };
+        if known == next {
             names.push(v);
-            names.len() - 1
-        })
+        }
+        known
     };
-    let mut edges: Vec<(usize, usize)> = Vec::new();
+    let mut edges: Vec<(usize, usize)> = Vec::with_capacity(ring.len() + segments.len());
     for (i, &v) in ring.iter().enumerate() {
         edges.push((id(v), id(ring[(i + 1) % ring.len()])));
     }
     let border = edges.len();
     let mut known: Map<(usize, usize), ()> = Map::default();
-    known.extend(edges.iter().map(|&(a, b)| ((a.min(b), a.max(b)), ())));
+    if !few {
+        known.extend(edges.iter().map(|&(a, b)| ((a.min(b), a.max(b)), ())));
+    }
     for &(p, q) in segments {
         let (a, b) = (id(p), id(q));
-        if a != b && known.insert((a.min(b), a.max(b)), ()).is_none() {
+        let mut is_new = || match few {
+            true => !edges.contains(&(a, b)) && !edges.contains(&(b, a)),
+            false => known.insert((a.min(b), a.max(b)), ()).is_none(),
+        };
+        if a != b && is_new() {
             edges.push((a, b));
         }
     }
@@ -91,16 +106,28 @@ pub fn cells(
 /// Half-edge `2 e` runs as edge `e` does, `2 e + 1` against it. Each loop has its cell on the left.
 fn trace(edges: &[(usize, usize)], alive: &[bool], spots: &[Coord<f64>]) -> Vec<Vec<usize>> {
     let tail = |h: usize| if h % 2 == 0 { edges[h / 2].0 } else { edges[h / 2].1 };
-    let mut out: Vec<Vec<usize>> = vec![Vec::new(); spots.len()];
+    // The half-edges from each spot, one spot after the other.
+    let mut starts = vec![0usize; spots.len() + 1];
     for e in (0..edges.len()).filter(|&e| alive[e]) {
-        out[edges[e].0].push(2 * e);
-        out[edges[e].1].push(2 * e + 1);
+        starts[edges[e].0 + 1] += 1;
+        starts[edges[e].1 + 1] += 1;
+    }
+    for v in 0..spots.len() {
+        starts[v + 1] += starts[v];
+    }
+    let (mut free, mut out) = (starts.clone(), vec![0usize; starts[spots.len()]]);
+    for h in (0..edges.len() * 2).filter(|&h| alive[h / 2]) {
+        out[free[tail(h)]] = h;
+        free[tail(h)] += 1;
     }
     let mut place = vec![0usize; edges.len() * 2];
-    for (v, hs) in out.iter_mut().enumerate() {
-        hs.sort_by(|&g, &h| {
-            angle(spots[v], spots[tail(g ^ 1)], spots[tail(h ^ 1)]).then(g.cmp(&h))
-        });
+    for v in 0..spots.len() {
+        let hs = &mut out[starts[v]..starts[v + 1]];
+        if hs.len() > 1 {
+            hs.sort_unstable_by(|&g, &h| {
+                angle(spots[v], spots[tail(g ^ 1)], spots[tail(h ^ 1)]).then(g.cmp(&h))
+            });
+        }
         hs.iter().enumerate().for_each(|(i, &h)| place[h] = i);
     }
     let mut seen = vec![false; edges.len() * 2];
@@ -114,7 +141,7 @@ fn trace(edges: &[(usize, usize)], alive: &[bool], spots: &[Coord<f64>]) -> Vec<
             seen[h] = true;
             one.push(h);
             // At the head: the next one clockwise from the way back.
-            let around = &out[tail(h ^ 1)];
+            let around = &out[starts[tail(h ^ 1)]..starts[tail(h ^ 1) + 1]];
             let i = place[h ^ 1];
             h = around[(i + around.len() - 1) % around.len()];
         }
@@ -195,7 +222,7 @@ fn assemble(
 }
 
 /// The triangles of a polygon with holes, as few thin ones as can be (constrained Delaunay, Chew
-/// 1989). None where rounding makes the loops cross.
+/// 1989). None where rounding makes the loops cross or touch.
 pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]>> {
     use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
     let flat = flatten(n);
@@ -213,38 +240,45 @@ pub fn delaunay(loops: &[&[u32]], n: DVec3, at: &[DVec3]) -> Option<Vec<[u32; 3]
             } else if names[h.index()] != v {
                 return None;
             }
-            ring.push((h, c));
+            ring.push(h);
         }
         rings.push(ring);
     }
     for ring in &rings {
         for i in 0..ring.len() {
-            let (a, b) = (ring[i].0, ring[(i + 1) % ring.len()].0);
+            let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
             if !cdt.can_add_constraint(a, b) {
                 return None;
             }
             cdt.add_constraint(a, b);
         }
     }
-    let inside = |p: Coord<f64>| {
-        let mut odd = false;
-        for ring in &rings {
-            for i in 0..ring.len() {
-                let (a, b) = (ring[i].1, ring[(i + 1) % ring.len()].1);
-                if (a.y > p.y) != (b.y > p.y) {
-                    let side = orient2d(a, b, p);
-                    odd ^= if b.y > a.y { side > 0.0 } else { side < 0.0 };
-                }
-            }
+    // Each edge of a loop parts inside from outside, from the outer face on.
+    let mut parts = vec![false; cdt.num_undirected_edges()];
+    for ring in &rings {
+        for i in 0..ring.len() {
+            let edge = cdt.get_edge_from_neighbors(ring[i], ring[(i + 1) % ring.len()])?;
+            let part = &mut parts[edge.as_undirected().fix().index()];
+            *part = !*part;
         }
-        odd
-    };
+    }
+    let mut inside: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
+    let outer = cdt.outer_face().fix();
+    inside[outer.index()] = Some(false);
+    let mut todo: Vec<_> = cdt.convex_hull().flat_map(|e| [e, e.rev()]).collect();
+    todo.retain(|e| e.face().fix() == outer);
+    while let Some(edge) = todo.pop() {
+        let (from, to) = (edge.face().fix().index(), edge.rev().face());
+        if inside[to.fix().index()].is_none() {
+            let part = parts[edge.as_undirected().fix().index()];
+            inside[to.fix().index()] = Some(inside[from]? != part);
+            todo.extend(to.as_inner()?.adjacent_edges());
+        }
+    }
     let mut out = Vec::new();
     for face in cdt.inner_faces() {
-        let v = face.vertices();
-        let [a, b, c] = [0, 1, 2].map(|k| v[k].position());
-        if inside(Coord { x: (a.x + b.x + c.x) / 3.0, y: (a.y + b.y + c.y) / 3.0 }) {
-            out.push([0, 1, 2].map(|k| names[v[k].index()]));
+        if inside[face.fix().index()] == Some(true) {
+            out.push(face.vertices().map(|v| names[v.index()]));
         }
     }
     // Corners, one border and holes: what a triangulation must count.

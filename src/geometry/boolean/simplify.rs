@@ -10,9 +10,9 @@ use glam::DVec3;
 use robust::{Coord, incircle, orient2d};
 
 use super::emit::FaceOrigin;
-use super::merge::joined_rings_where;
 use super::planar::flatten;
 use super::points::Map;
+use super::ring_joining::joined_rings_where;
 use crate::PolyMesh;
 use crate::triangulate;
 
@@ -32,19 +32,19 @@ const LEAST_SINE: f64 = 1e-9;
 /// A polygon in convex ones, by dropping diagonals of its triangles (Hertel and Mehlhorn 1983).
 pub fn convex(corners: &[u32], at: &[DVec3]) -> Vec<Vec<u32>> {
     let flat = flatten(triangulate::area_vector(at, corners));
-    let good = |ring: &[u32]| {
-        let n = ring.len();
-        (0..n).all(|i| {
-            let [a, b, c] = [i, i + 1, i + 2].map(|k| flat(at[ring[k % n] as usize]));
-            orient2d(a, b, c) >= 0.0
-        })
+    let good = |a: u32, b: u32, c: u32| {
+        let [a, b, c] = [a, b, c].map(|v| flat(at[v as usize]));
+        orient2d(a, b, c) >= 0.0
     };
-    if corners.len() == 3 || good(corners) {
+    let n = corners.len();
+    let is_convex = (0..n).all(|i| good(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]));
+    if n == 3 || is_convex {
         return vec![corners.to_vec()];
     }
     let mut triangles = Vec::new();
     triangulate::face(at, corners, &mut triangles);
-    joined_rings_where(triangles.into_iter().map(|t| t.to_vec()).collect(), good)
+    let triangles: Vec<Vec<u32>> = triangles.into_iter().map(|t| t.to_vec()).collect();
+    joined_rings_where(&triangles, good)
 }
 
 /// Triangles of one plane.
@@ -52,16 +52,19 @@ struct Facet {
     normal: DVec3,
 }
 
-struct Region<'a> {
-    at: &'a [DVec3],
+/// Its vertices have numbers in the order of their points.
+struct Region {
+    at: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     origins: Vec<FaceOrigin>,
     /// Facet of each triangle.
     facet: Vec<u32>,
     facets: Vec<Facet>,
     alive: Vec<bool>,
+    /// Triangles that changed since edges were last flipped, where all that could be were.
+    changed: Vec<bool>,
     /// Triangles at each vertex.
-    around: Map<u32, Vec<u32>>,
+    around: Vec<Vec<u32>>,
 }
 
 /// The cut faces as triangles. Points below `own` are the operands'; `flat` is how far the corners
@@ -81,30 +84,44 @@ pub fn retriangulated(
         }
         origins.resize(triangles.len(), face.origin);
     }
-    let mut around: Map<u32, Vec<u32>> = Map::default();
+    let mut names: Vec<u32> = triangles.as_flattened().to_vec();
+    names.sort_unstable();
+    names.dedup();
+    let numbers: Map<u32, u32> = names.iter().copied().zip(0..).collect();
+    let mut degrees = vec![0usize; names.len()];
+    for v in triangles.as_flattened_mut() {
+        *v = numbers[v];
+        degrees[*v as usize] += 1;
+    }
+    let mut around: Vec<Vec<u32>> =
+        degrees.into_iter().map(|d| Vec::with_capacity(d + 2)).collect();
     for (t, corners) in triangles.iter().enumerate() {
-        corners.iter().for_each(|&v| around.entry(v).or_default().push(t as u32));
+        corners.iter().for_each(|&v| around[v as usize].push(t as u32));
     }
     let count = triangles.len();
     let mut region = Region {
-        at,
+        at: names.iter().map(|&v| at[v as usize]).collect(),
         triangles,
         origins,
         facet: vec![NONE; count],
         facets: Vec::new(),
         alive: vec![true; count],
+        changed: vec![true; count],
         around,
     };
     region.find_facets(flat, group);
     region.flip();
-    if region.collapse(own, flat) {
+    // The points that the cut made come after those of the operands.
+    let first_made = names.partition_point(|&v| (v as usize) < own);
+    if region.collapse(first_made, flat) {
         region.flip();
     }
     let Region { triangles, origins, alive, .. } = region;
-    origins.into_iter().zip(triangles).zip(alive).filter(|(_, a)| *a).map(|(t, _)| t).collect()
+    let made = origins.into_iter().zip(triangles).zip(alive).filter(|(_, alive)| *alive);
+    made.map(|((origin, t), _)| (origin, t.map(|v| names[v as usize]))).collect()
 }
 
-impl Region<'_> {
+impl Region {
     fn p(&self, v: u32) -> DVec3 {
         self.at[v as usize]
     }
@@ -114,24 +131,35 @@ impl Region<'_> {
         (b - a).cross(c - a)
     }
 
-    /// The triangle on the other side of an edge, where exactly one runs along it each way.
-    fn twin(&self, a: u32, b: u32) -> Option<u32> {
-        let (mut same, mut back) = (0, None);
-        for &t in self.around.get(&a)? {
-            let c = self.triangles[t as usize];
-            for k in 0..3 {
-                let (x, y) = (c[k], c[(k + 1) % 3]);
-                if (x, y) == (a, b) {
-                    same += 1;
-                } else if (x, y) == (b, a) {
-                    if back.is_some() {
-                        return None;
-                    }
-                    back = Some(t);
+    /// The triangles in which an edge runs from `a` to `b` and from `b` to `a`, where there is
+    /// exactly one of each.
+    fn at_edge(&self, a: u32, b: u32) -> Option<(u32, u32)> {
+        let (mut same, mut back) = (NONE, NONE);
+        for &t in &self.around[a as usize] {
+            let [x, y, z] = self.triangles[t as usize];
+            if x != b && y != b && z != b {
+                continue;
+            }
+            for edge in [(x, y), (y, z), (z, x)] {
+                let found = if edge == (a, b) {
+                    &mut same
+                } else if edge == (b, a) {
+                    &mut back
+                } else {
+                    continue;
+                };
+                if *found != NONE {
+                    return None;
                 }
+                *found = t;
             }
         }
-        back.filter(|_| same == 1)
+        (same != NONE && back != NONE).then_some((same, back))
+    }
+
+    /// The triangle on the other side of an edge, where exactly one runs along it each way.
+    fn twin(&self, a: u32, b: u32) -> Option<u32> {
+        self.at_edge(a, b).map(|found| found.1)
     }
 
     /// Grows planes from the largest triangles on.
@@ -181,7 +209,7 @@ impl Region<'_> {
     /// The neighbours of a vertex in their order, each with the facet of the triangle after it.
     /// None unless its triangles are one closed fan.
     fn fan(&self, v: u32) -> Option<Vec<(u32, u32)>> {
-        let around = self.around.get(&v)?;
+        let around = &self.around[v as usize];
         let mut links: Vec<(u32, u32, u32)> = around
             .iter()
             .map(|&t| {
@@ -212,10 +240,8 @@ impl Region<'_> {
     }
 
     /// Takes points out of straight edges and planes. Returns whether any went.
-    fn collapse(&mut self, own: usize, flat: f64) -> bool {
-        let mut made: Vec<u32> =
-            self.around.keys().copied().filter(|v| *v as usize >= own).collect();
-        made.sort_unstable();
+    fn collapse(&mut self, first_made: usize, flat: f64) -> bool {
+        let mut made: Vec<u32> = (first_made as u32..self.around.len() as u32).collect();
         let mut any = false;
         for _ in 0..4 {
             let before = made.len();
@@ -251,20 +277,19 @@ impl Region<'_> {
             .filter_map(|u| self.quality_after(v, u, &fan).map(|q| (q, u)))
             .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let Some((_, u)) = best else { return false };
-        let triangles = self.around.remove(&v).unwrap_or_default();
+        let triangles = std::mem::take(&mut self.around[v as usize]);
         for t in triangles {
             let c = &mut self.triangles[t as usize];
             if c.contains(&u) {
                 self.alive[t as usize] = false;
                 let c = *c;
                 for w in c.into_iter().filter(|&w| w != v) {
-                    if let Some(list) = self.around.get_mut(&w) {
-                        list.retain(|&x| x != t);
-                    }
+                    self.around[w as usize].retain(|&x| x != t);
                 }
             } else {
                 c.iter_mut().filter(|x| **x == v).for_each(|x| *x = u);
-                self.around.entry(u).or_default().push(t);
+                self.changed[t as usize] = true;
+                self.around[u as usize].push(t);
             }
         }
         true
@@ -276,8 +301,7 @@ impl Region<'_> {
         let place = fan.iter().position(|f| f.0 == u)?;
         let (before, after) = (fan[(place + n - 1) % n].0, fan[(place + 1) % n].0);
         // Neighbours of both are the two beside the edge alone.
-        let neighbours = self.around.get(&u)?;
-        let common = neighbours
+        let common = self.around[u as usize]
             .iter()
             .flat_map(|&t| self.triangles[t as usize])
             .filter(|&w| w != u && w != v && fan.iter().any(|f| f.0 == w));
@@ -309,19 +333,28 @@ impl Region<'_> {
 
     /// Flips edges within facets until each facet's triangles are Delaunay.
     fn flip(&mut self) {
-        let mut queue: Vec<(u32, u32)> = Vec::new();
+        let (mut queue, mut kept) = (Vec::new(), 0);
         for (t, c) in self.triangles.iter().enumerate().filter(|(t, _)| self.alive[*t]) {
             let facet = self.facet[t];
             for k in 0..3 {
                 let (a, b) = (c[k], c[(k + 1) % 3]);
-                if a < b && self.twin(a, b).is_some_and(|u| self.facet[u as usize] == facet) {
+                let Some(u) = self.twin(a, b).filter(|_| a < b) else { continue };
+                if self.facet[u as usize] != facet {
+                    continue;
+                }
+                // Between two triangles that are as they were, the edge stays.
+                if self.changed[t] || self.changed[u as usize] {
                     queue.push((a, b));
+                } else {
+                    kept += 1;
                 }
             }
         }
-        let mut left = 16 * queue.len() + 64;
+        let mut left = 16 * (queue.len() + kept) + 64;
+        self.changed.fill(false);
         while let Some((a, b)) = queue.pop() {
             if left == 0 {
+                self.changed.fill(true);
                 return;
             }
             left -= 1;
@@ -333,7 +366,7 @@ impl Region<'_> {
 
     /// Flips an edge where that makes better triangles; the two new ends then.
     fn flip_one(&mut self, a: u32, b: u32) -> Option<[u32; 2]> {
-        let (s, t) = (self.twin(b, a)?, self.twin(a, b)?);
+        let (s, t) = self.at_edge(a, b)?;
         let facet = self.facet[s as usize];
         if s == t || self.facet[t as usize] != facet {
             return None;
@@ -354,13 +387,13 @@ impl Region<'_> {
         if good && incircle(pa, pb, pc, pd) <= 0.0 {
             return None;
         }
-        if self.around.get(&c)?.iter().any(|&x| self.triangles[x as usize].contains(&d)) {
+        if self.around[c as usize].iter().any(|&x| self.triangles[x as usize].contains(&d)) {
             return None;
         }
         self.triangles[s as usize] = [c, a, d];
         self.triangles[t as usize] = [d, b, c];
         for (v, gone, new) in [(b, s, NONE), (a, t, NONE), (d, NONE, s), (c, NONE, t)] {
-            let list = self.around.entry(v).or_default();
+            let list = &mut self.around[v as usize];
             list.retain(|&x| x != gone);
             if new != NONE {
                 list.push(new);

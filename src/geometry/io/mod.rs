@@ -35,7 +35,7 @@ pub use format::MeshFormat;
 pub use morph::{MorphTarget, MorphedMesh};
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
-pub use write::{encode, left_out, lost, writable_format, write_mesh};
+pub use write::{encode, left_out, lost, rounding, writable_format, write_mesh};
 pub use write_scene::{SceneMesh, merged, write_scene};
 
 use super::PolyMesh;

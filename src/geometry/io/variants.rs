@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::problem::ParseError;
 use super::write_packed::base64;
-use super::{LoadedMesh, encode, lost, parse};
+use super::{LoadedMesh, encode, lost, parse, rounding};
 use crate::job::Job;
 
 fn read(name: &str, bytes: &[u8]) -> LoadedMesh {
@@ -183,4 +183,12 @@ fn every_byte_of_a_colour_comes_back() {
     }
     assert!(lost("obj", &mesh)[0].contains("opacity"));
     assert!(lost("stl", &mesh)[0].contains("colours"));
+    let mut far = mesh.clone();
+    far.positions[0].x = 1e7 + 0.25;
+    for kind in ["stl", "glb", "gltf"] {
+        assert_eq!((rounding(kind, &mesh), rounding(kind, &far)), (0.0, 0.25), "{kind}");
+    }
+    for kind in ["obj", "ply", "off", "3mf"] {
+        assert_eq!(rounding(kind, &far), 0.0, "{kind}");
+    }
 }

@@ -5,6 +5,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use glam::DVec3;
+
 use super::write_packed::GltfMesh;
 use super::{WriteError, extension, write_beside, write_packed};
 use crate::face_attributes::NO_UV;
@@ -56,6 +58,16 @@ pub fn left_out(kind: &str, mesh: &PolyMesh) -> Vec<String> {
         out.push(format!("the polygons are cut: .{kind} holds triangles alone"));
     }
     out
+}
+
+/// Returns the most by which a file of the ending `kind` changes a coordinate of `mesh`, in the
+/// mesh's unit: above 0 only for formats in single precision.
+pub fn rounding(kind: &str, mesh: &PolyMesh) -> f64 {
+    if !matches!(kind, "stl" | "glb" | "gltf") {
+        return 0.0;
+    }
+    let change = |p: &DVec3| (*p - p.as_vec3().as_dvec3()).abs().max_element();
+    mesh.positions.iter().map(change).fold(0.0, f64::max)
 }
 
 /// Returns the parts of `mesh` that a file of the ending `kind` does not hold, one sentence each.

@@ -39,13 +39,14 @@ typedef enum SculptdStatus {
 typedef enum SculptdVerdict {
     // No limit was given, or nothing could be measured.
     SCULPTD_VERDICT_UNJUDGED = 0,
-    // Every wall is within the limits.
+    // No wall is proven to be beyond the limits. A limit between the bounds of a certified wall
+    // is a tie, which passes.
     SCULPTD_VERDICT_PASS = 1,
     // A wall is beyond the warning limit.
     SCULPTD_VERDICT_WARN = 2,
     // A wall fails.
     SCULPTD_VERDICT_FAIL = 3,
-    // The limit lies between the bounds of the least wall.
+    // The bounds of the least wall are too far apart to compare it with the limit.
     SCULPTD_VERDICT_UNDECIDED = 4,
 } SculptdVerdict;
 
@@ -168,6 +169,9 @@ typedef struct SculptdSectionFacts {
     size_t contours;
     // The number of contours with two ends: the mesh is open there.
     size_t open;
+    // The length of the pieces whose triangles have the solid on the other side than their contour
+    // does, in the mesh's unit: faces are turned. Above 0, the area is that of the even-odd rule.
+    double turned;
 } SculptdSectionFacts;
 
 // One contour of a section.

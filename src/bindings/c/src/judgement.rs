@@ -21,13 +21,14 @@ use crate::sentences::SculptdSentences;
 pub enum SculptdVerdict {
     /// No limit was given, or nothing could be measured.
     Unjudged = 0,
-    /// Every wall is within the limits.
+    /// No wall is proven to be beyond the limits. A limit between the bounds of a certified wall
+    /// is a tie, which passes.
     Pass = 1,
     /// A wall is beyond the warning limit.
     Warn = 2,
     /// A wall fails.
     Fail = 3,
-    /// The limit lies between the bounds of the least wall.
+    /// The bounds of the least wall are too far apart to compare it with the limit.
     Undecided = 4,
 }
 

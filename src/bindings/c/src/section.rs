@@ -42,6 +42,9 @@ pub struct SculptdSectionFacts {
     pub contours: usize,
     /// The number of contours with two ends: the mesh is open there.
     pub open: usize,
+    /// The length of the pieces whose triangles have the solid on the other side than their contour
+    /// does, in the mesh's unit: faces are turned. Above 0, the area is that of the even-odd rule.
+    pub turned: f64,
 }
 
 /// One contour of a section.
@@ -125,6 +128,7 @@ pub unsafe extern "C" fn sculptd_section_facts(
             centroid: section.centroid.unwrap_or(DVec3::NAN).to_array(),
             contours: section.contours.len(),
             open: section.open,
+            turned: section.turned,
         };
         Ok(())
     })

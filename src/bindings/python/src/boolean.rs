@@ -343,7 +343,11 @@ fn boolean_all<'py>(
 
 /// Sections of a mesh by the planes `normal . p = offset`: for each offset a list of polylines,
 /// (n, 3) float64, the solid to the left seen against the normal. A closed one ends with its first
-/// point; a closed mesh gives closed ones only. A plane through a face gives what is just below it.
+/// point; a closed mesh gives closed ones only.
+///
+/// A vertex in the plane counts as above it, along the normal. So a plane through a flat face gives
+/// what is just below the face, and the plane of a part's top gives its top. The lowest plane of a
+/// part, or of a separate piece of it, has nothing below: it gives what is just above.
 #[pyfunction]
 #[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
 fn slices<'py>(
@@ -366,9 +370,12 @@ fn line(py: Python<'_>, points: Vec<glam::DVec3>) -> PyResult<Bound<'_, PyAny>> 
 }
 
 /// Sections of a mesh by the planes `normal . p = offset` with their sizes: for each offset a dict
-/// of `area`, `perimeter`, `folded`, `centroid` (None without area), `contours` and `open`, the
-/// contours that the mesh leaves open. `folded` is the length of lines that run out and back, such
-/// as doubled faces, and not part of the perimeter. Contours are as in `slices`: outer ones run
+/// of `area`, `perimeter`, `folded`, `turned`, `centroid` (None without area), `contours` and
+/// `open`, the contours that the mesh leaves open. `folded` is the length of lines that run out and
+/// back, such as doubled faces, and not part of the perimeter. `turned` is the length of the pieces
+/// whose faces have the solid on the other side than their contour does. It is 0 where neighbouring
+/// faces agree on the outside; above 0, `area` is that of the even-odd rule, and a sum over the
+/// faces is another. Contours are as in `slices`, and so is a plane through a face: outer ones run
 /// counter-clockwise, seen against the normal, and holes clockwise.
 #[pyfunction]
 #[pyo3(signature = (mesh, normal, offsets, *, progress=None))]
@@ -384,6 +391,7 @@ fn sections<'py>(
         out.set_item("area", s.area)?;
         out.set_item("perimeter", s.perimeter)?;
         out.set_item("folded", s.folded)?;
+        out.set_item("turned", s.turned)?;
         out.set_item("centroid", s.centroid.map(|c| c.to_array()))?;
         let (closed, open): (Vec<_>, Vec<_>) = s.contours.into_iter().partition(|c| c.closed);
         for (name, contours) in [("contours", closed), ("open", open)] {

@@ -5,12 +5,14 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{
-    self as files, LoadedMesh, WriteError, encode, lost, read_mesh, writable_format, write_beside,
+    self as files, LoadedMesh, WriteError, encode, left_out, lost, read_mesh, rounding,
+    writable_format, write_beside,
 };
 use sculptd_geometry::job::Job;
 
@@ -116,6 +118,25 @@ fn fill(kind: &str, mesh: &PolyMesh, out: &mut dyn Write, job: &Job) -> io::Resu
     out.flush()
 }
 
+/// Coordinates that move by more than this part of the mesh's size are worth a warning.
+const VISIBLE: f64 = 1e-6;
+
+/// A sentence on coordinates that the format rounds: on all of them with `strict`, otherwise where
+/// the mesh is so far from the origin that it may be seen.
+fn rounded(kind: &str, mesh: &PolyMesh, strict: bool) -> Option<String> {
+    let by = rounding(kind, mesh);
+    let (low, high) = mesh
+        .positions
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    let least = if strict { 0.0 } else { VISIBLE * (high - low).length() };
+    (by > least).then(|| {
+        format!(
+            "the coordinates are rounded to single precision: .{kind} moves them by up to {by:.1e}"
+        )
+    })
+}
+
 /// Writes `mesh`, see `Mesh.write`.
 pub fn write(
     py: Python<'_>,
@@ -135,7 +156,10 @@ pub fn write(
         ),
         _ => errors::write(&e),
     })?;
-    tell(py, &lost(kind, &mesh), strict)?;
+    // Primitives and results are polygons: to cut them changes no surface, so only `strict` minds.
+    let mut losses = if strict { left_out(kind, &mesh) } else { lost(kind, &mesh) };
+    losses.extend(rounded(kind, &mesh, strict));
+    tell(py, &losses, strict)?;
     match place {
         Place::Path(path) => {
             let to = path.clone();

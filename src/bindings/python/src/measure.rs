@@ -42,7 +42,9 @@ fn measures<'py>(py: Python<'py>, mesh: &Bound<'py, Mesh>) -> PyResult<Bound<'py
 /// With `process` ('fdm', 'sla', 'sls' or 'moulding'), `printer` or `material`, whether the part is
 /// ready to be made: the answer of `sculptd check --json`, a dict with `ok`, `findings` and facts
 /// such as `volume` and `weight`. `up`: the build direction, or the pull direction of a mould;
-/// `scale`: millimetres a unit of the mesh; `orient`: search for the best build direction too.
+/// `scale`: the millimetres in one unit of the mesh: 25.4 for inches, 1000 for metres. Limits and
+/// the answer are in millimetres. `orient`: search for the best
+/// build direction too.
 #[pyfunction(name = "check")]
 #[pyo3(signature = (mesh, *, crossings=true, process=None, printer=None, material=None,
                     up=[0.0, 0.0, 1.0], scale=1.0, orient=false, progress=None))]

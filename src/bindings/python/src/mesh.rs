@@ -451,8 +451,10 @@ impl Mesh {
     /// Writes the mesh in the format of the name's ending: .obj, .stl, .ply, .off, .glb, .3mf; or
     /// in `format` ('stl'). `path`: a path, or a binary file object. A path is written beside and
     /// renamed, so a file that stood there stays whole if this fails. What the format does not
-    /// hold, such as colours in STL, is a LossWarning; with `strict` it is raised and nothing is
-    /// written.
+    /// hold is a LossWarning: colours in STL, groups where it has none, and coordinates that
+    /// single precision (STL, GLB, glTF) moves by more than a millionth of the mesh's size. With
+    /// `strict` it is raised and nothing is written. `strict` also counts what leaves the surface
+    /// as it is: polygons that are cut into triangles, and any rounded coordinate.
     #[pyo3(signature = (path, format=None, *, strict=false))]
     fn write(
         &self,

@@ -84,6 +84,11 @@ fn hollow(
 
 /// Fewer triangles for nearly the same surface: edges are collapsed where the quadric error is
 /// least (Garland and Heckbert 1997), down to `triangles`, and never beyond an error of `error`.
+///
+/// The error of a collapse, in the mesh's unit, is the root of the mean square distance of the new
+/// vertex from the planes of the triangles that it stands for. It is no bound on the distance
+/// between the surfaces. To measure that, ask
+/// `abs(sculptd.signed_distance(mesh, smaller.vertices)).max()`, which looks at the vertices alone.
 #[pyfunction]
 #[pyo3(signature = (mesh, triangles=0, *, error=f64::INFINITY, progress=None))]
 fn decimate(

@@ -73,7 +73,12 @@ impl Thickness {
         least.map(|l| plain(py, &l)).transpose()
     }
 
-    /// Returns True if no wall is below `limit`, False if one is, None if the bounds cannot decide.
+    /// Compares the least wall with `limit`, in the mesh's unit: True if it reaches the limit,
+    /// False if it is below for sure, None if its bounds are too far apart to decide.
+    ///
+    /// A limit between the bounds of a certified wall is a tie, and a tie passes: the bounds hold
+    /// the rounding of the file's coordinates. So True says that no wall is proven to be thinner.
+    /// To keep the limit for sure, test `least['lower'] >= limit`.
     fn reaches(&self, limit: f32) -> Option<bool> {
         match self.measured.compare(limit) {
             Comparison::Reached => Some(true),
@@ -153,8 +158,9 @@ impl Thickness {
 
     /// Judges the walls as `sculptd thickness --json` does: a dict with `verdict` ('pass', 'warn',
     /// 'fail', 'undecided' or 'unjudged'), `statement`, `least`, `worst` and the figures behind
-    /// them. `preset`: a process or a material, such as 'fdm', 'sla' or 'abs'; the other limits, in
-    /// mm, replace its own.
+    /// them. A limit between the bounds of a certified least wall is a tie, which passes. `preset`:
+    /// a process or a material, such as 'fdm', 'sla' or 'abs'; the other limits, in mm, replace its
+    /// own.
     #[pyo3(signature = (preset=None, *, fail_below=None, warn_below=None, fail_above=None,
                         progress=None))]
     fn judge<'py>(
@@ -188,7 +194,11 @@ impl Thickness {
     /// Divides the surface into parts of equal wall. Returns uint32, one a triangle of the mesh:
     /// the number of its part, 4294967295 for none; and a dict of `levels` and `parts`, the largest
     /// first. Needs `faces=True`. `levels`: 1 to 16; None: as few as the walls need. A spot of
-    /// another level belongs to its surroundings if its radius is below `smoothing` walls.
+    /// another level belongs to its surroundings if its radius is below `smoothing` walls, and a
+    /// strip if its width is: 0 to 10, where a larger number gives fewer and larger parts. The
+    /// default of 1.25 is above 1 since the rim of a wall is as wide as the wall. On a blocky part,
+    /// whose own pieces are little wider than thick, it swallows small pieces: set 0.5, or 0 to
+    /// divide by thickness alone.
     #[pyo3(signature = (levels=None, smoothing=1.25))]
     fn parts<'py>(
         &self,
@@ -260,6 +270,10 @@ impl Thickness {
 /// place and the side opposite). `faces=True` measures the middle of each triangle, too. `side`:
 /// 'wall', or 'gap' for the clearance in front of the surface. `edges` is the value of a vertex on
 /// a sharp edge: 'extrapolate', 'raw', 'sphere' or 'neutral'.
+///
+/// Lengths are in the unit of the mesh, and so are the limits of `reaches`, `below` and `worst`.
+/// `judge` takes that unit as a millimetre: scale a mesh in another unit before, as
+/// `mesh.transformed(scale=25.4)` does for inches.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, method="ray", rays=25, opening=60.0, side="wall",
                     edges="extrapolate", faces=false, progress=None))]

@@ -59,6 +59,32 @@ class Names(unittest.TestCase):
             self.assertEqual(asyncio.run(all_at_once()), list(SCHEMA["methods"]))
 
 
+class Starting(unittest.TestCase):
+    def test_clients_wait_for_a_daemon_that_comes_up(self):
+        async def ask(path):
+            async with AsyncClient(path, wait=20.0) as client:
+                return await client.call("late", {"n": 2})
+
+        with FakeDaemon() as daemon:
+            away = daemon.path + ".away"
+
+            def late():
+                os.rename(daemon.path, away)
+                threading.Timer(0.2, os.rename, (away, daemon.path)).start()
+
+            late()
+            with Client(daemon.path, wait=20.0) as client:
+                self.assertEqual(client.call("late", {"n": 1})["params"], {"n": 1})
+                # After a loss too.
+                late()
+                daemon.drop()
+                with self.assertRaises(DaemonSilent):
+                    client.call("lost")
+                self.assertEqual(client.call("late", {"n": 3})["params"], {"n": 3})
+            late()
+            self.assertEqual(asyncio.run(ask(daemon.path))["params"], {"n": 2})
+
+
 class Answers(unittest.TestCase):
     def test_an_answer_that_came_too_late_is_passed_over(self):
         with FakeDaemon(delay=0.02) as daemon, Client(daemon.path) as client:

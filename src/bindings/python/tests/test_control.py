@@ -1,5 +1,6 @@
 """The client against a real daemon; skipped unless SCULPTD_BINARY names one."""
 
+import asyncio
 import pathlib
 import subprocess
 import sys
@@ -26,11 +27,34 @@ class WithoutTheNativeModule(unittest.TestCase):
         self.assertEqual((out.stdout.split(), out.stderr), (["Client", "ImportError"], ""))
 
 
+class Submodules(unittest.TestCase):
+    def test_control_and_convert_are_there_after_one_import(self):
+        script = "import sculptd; print(sculptd.control.Client, sculptd.convert.to_trimesh)"
+        out = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+        self.assertEqual((out.returncode, out.stderr), (0, ""))
+        self.assertTrue({"control", "convert"} <= set(dir(sculptd)))
+
+
 class Absent(unittest.TestCase):
     def test_no_daemon_is_an_error_with_the_path(self):
         with self.assertRaises(control.DaemonAbsent) as caught:
             control.Client("/nowhere/sculptd.sock")
         self.assertEqual(caught.exception.path, "/nowhere/sculptd.sock")
+
+    def test_a_client_waits_no_longer_than_told(self):
+        began = time.monotonic()
+        with self.assertRaises(control.DaemonAbsent):
+            control.Client("/nowhere/sculptd.sock", wait=0.3)
+        self.assertLess(abs(time.monotonic() - began - 0.3), 0.25)
+
+        async def connect():
+            async with control.AsyncClient("/nowhere/sculptd.sock", wait=0.3):
+                pass
+
+        began = time.monotonic()
+        with self.assertRaises(control.DaemonAbsent):
+            asyncio.run(connect())
+        self.assertLess(abs(time.monotonic() - began - 0.3), 0.25)
 
 
 @unittest.skipUnless(BINARY, "SCULPTD_BINARY is not set")

@@ -81,7 +81,7 @@ class Loss(unittest.TestCase):
         mesh = coloured(alpha=77)
         for ending in ("ply", "off", "glb", "3mf"):
             file = io.BytesIO()
-            mesh.write(file, ending, strict=True)
+            mesh.write(file, ending, strict=ending != "glb")
             again = sculptd.read(io.BytesIO(file.getvalue()), format=ending)
             np.testing.assert_array_equal(in_order(again), in_order(mesh), ending)
         with self.assertWarnsRegex(sculptd.LossWarning, "opacity"):
@@ -93,8 +93,29 @@ class Loss(unittest.TestCase):
             with self.assertRaisesRegex(sculptd.LossWarning, "colours"):
                 coloured().write(path, strict=True)
             self.assertFalse(path.exists())
-            Mesh.sphere(1.0, 4).write(path, strict=True)
+            box = Mesh.box((0, 0, 0), (1, 2, 3))
+            with self.assertRaisesRegex(sculptd.LossWarning, "polygons"):
+                box.write(path, strict=True)
+            with self.assertRaisesRegex(sculptd.LossWarning, "single precision"):
+                box.triangulated().transformed(scale=0.1).write(path, strict=True)
+            self.assertFalse(path.exists())
+            box.triangulated().write(path, strict=True)
             sculptd.read(path, strict=True)
+
+    def test_visible_rounding_is_warned_of_and_cut_polygons_are_not(self):
+        box = Mesh.box((0, 0, 0), (0.1, 0.2, 0.3))
+        far = box.triangulated().transformed(offset=(1e6, 0, 0))
+        for ending in ("stl", "glb", "3mf"):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                box.write(io.BytesIO(), ending)
+            with self.assertRaisesRegex(sculptd.LossWarning, "polygons"):
+                box.write(io.BytesIO(), ending, strict=True)
+        for ending in ("stl", "glb"):
+            with self.assertWarnsRegex(sculptd.LossWarning, "single precision"):
+                far.write(io.BytesIO(), ending)
+        for ending in ("obj", "ply", "off", "3mf"):
+            far.write(io.BytesIO(), ending, strict=True)
 
     def test_an_offset_warns_that_it_has_no_colours(self):
         with self.assertWarnsRegex(sculptd.LossWarning, "colours"):

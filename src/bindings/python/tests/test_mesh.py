@@ -122,6 +122,22 @@ class Sections(unittest.TestCase):
         self.assertAlmostEqual(cut["perimeter"], 16.0)
         self.assertAlmostEqual(cut["folded"], 2 * 4 / 3 * 2**0.5)
 
+    def test_the_bottom_and_the_top_of_a_box_have_its_outline(self):
+        box = sculptd.Mesh.box([0, 0, 0], [40, 30, 20])
+        for cut in sculptd.sections(box, [0, 0, 1], [0.0, 10.0, 20.0]):
+            self.assertEqual((cut["area"], cut["perimeter"], cut["turned"]), (1200.0, 140.0, 0.0))
+        for cut in sculptd.sections(box, [0, 0, 1], [-1e-9, 20.0 + 1e-9]):
+            self.assertEqual((cut["area"], cut["contours"]), (0.0, []))
+
+    def test_turned_faces_leave_the_area_and_are_measured(self):
+        box = sculptd.Mesh.box([0, 0, 0], [4, 4, 4]) - sculptd.Mesh.box([1, 1, -1], [2, 2, 5])
+        faces = box.triangulated().faces.copy()
+        faces[::3] = faces[::3, ::-1]
+        (cut,) = sculptd.sections(sculptd.Mesh(box.vertices, faces), [0, 0, 1], [1.75])
+        self.assertAlmostEqual(cut["area"], 15.0)
+        self.assertAlmostEqual(cut["perimeter"], 20.0)
+        self.assertTrue(0.0 < cut["turned"] < 20.0)
+
     def test_an_open_mesh_says_where_it_is_open(self):
         box = sculptd.Mesh.box([0, 0, 0], [2, 2, 2])
         front = [f for f in box.faces if not np.all(box.vertices[f][:, 0] == 2.0)]

@@ -32,6 +32,7 @@ if typing.TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from . import control, convert
     from ._native import (
         BooleanFailed,
         BooleanResult,
@@ -69,6 +70,8 @@ else:
         # On first use, so that `sculptd.control` works without the native module.
         if name not in __all__:
             raise AttributeError(f"module 'sculptd' has no attribute {name!r}")
+        if name in ("control", "convert"):
+            return importlib.import_module(f".{name}", __name__)
         value = getattr(importlib.import_module("._native", __name__), name)
         globals()[name] = value
         return value
@@ -93,6 +96,8 @@ __all__ = [
     "boolean",
     "boolean_all",
     "check",
+    "control",
+    "convert",
     "decimate",
     "hollow",
     "measure",

@@ -176,6 +176,7 @@ class Thickness:
     def face_values(self) -> NDArray[np.float32]: ...
     @property
     def least(self) -> dict[str, Any] | None: ...
+    # A limit between the bounds of a certified least wall is a tie, and counts as reached.
     def reaches(self, limit: float) -> bool | None: ...
     @property
     def min(self) -> float | None: ...
@@ -275,6 +276,7 @@ class _Section(TypedDict):
     area: float
     perimeter: float
     folded: float
+    turned: float
     centroid: list[float] | None
     contours: list[NDArray[np.float64]]
     open: list[NDArray[np.float64]]

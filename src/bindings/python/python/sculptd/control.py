@@ -15,7 +15,8 @@ replies from ``control.pyi``, which is generated from it.
 
 A reply comes after its effect. Each reply is matched with its request by its id: after a time-out
 or a Ctrl-C the next call gets its own answer. Threads may share a client; they take turns. A client
-that lost its connection connects again with the next call.
+that lost its connection connects again with the next call. ``Client(wait=10.0)`` waits up to ten
+seconds for a daemon that is still starting.
 
 `AsyncClient` has the same methods for asyncio::
 
@@ -50,6 +51,8 @@ __all__ = [
 VERSIONS = (1, 2)
 #: Longest reply that is read, bytes.
 MAX_REPLY = 256 << 20
+#: Between two attempts to connect, while a daemon is waited for.
+RETRY_SECONDS = 0.05
 #: Events that are kept while an answer is waited for; the oldest are dropped beyond.
 KEPT_EVENTS = 1024
 
@@ -160,12 +163,14 @@ class Client(_Protocol):
     """A connection to a running daemon; one request at a time, by any thread.
 
     ``path``: the socket, `default_path` unless told. ``patience``: seconds that an answer may take.
-    Raises `DaemonAbsent` where nothing listens.
+    ``wait``: seconds for which a connection is tried again while nothing listens, for a daemon that
+    is still starting or starts anew. Raises `DaemonAbsent` where nothing listens by then.
     """
 
-    def __init__(self, path=None, patience=120.0):
+    def __init__(self, path=None, patience=120.0, wait=0.0):
         self.path = os.fspath(path) if path is not None else default_path()
         self.patience = patience
+        self.wait = wait
         self._turn = threading.RLock()
         self._sent = 0
         self._subscribed = False
@@ -176,13 +181,18 @@ class Client(_Protocol):
     def _connect(self):
         self.close()
         self._read = b""
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        try:
-            self._socket.settimeout(self.patience)
-            self._socket.connect(self.path)
-        except OSError as e:
-            self._socket.close()
-            raise DaemonAbsent(self.path) from e
+        until = time.monotonic() + self.wait
+        while True:
+            self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            try:
+                self._socket.settimeout(self.patience)
+                self._socket.connect(self.path)
+                break
+            except OSError as e:
+                self._socket.close()
+                if time.monotonic() + RETRY_SECONDS > until:
+                    raise DaemonAbsent(self.path) from e
+            time.sleep(RETRY_SECONDS)
         if self._subscribed:
             # Its answer has the id of no later request, so it is passed over.
             self._send("subscribe", None)
@@ -292,9 +302,10 @@ class AsyncClient(_Protocol):
     its ``patience``, drops the answer of that task only.
     """
 
-    def __init__(self, path=None, patience=120.0):
+    def __init__(self, path=None, patience=120.0, wait=0.0):
         self.path = os.fspath(path) if path is not None else default_path()
         self.patience = patience
+        self.wait = wait
         self._sent = 0
         self._waiting = {}
         self._subscribed = False
@@ -321,12 +332,17 @@ class AsyncClient(_Protocol):
         async with self._turn:
             if self._receiver is not None and not self._receiver.done():
                 return
-            try:
-                reader, self._writer = await asyncio.open_unix_connection(
-                    self.path, limit=MAX_REPLY
-                )
-            except OSError as e:
-                raise DaemonAbsent(self.path) from e
+            until = time.monotonic() + self.wait
+            while True:
+                try:
+                    reader, self._writer = await asyncio.open_unix_connection(
+                        self.path, limit=MAX_REPLY
+                    )
+                    break
+                except OSError as e:
+                    if time.monotonic() + RETRY_SECONDS > until:
+                        raise DaemonAbsent(self.path) from e
+                await asyncio.sleep(RETRY_SECONDS)
             self._receiver = asyncio.create_task(self._receive(reader, self._writer))
             if self._subscribed:
                 self._send("subscribe", None)

@@ -167,7 +167,9 @@ class CurveReply(TypedDict):
 
 # Parameters of decimate.
 class DecimateParams(TypedDict):
-    # Stop before the surface moves by more than about this, in the mesh's unit.
+    # Stop before the error of a collapse exceeds this, in the mesh's unit: the root of the mean
+    # square distance of the new vertex from the planes of the triangles that it stands for. It is
+    # no bound on the distance between the surfaces.
     max_error: NotRequired[float | None]
     # Stop at this many triangles; at least 4, or 0 with max_error.
     triangles: NotRequired[int]
@@ -1354,7 +1356,13 @@ class _Sets:
 class Client:
     path: str
     patience: float
-    def __init__(self, path: str | PathLike[str] | None = None, patience: float = 120.0) -> None: ...
+    wait: float
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        patience: float = 120.0,
+        wait: float = 0.0,
+    ) -> None: ...
     def call(
         self, method: str, params: dict[str, Any] | None = None, patience: float | None = None
     ) -> Any: ...
@@ -1643,7 +1651,13 @@ class _AsyncSets:
 class AsyncClient:
     path: str
     patience: float
-    def __init__(self, path: str | PathLike[str] | None = None, patience: float = 120.0) -> None: ...
+    wait: float
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        patience: float = 120.0,
+        wait: float = 0.0,
+    ) -> None: ...
     async def call(
         self, method: str, params: dict[str, Any] | None = None, patience: float | None = None
     ) -> Any: ...
