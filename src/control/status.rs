@@ -184,6 +184,8 @@ pub enum TabletPlace {
     Unknown,
     /// It was learned from the desktop's pointer.
     Learned,
+    /// The window shows the form cut, which is only looked at: the pen does nothing.
+    Cut,
 }
 
 /// State of the daemon's window.

@@ -39,6 +39,8 @@ pub enum PenPlace {
         /// The area's left edge, from top to bottom.
         down: Vec2,
     },
+    /// The window shows the form cut, which is only looked at: the pen does nothing.
+    Off,
 }
 
 /// The places of all tablets, and what is free for them.
@@ -57,7 +59,7 @@ impl PenPlace {
     /// with.
     pub fn view(&self, share: Vec2) -> Vec2 {
         let at = match *self {
-            PenPlace::Area | PenPlace::Unknown => share,
+            PenPlace::Area | PenPlace::Unknown | PenPlace::Off => share,
             PenPlace::Mapped { origin, across, down } => origin + across * share.x + down * share.y,
         };
         at.clamp(Vec2::splat(FARTHEST.0), Vec2::splat(FARTHEST.1))
@@ -66,7 +68,7 @@ impl PenPlace {
     /// Returns true if all numbers are finite and within a hundred views.
     fn is_sane(&self) -> bool {
         match *self {
-            PenPlace::Area | PenPlace::Unknown => true,
+            PenPlace::Area | PenPlace::Unknown | PenPlace::Off => true,
             PenPlace::Mapped { origin, across, down } => {
                 // A comparison with a number that is none is false.
                 [origin, across, down].iter().all(|v| v.abs().max_element() <= 100.0)
@@ -90,7 +92,7 @@ impl DesktopLayout {
         let inside = |[lo, hi]: [Vec2; 2]| view.cmpge(lo).all() && view.cmplt(hi).all();
         match place {
             None => true,
-            Some(PenPlace::Unknown) => false,
+            Some(PenPlace::Unknown | PenPlace::Off) => false,
             Some(_) => {
                 !self.away
                     && inside([Vec2::ZERO, Vec2::ONE])
@@ -134,6 +136,9 @@ mod tests {
             desktop.is_free(desktop.place(DeviceId(4)), Vec2::splat(0.5)),
             "no desktop follows it"
         );
+        for none in [PenPlace::Unknown, PenPlace::Off] {
+            assert!(!desktop.is_free(Some(none), Vec2::splat(0.2)), "{none:?}");
+        }
         let wild = PenPlace::Mapped { origin: Vec2::NAN, across: Vec2::X, down: Vec2::Y };
         let wild = DesktopLayout { tablets: [Some((DeviceId(3), wild)); MAX_TABLETS], ..desktop };
         assert!(!wild.is_sane());

@@ -947,6 +947,7 @@ control-strip = Streifen { $number }
 
 ## The line below the clay
 
+status-cut = Form geschnitten: nur ansehen
 status-smooths = { $brush }: glättet, solange Umschalt gehalten wird
 status-carves = { $brush }: gräbt
 status-times = Takt { $tick } ms, Bild { $frame } ms

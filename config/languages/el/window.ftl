@@ -947,6 +947,7 @@ control-strip = Λωρίδα { $number }
 
 ## The line below the clay
 
+status-cut = Μορφή κομμένη: μόνο για θέαση
 status-smooths = { $brush }: λειαίνει όσο κρατιέται το Shift
 status-carves = { $brush }: σκάβει
 status-times = κύκλος { $tick } ms, εικόνα { $frame } ms

@@ -949,6 +949,7 @@ control-strip = Strip { $number }
 
 ## The line below the clay
 
+status-cut = Form cut: looked at only
 status-smooths = { $brush }: smooths while Shift is held
 status-carves = { $brush }: carves
 status-times = tick { $tick } ms, frame { $frame } ms

@@ -947,6 +947,7 @@ control-strip = Tira { $number }
 
 ## The line below the clay
 
+status-cut = Forma cortada: solo para mirar
 status-smooths = { $brush }: suaviza mientras se mantiene Mayús
 status-carves = { $brush }: talla
 status-times = ciclo { $tick } ms, imagen { $frame } ms

@@ -947,6 +947,7 @@ control-strip = Bande { $number }
 
 ## The line below the clay
 
+status-cut = Forme coupée : à regarder seulement
 status-smooths = { $brush } : lisse tant que Maj est tenue
 status-carves = { $brush } : creuse
 status-times = cycle { $tick } ms, image { $frame } ms

@@ -947,6 +947,7 @@ control-strip = Striscia { $number }
 
 ## The line below the clay
 
+status-cut = Forma tagliata: solo da guardare
 status-smooths = { $brush }: leviga finché si tiene Maiusc
 status-carves = { $brush }: scava
 status-times = ciclo { $tick } ms, immagine { $frame } ms

@@ -945,6 +945,7 @@ control-strip = ストリップ { $number }
 
 ## The line below the clay
 
+status-cut = 切断表示：見るだけ
 status-smooths = { $brush }：Shift を押している間は滑らかにします
 status-carves = { $brush }：彫ります
 status-times = 周期 { $tick } ms、描画 { $frame } ms

@@ -945,6 +945,7 @@ control-strip = 触条 { $number }
 
 ## The line below the clay
 
+status-cut = 形体已切开：仅供查看
 status-smooths = { $brush }：按住 Shift 时平滑
 status-carves = { $brush }：雕刻
 status-times = 周期 { $tick } 毫秒，画面 { $frame } 毫秒

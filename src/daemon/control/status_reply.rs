@@ -32,6 +32,7 @@ fn tablets(desktop: &DesktopLayout, view: Option<[glam::DVec2; 2]>) -> Vec<statu
         let (known, area) = match *place {
             PenPlace::Area => (status::TabletPlace::Area, None),
             PenPlace::Unknown => (status::TabletPlace::Unknown, None),
+            PenPlace::Off => (status::TabletPlace::Cut, None),
             PenPlace::Mapped { origin, across, down } => {
                 let area = view.map(|[corner, size]| {
                     let edges = [across, down].map(|edge| size * edge.as_dvec2());

@@ -24,7 +24,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState) {
     let mut open = None;
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
-        text(ui, &tool(ui, view));
+        match ui_state.look.cut {
+            Some(_) => part(ui, &tr!("status-cut"), Tab::Look, &mut open),
+            None => text(ui, &tool(ui, view)),
+        }
         if wide {
             let triangles = tr!("triangles", count = s.mesh.triangle_count());
             part(ui, &triangles, Tab::Scene, &mut open);

@@ -191,7 +191,7 @@ impl WindowState {
         }
         // A form that is cut is only looked at.
         if self.ui_state.look.cut.is_some() {
-            let all = self.tablets.in_range.iter().map(|id| Some((*id, PenPlace::Unknown)));
+            let all = self.tablets.in_range.iter().map(|id| Some((*id, PenPlace::Off)));
             let places = all.chain(std::iter::repeat(None));
             desktop.tablets.iter_mut().zip(places).for_each(|(slot, place)| *slot = place);
             return desktop;

@@ -1075,7 +1075,7 @@ class SubscribeReply(TypedDict):
     events: Sequence[EventName]
 
 # State of knowledge about the desktop's mapping of a tablet.
-TabletPlace: TypeAlias = Literal['area', 'unknown', 'learned']
+TabletPlace: TypeAlias = Literal['area', 'unknown', 'learned', 'cut']
 
 # Mapping of a tablet by the desktop.
 class TabletStatus(TypedDict):
