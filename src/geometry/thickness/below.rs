@@ -49,6 +49,6 @@ pub fn walls_below(
     let solid =
         Solid { tree, surface, sign, grain, edges: &edges, tilts: &tilts, opposed_only: false };
     let order = may_be_thin(surface, tree, sign, limit, job)?;
-    let facets = solid.thin(&order, limit - solid.tolerance(), job)?;
+    let facets = solid.thin(&order, limit - solid.tolerance(), false, job)?;
     Ok(ThinFacets { limit, facets })
 }

@@ -499,3 +499,33 @@ fn a_part_remeshed_with_sharp_edges_keeps_its_wall() {
     }
     assert!(bad.len() as u64 * 20 <= rounds, "{} of {rounds}: {bad:#?}", bad.len());
 }
+
+/// Faces of a scan, or of a file with few decimals, are not quite flat: beside an edge a ray runs
+/// along a side for long, and what it meets there is no wall.
+#[test]
+fn a_rough_part_has_the_wall_of_a_smooth_one() {
+    let mut r = Random(33);
+    let rounds = parts() / 5;
+    for n in 0..rounds {
+        let part = part([1, 3, 5, 6][n as usize % 4], &mut r);
+        let whole = CentredMesh::new(&part.mesh, 1.0).mesh;
+        let (lo, hi) = whole.bounds();
+        let mut mesh = refine(&whole, lo.distance(hi) / 60.0).mesh;
+        let turn = DQuat::from_scaled_axis(DVec3::new(r.between(0.0, 3.0), 0.7, -0.4)).as_quat();
+        let height = |t: usize| {
+            let [a, b, c] = mesh.corners(t);
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            f64::from((b - a).cross(c - a).length() / longest)
+        };
+        let narrowest = (0..mesh.triangles.len()).map(height).fold(part.wall, f64::min);
+        let rough = narrowest * 10f64.powf(r.between(-3.0, -1.5));
+        for p in &mut mesh.positions {
+            let by = DVec3::from_array(std::array::from_fn(|_| r.between(-rough, rough)));
+            *p = turn * *p + by.as_vec3();
+        }
+        let found = measured(&CentredMesh::new(&mesh.to_poly(), 1.0), None).least;
+        let least = found.expect("a wall").value;
+        let off = (least / part.wall - 1.0).abs();
+        assert!(off < 0.06, "{n} {}: {least} for {}, rough by {rough}", part.name, part.wall);
+    }
+}

@@ -109,7 +109,8 @@ impl LeastWall {
 pub struct ThinFacet {
     /// Index into the mesh's triangles.
     pub triangle: u32,
-    /// The least wall under it.
+    /// The least wall under it; infinite if it is only under the side of a valley, whose bottom is
+    /// under another facet.
     pub least: f64,
     /// The point from which that is measured.
     pub position: DVec3,
@@ -142,6 +143,16 @@ struct Search {
     open: f64,
     /// The least depth that rounding may have hidden at the sides of a shaft.
     low: f64,
+    /// Whether a side that is turned too far for a wall came above `best`; not looked for where it
+    /// is true from the beginning.
+    aside: bool,
+}
+
+impl Search {
+    /// A search for what is thinner than `best`.
+    fn below(best: f64, found: Option<FoundWall>, aside: bool) -> Search {
+        Search { best, found, open: f64::INFINITY, low: f64::INFINITY, aside }
+    }
 }
 
 impl Solid<'_> {
@@ -184,8 +195,7 @@ impl Solid<'_> {
                 .par_chunks(CHUNK)
                 .map(|chunk| {
                     job.check()?;
-                    let mut search =
-                        Search { best, found: None, open: f64::INFINITY, low: f64::INFINITY };
+                    let mut search = Search::below(best, None, true);
                     chunk.iter().for_each(|&t| self.facet(t, &mut search));
                     done.fetch_add(chunk.len(), Relaxed);
                     Ok(search)
@@ -238,7 +248,7 @@ impl Solid<'_> {
             .collect::<Result<_, Cancelled>>()?;
         let found = found.into_iter().flatten().min_by(|a, b| a.depth.total_cmp(&b.depth));
         let best = found.map_or(f64::INFINITY, |f| f.depth);
-        Ok(Search { best, found, open: f64::INFINITY, low: f64::INFINITY })
+        Ok(Search::below(best, found, true))
     }
 
     /// The first facet that faces `t` under `foot`, a point of `t`, and its depth.
@@ -259,6 +269,10 @@ impl Solid<'_> {
             if u != t && facing > grazing(self.tilts, t, u).max(from) {
                 if facing < OPPOSED {
                     self.valley(&shaft, t, u, search);
+                    search.aside = search.aside || {
+                        let patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
+                        patch.lowest().is_some_and(|c| c.z < search.best)
+                    };
                     return search.best - tolerance;
                 }
                 let patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
@@ -314,7 +328,9 @@ impl Solid<'_> {
     /// Looks for the bottoms of valleys along the sides of facet `u`, which is turned too far to be
     /// a wall's other side.
     fn valley(&self, shaft: &FacetShaft, t: u32, u: u32, search: &mut Search) {
-        let valley = Valley { surface: self.surface, into: shaft.into, grain: self.grain };
+        let faces_ray = |f: u32| self.facing(shaft, f) > -grazing(self.tilts, t, f);
+        let (surface, into) = (self.surface, shaft.into);
+        let valley = Valley { surface, faces_ray, into, grain: self.grain };
         valley.each_bottom(u, |ends| {
             // A line has no width: between two shafts it would be in neither.
             let (least, wider) = (ROUNDINGS * self.grain, 4.0 * self.grain);
@@ -346,15 +362,22 @@ impl Solid<'_> {
         self.edges.nearest(shaft.foot(place), REACH * depth + 8.0 * self.grain).is_some()
     }
 
-    /// The facets with walls below `limit`, rising.
-    pub fn thin(&self, order: &[u32], limit: f64, job: &Job) -> Result<Vec<ThinFacet>, Cancelled> {
+    /// The facets with walls below `limit`, rising; `sides`: also those that are only under the
+    /// sides of valleys.
+    pub fn thin(
+        &self,
+        order: &[u32],
+        limit: f64,
+        sides: bool,
+        job: &Job,
+    ) -> Result<Vec<ThinFacet>, Cancelled> {
         let area = |&t: &u32| self.shaft(t, 0.0).map_or(0.0, |p| p.area);
         let all: f64 = order.iter().map(area).sum();
         let found: Vec<Vec<ThinFacet>> = order
             .par_chunks(CHUNK)
             .map(|chunk| {
                 job.check()?;
-                Ok(chunk.iter().filter_map(|&t| self.thin_facet(t, limit, all)).collect())
+                Ok(chunk.iter().filter_map(|&t| self.thin_facet(t, limit, sides, all)).collect())
             })
             .collect::<Result<_, Cancelled>>()?;
         let mut found = found.concat();
@@ -362,17 +385,25 @@ impl Solid<'_> {
         Ok(found)
     }
 
-    fn thin_facet(&self, t: u32, limit: f64, all: f64) -> Option<ThinFacet> {
+    fn thin_facet(&self, t: u32, limit: f64, sides: bool, all: f64) -> Option<ThinFacet> {
         let below = limit + self.step();
-        let mut search =
-            Search { best: below, found: None, open: f64::INFINITY, low: f64::INFINITY };
+        let mut search = Search::below(below, None, !sides);
         self.facet(t, &mut search);
-        let least = search.found?;
+        if search.found.is_none() && !(sides && search.aside) {
+            return None;
+        }
         let shaft = self.shaft(t, 0.0)?;
         let (area, error) = self.area_below(&shaft, t, limit, all);
         let corners = self.surface.triangles[t as usize];
-        let (normal, position) = (least.away, least.foot);
-        let least = least.depth;
+        let (least, position, normal) = match search.found {
+            Some(wall) => (wall.depth, wall.foot, wall.away),
+            // Under the side of a valley whose bottom is under another facet.
+            None if area > 0.0 => {
+                let middle = self.surface.corners(t as usize)?.iter().sum::<Vec3>() / 3.0;
+                (f64::INFINITY, middle.as_dvec3(), -shaft.into)
+            }
+            None => return None,
+        };
         Some(ThinFacet { triangle: t, least, position, normal, corners, area, error })
     }
 

@@ -364,7 +364,7 @@ fn thin_facets(
     // A tie passes: walls within the tolerance of the limit are not below it.
     let below = limit - solid.tolerance();
     let found = least.is_some_and(|l| l.lower < below);
-    let facets = if found { solid.thin(order, below, job)? } else { Vec::new() };
+    let facets = if found { solid.thin(order, below, true, job)? } else { Vec::new() };
     Ok(Some(ThinFacets { limit, facets }))
 }
 

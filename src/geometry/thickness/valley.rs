@@ -6,8 +6,10 @@ use super::sharp_edges::OPPOSED;
 use super::surface::WeldedSurface;
 
 /// A surface seen along a direction.
-pub(super) struct Valley<'a> {
+pub(super) struct Valley<'a, F> {
     pub surface: &'a WeldedSurface,
+    /// Tells faces that look against the direction, or aside: a ray meets them from within.
+    pub faces_ray: F,
     /// The direction, of unit length.
     pub into: DVec3,
     /// Rises of less than some of this are rounding, in the mesh's unit.
@@ -17,7 +19,7 @@ pub(super) struct Valley<'a> {
 /// What rises by less than this many of the grain is level.
 const LEVEL: f64 = 8.0;
 
-impl Valley<'_> {
+impl<F: Fn(u32) -> bool> Valley<'_, F> {
     /// Calls `visit` with the ends of each edge of facet `u` from which the faces on both sides go
     /// on deeper, unless it is steep, and with each of its corners, twice, around which all is
     /// deeper or as deep.
@@ -47,8 +49,11 @@ impl Valley<'_> {
         along.dot(self.into).powi(2) > 1.0 - OPPOSED * OPPOSED
     }
 
-    /// Face `f` goes deeper from its edge between `a` and `b`.
+    /// Face `f` is met from within, and goes deeper from its edge between `a` and `b`.
     fn goes_deeper(&self, f: u32, a: u32, b: u32) -> bool {
+        if !(self.faces_ray)(f) {
+            return false;
+        }
         let from = self.at(a);
         let along = (self.at(b) - from).normalize_or_zero();
         let other = self.surface.triangles[f as usize].into_iter().find(|&v| v != a && v != b);
@@ -61,8 +66,10 @@ impl Valley<'_> {
     fn is_bottom(&self, v: u32) -> bool {
         let depth = |p: Vec3| p.as_dvec3().dot(self.into);
         let own = depth(self.surface.positions[v as usize]) - LEVEL * self.grain;
-        let corners = |&f: &u32| self.surface.triangles[f as usize];
-        let around = self.surface.around(v as usize).iter().flat_map(corners);
-        around.into_iter().all(|w| depth(self.surface.positions[w as usize]) >= own)
+        let deeper = |w: u32| depth(self.surface.positions[w as usize]) >= own;
+        let all = |&f: &u32| {
+            (self.faces_ray)(f) && self.surface.triangles[f as usize].into_iter().all(deeper)
+        };
+        self.surface.around(v as usize).iter().all(all)
     }
 }

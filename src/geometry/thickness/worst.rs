@@ -107,7 +107,11 @@ impl ThinFacets {
         for region in regions.chunk_by(|a, b| a.0 == b.0) {
             let area: f64 = region.iter().map(|r| r.1.area).sum();
             let thinnest = region.iter().min_by(|a, b| a.1.least.total_cmp(&b.1.least));
-            let Some((_, thinnest)) = thinnest.filter(|_| area >= minimum_area) else { continue };
+            let Some((_, thinnest)) =
+                thinnest.filter(|f| area >= minimum_area && f.1.least.is_finite())
+            else {
+                continue;
+            };
             let mut own: Vec<u32> = region.iter().flat_map(|r| r.1.corners).collect();
             own.sort_unstable();
             own.dedup();
