@@ -13,7 +13,12 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, view: &View<'_>) {
     rows::flow(ui, |ui| {
         ui.selectable_value(&mut axis, None, tr!("cut-none"));
         for (i, name) in ["x", "y", "z"].into_iter().enumerate() {
-            ui.selectable_value(&mut axis, Some(i), name).on_hover_text(tr!("cut-heading.tip"));
+            let chosen = ui.selectable_value(&mut axis, Some(i), name);
+            // The mirrors' buttons have the same letters.
+            let (role, on) = (egui::Role::Button, axis == Some(i));
+            let label = format!("{} {name}", tr!("cut-heading"));
+            chosen.widget_info(|| egui::WidgetInfo::selected(role, true, on, &label));
+            chosen.on_hover_text(tr!("cut-heading.tip"));
         }
     });
     let Some(axis) = axis.filter(|_| lo.cmple(hi).all()) else {

@@ -132,7 +132,7 @@ fn a_cut_is_chosen_and_moved_on_the_page_of_walls() {
     let mut h = harness(Tab::Walls);
     h.run_steps(2);
     assert_eq!(h.state().ui_state.look.cut, None);
-    h.get_all_by_label("y").last().expect("an axis").click();
+    h.get_by_label("Cut y").click();
     h.run_steps(2);
     let cut = h.state().ui_state.look.cut.expect("a cut");
     assert!(cut.axis == 1 && !cut.below);
