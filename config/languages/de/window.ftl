@@ -413,7 +413,7 @@ map-distance = Abstand
 map-overhang = Überhang
 map-draft = Schräge
 cut-heading = Schnitt
-    .tip = Zeigt die Form quer zu dieser Achse geschnitten. Solange wird sie nur angesehen: Drücken dreht sie.
+    .tip = Zeigt die Form quer zu dieser Achse geschnitten. Drücken dreht sie dann, und Stifte formen nicht.
 cut-none = keiner
 cut-at = Lage (mm)
 cut-below = das Untere abschneiden
@@ -947,7 +947,7 @@ control-strip = Streifen { $number }
 
 ## The line below the clay
 
-status-cut = Form geschnitten: nur ansehen
+status-cut = Form geschnitten: Drücken dreht sie
 status-smooths = { $brush }: glättet, solange Umschalt gehalten wird
 status-carves = { $brush }: gräbt
 status-times = Takt { $tick } ms, Bild { $frame } ms

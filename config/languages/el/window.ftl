@@ -413,7 +413,7 @@ map-distance = Απόσταση
 map-overhang = Πρόβολος
 map-draft = Κλίση
 cut-heading = Τομή
-    .tip = Δείχνει τη μορφή κομμένη κάθετα σε αυτόν τον άξονα. Όσο είναι κομμένη μόνο φαίνεται: το πάτημα τη γυρίζει.
+    .tip = Δείχνει τη μορφή κομμένη κάθετα σε αυτόν τον άξονα. Όσο είναι κομμένη, το πάτημα τη γυρίζει και οι πένες δεν πλάθουν.
 cut-none = καμία
 cut-at = θέση (mm)
 cut-below = κόψε ό,τι είναι από κάτω
@@ -947,7 +947,7 @@ control-strip = Λωρίδα { $number }
 
 ## The line below the clay
 
-status-cut = Μορφή κομμένη: μόνο για θέαση
+status-cut = Μορφή κομμένη: το πάτημα τη γυρίζει
 status-smooths = { $brush }: λειαίνει όσο κρατιέται το Shift
 status-carves = { $brush }: σκάβει
 status-times = κύκλος { $tick } ms, εικόνα { $frame } ms

@@ -415,7 +415,7 @@ map-distance = Distance
 map-overhang = Overhang
 map-draft = Draft
 cut-heading = Cut
-    .tip = Show the form cut across this axis. While it is cut it is only looked at: a press turns it.
+    .tip = Show the form cut across this axis. Meanwhile a press turns it, and pens do not sculpt.
 cut-none = none
 cut-at = position (mm)
 cut-below = cut off what is below
@@ -949,7 +949,7 @@ control-strip = Strip { $number }
 
 ## The line below the clay
 
-status-cut = Form cut: looked at only
+status-cut = Form cut: presses turn it
 status-smooths = { $brush }: smooths while Shift is held
 status-carves = { $brush }: carves
 status-times = tick { $tick } ms, frame { $frame } ms

@@ -413,7 +413,7 @@ map-distance = Distancia
 map-overhang = Voladizo
 map-draft = Salida
 cut-heading = Corte
-    .tip = Muestra la forma cortada a través de este eje. Mientras tanto solo se mira: pulsar la gira.
+    .tip = Muestra la forma cortada a través de este eje. Mientras tanto pulsar la gira, y los lápices no esculpen.
 cut-none = ninguno
 cut-at = posición (mm)
 cut-below = cortar lo de abajo
@@ -947,7 +947,7 @@ control-strip = Tira { $number }
 
 ## The line below the clay
 
-status-cut = Forma cortada: solo para mirar
+status-cut = Forma cortada: pulsar la gira
 status-smooths = { $brush }: suaviza mientras se mantiene Mayús
 status-carves = { $brush }: talla
 status-times = ciclo { $tick } ms, imagen { $frame } ms

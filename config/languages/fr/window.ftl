@@ -413,7 +413,7 @@ map-distance = Distance
 map-overhang = Surplomb
 map-draft = Dépouille
 cut-heading = Coupe
-    .tip = Montre la forme coupée en travers de cet axe. On ne fait alors que la regarder : appuyer la tourne.
+    .tip = Montre la forme coupée en travers de cet axe. Appuyer la tourne alors, et les stylets ne sculptent pas.
 cut-none = aucune
 cut-at = position (mm)
 cut-below = couper ce qui est en dessous
@@ -947,7 +947,7 @@ control-strip = Bande { $number }
 
 ## The line below the clay
 
-status-cut = Forme coupée : à regarder seulement
+status-cut = Forme coupée : appuyer la tourne
 status-smooths = { $brush } : lisse tant que Maj est tenue
 status-carves = { $brush } : creuse
 status-times = cycle { $tick } ms, image { $frame } ms

@@ -413,7 +413,7 @@ map-distance = Distanza
 map-overhang = Sbalzo
 map-draft = Sformo
 cut-heading = Sezione
-    .tip = Mostra la forma tagliata di traverso a questo asse. Intanto la si guarda soltanto: premere la gira.
+    .tip = Mostra la forma tagliata di traverso a questo asse. Intanto premere la gira, e le penne non scolpiscono.
 cut-none = nessuna
 cut-at = posizione (mm)
 cut-below = tagliare ciò che sta sotto
@@ -947,7 +947,7 @@ control-strip = Striscia { $number }
 
 ## The line below the clay
 
-status-cut = Forma tagliata: solo da guardare
+status-cut = Forma tagliata: premere la gira
 status-smooths = { $brush }: leviga finché si tiene Maiusc
 status-carves = { $brush }: scava
 status-times = ciclo { $tick } ms, immagine { $frame } ms

@@ -412,7 +412,7 @@ map-distance = 距離
 map-overhang = オーバーハング
 map-draft = 抜き勾配
 cut-heading = 断面
-    .tip = この軸に垂直に切った形を表示します。切っている間は見るだけで、押すと回ります。
+    .tip = この軸に垂直に切った形を表示します。切っている間は押すと回り、ペンでは造形しません。
 cut-none = なし
 cut-at = 位置 (mm)
 cut-below = 下側を切り取る
@@ -945,7 +945,7 @@ control-strip = ストリップ { $number }
 
 ## The line below the clay
 
-status-cut = 切断表示：見るだけ
+status-cut = 切断表示：押すと回る
 status-smooths = { $brush }：Shift を押している間は滑らかにします
 status-carves = { $brush }：彫ります
 status-times = 周期 { $tick } ms、描画 { $frame } ms

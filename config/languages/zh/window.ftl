@@ -412,7 +412,7 @@ map-distance = 距离
 map-overhang = 悬垂
 map-draft = 拔模
 cut-heading = 截面
-    .tip = 显示垂直于此轴切开的形体。切开时只供查看：按下即旋转。
+    .tip = 显示垂直于此轴切开的形体。切开时按下即旋转，画笔不雕塑。
 cut-none = 无
 cut-at = 位置 (mm)
 cut-below = 切去下方
@@ -945,7 +945,7 @@ control-strip = 触条 { $number }
 
 ## The line below the clay
 
-status-cut = 形体已切开：仅供查看
+status-cut = 形体已切开：按下即旋转
 status-smooths = { $brush }：按住 Shift 时平滑
 status-carves = { $brush }：雕刻
 status-times = 周期 { $tick } 毫秒，画面 { $frame } 毫秒

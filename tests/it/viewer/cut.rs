@@ -137,12 +137,12 @@ fn a_cut_is_chosen_and_moved_on_the_page_of_walls() {
     let cut = h.state().ui_state.look.cut.expect("a cut");
     assert!(cut.axis == 1 && !cut.below);
     // Why presses do not sculpt is said on every page.
-    h.get_by_label("Form cut: looked at only");
+    h.get_by_label("Form cut: presses turn it");
     h.get_by_label("cut off what is below").click();
     h.run_steps(2);
     assert!(h.state().ui_state.look.cut.expect("a cut").below);
     h.get_by_label("none").click();
     h.run_steps(2);
     assert_eq!(h.state().ui_state.look.cut, None);
-    assert!(h.query_by_label("Form cut: looked at only").is_none());
+    assert!(h.query_by_label("Form cut: presses turn it").is_none());
 }
