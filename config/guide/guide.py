@@ -256,9 +256,10 @@ def protocol():
         " `src/control/schema.json`.\n",
         "```json\n{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"brush\",\"params\":{\"kind\":\"clay\"}}\n```\n",
         "A reply comes after its effect: the next request of the same client sees it, and `tick` beside the result says from which"
-        " tick on every state shows it. Requests of one client are carried out in order. An operation carries over the strokes that"
+        " tick on every state shows it. In a session, not even a kill of the daemon takes it back. Requests of one client are carried out in order. An operation carries over the strokes that"
         " were made on its objects meanwhile. If triangles changed, it is computed again, three times at most, and then refused"
-        " with the reason. Where all places are taken, a client that floods or was silent for a second gives its place to a newcomer.\n",
+        " with the reason. Where all places are taken, a client that floods or was silent for a second gives its place to a newcomer, as does"
+        " one of a process that holds several to a process that holds none. Who has said nothing yet needs no place.\n",
         "Errors: -32700 not JSON, -32600 against the protocol, -32601 no such method, -32602 a parameter is missing, unknown or"
         " out of its range (the message names the field, the value and the range), -32000 it could not be carried out.\n",
         "## Methods\n",

@@ -7,9 +7,9 @@ use serde_json::Value;
 pub const MAX_MESSAGE: usize = 64 << 10;
 /// Deepest nesting of brackets in a request.
 pub const MAX_DEPTH: usize = 16;
-/// Clients that are connected at the same time. The last place is kept for the owner: it answers
-/// one request, of [`crate::method::ALWAYS_ANSWERED`] only.
-pub const MAX_CLIENTS: usize = 8;
+/// Clients that are served at the same time. A connection that has said nothing yet is not counted,
+/// and [`crate::method::ALWAYS_ANSWERED`] need no place.
+pub const MAX_CLIENTS: usize = 32;
 /// Requests a second and client. More are answered with [`Code::TooManyRequests`].
 pub const MAX_RATE: u32 = 200;
 /// Seconds after which a client that sends nothing is disconnected, unless it is subscribed to

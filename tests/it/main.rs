@@ -6,6 +6,8 @@ mod bad_input;
 mod boolean;
 mod brushes;
 mod camera;
+#[cfg(unix)]
+mod cancel;
 mod check;
 mod clay;
 #[cfg(unix)]
@@ -41,6 +43,10 @@ mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
 mod own_brushes;
+#[cfg(unix)]
+mod random_requests;
+#[cfg(unix)]
+mod random_work;
 #[cfg(unix)]
 mod read_back;
 mod recovery;

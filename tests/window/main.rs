@@ -14,6 +14,7 @@ mod fingers;
 mod first_minutes;
 mod four_views;
 mod idle;
+mod kiosk_screens;
 mod lost_screen;
 mod objects;
 mod places;

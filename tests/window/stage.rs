@@ -38,6 +38,11 @@ const SOON: Duration = Duration::from_secs(20);
 /// Real windows run one at a time: they measure and they click.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
+/// Keeps other real windows away until it is dropped.
+pub fn alone() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 pub struct Ended(pub Child);
 
 impl Drop for Ended {
@@ -141,7 +146,7 @@ impl Stage {
                 return None;
             }
         }
-        let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let alone = alone();
         let dir = tempfile::tempdir().expect("a folder");
         let (screen, display) = screen(dir.path());
         let daemon = start(dir.path(), &display, args);
@@ -155,7 +160,7 @@ impl Stage {
         screen: impl FnOnce(&Path) -> Result<(Ended, String), String>,
         settings: &str,
     ) -> Option<Stage> {
-        let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let alone = alone();
         let dir = tempfile::tempdir().expect("a folder");
         let (screen, display) = match screen(dir.path()) {
             Ok(screen) => screen,

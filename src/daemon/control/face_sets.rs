@@ -15,7 +15,6 @@ use sculptd_control::face_sets::{
 };
 use sculptd_control::scene::ObjectReply;
 use sculptd_engine::scene::SceneCommand;
-use sculptd_geometry::job::Job;
 
 /// Result of a method that changes face sets.
 pub(super) type SetsDone = Result<FaceSetReply, RpcError>;
@@ -61,8 +60,8 @@ pub(super) fn make(host: &Host, p: FaceSetMakeParams) -> SetsDone {
         FaceSetSource::Crease => Partition::Crease(degrees),
         FaceSetSource::Walls => Partition::Walls(p.levels.map(usize::from)),
     };
-    let job = Job::default();
-    let done = host.operate(&job, |now| face_set_jobs::parted(now, by, &job))?;
+    let place = host.jobs.begin();
+    let done = host.operate(&place.job, |now| face_set_jobs::parted(now, by, &place.job))?;
     let set = u16::try_from(object_of(done.answer)).ok().filter(|set| *set > 0);
     Ok(FaceSetReply { set, made: done.made })
 }
@@ -104,8 +103,9 @@ pub(super) fn rename(host: &Host, p: FaceSetNameParams) -> SetsDone {
 
 pub(super) fn extract(host: &Host, p: &FaceSetExtractParams) -> Result<ObjectReply, RpcError> {
     let part = p.set.map_or(FaceSetPart::Masked, FaceSetPart::Set);
-    let (name, job) = (p.name.as_deref().unwrap_or("extract"), Job::default());
-    let extract = |now: &Published| face_set_jobs::extract(now, part, p.thickness, name, &job);
-    let done = host.operate(&job, extract)?;
+    let (name, place) = (p.name.as_deref().unwrap_or("extract"), host.jobs.begin());
+    let job = &*place.job;
+    let extract = |now: &Published| face_set_jobs::extract(now, part, p.thickness, name, job);
+    let done = host.operate(job, extract)?;
     Ok(ObjectReply { id: object_of(done.answer), warnings: Vec::new() })
 }

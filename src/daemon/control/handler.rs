@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
-use super::host::{Host, failed, locked};
+use super::host::{Host, failed};
 use super::layers::{self, LayerDone};
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
@@ -117,17 +117,17 @@ fn safe(path: &Path) -> Result<(), RpcError> {
     Ok(())
 }
 
-fn load(path: &Path) -> Result<startup::Loaded, RpcError> {
+fn load(path: &Path, job: &Job) -> Result<startup::Loaded, RpcError> {
     safe(path)?;
-    startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)
+    startup::load_within(path, MAX_MESH_FILE, job).map_err(failed)
 }
 
-/// Runs a Boolean that `progress` and `cancel` know of. One at a time.
+/// Runs a Boolean.
 fn boolean(
     host: &Host,
     work: impl FnOnce(Target<'_>, &Job) -> Result<boolean_jobs::Joined, OperationError>,
 ) -> Result<edit::BooleanReply, RpcError> {
-    let place = host.begin_boolean()?;
+    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let (layers, sets) = (layers::count(host), face_sets::count(host));
@@ -289,7 +289,8 @@ impl Handler for Host {
     }
 
     fn load(&self, params: asked::PathParams) -> Result<edit::LoadReply, RpcError> {
-        scene::load(self, load(&params.path)?)
+        let place = self.jobs.begin();
+        scene::load(self, load(&params.path, &place.job)?)
     }
 
     fn export(&self, params: asked_scene::ExportParams) -> Result<edit::ExportReply, RpcError> {
@@ -485,7 +486,8 @@ impl Handler for Host {
     }
 
     fn take_up(&self, params: asked::PathParams) -> Result<edit::TakeUpReply, RpcError> {
-        let loaded = load(&params.path)?;
+        let place = self.jobs.begin();
+        let loaded = load(&params.path, &place.job)?;
         let triangles = loaded.plain.triangles.len() as u64;
         self.carry_out(Command::TakeUp(Arc::new(loaded.plain)))?;
         Ok(edit::TakeUpReply { triangles, warnings: loaded.warnings })
@@ -511,7 +513,7 @@ impl Handler for Host {
 
     fn level(&self, params: edit::LevelParams) -> Result<edit::LevelReply, RpcError> {
         let finer = params.to == LevelStep::Up;
-        let place = self.begin_boolean()?;
+        let place = self.jobs.begin_operation()?;
         let (layers_baked, sets_dropped) = (layers::count(self), face_sets::count(self));
         let done = self.operate(&place.job, |now| boolean_jobs::level(now, finer, &place.job))?;
         let (level, levels) = done.made;
@@ -537,7 +539,8 @@ impl Handler for Host {
 
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {
         safe(&params.path)?;
-        let read = read_mesh_within(&params.path, MAX_MESH_FILE, &Job::default());
+        let place = self.jobs.begin();
+        let read = read_mesh_within(&params.path, MAX_MESH_FILE, &place.job);
         let mut tool = read.map_err(failed)?.mesh;
         repair::weld(&mut tool, 0.0);
         tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(params.at));
@@ -546,15 +549,12 @@ impl Handler for Host {
     }
 
     fn progress(&self, _: NoParams) -> Result<edit::ProgressReply, RpcError> {
-        let under_way = locked(&self.joining);
-        let done = under_way.as_ref().map(|job| job.done());
-        Ok(edit::ProgressReply { running: under_way.is_some(), done })
+        let done = self.jobs.done();
+        Ok(edit::ProgressReply { running: done.is_some(), done })
     }
 
     fn cancel(&self, _: NoParams) -> Result<edit::CancelReply, RpcError> {
-        let under_way = locked(&self.joining);
-        under_way.iter().for_each(|job| job.cancel());
-        Ok(edit::CancelReply { cancelled: under_way.is_some() })
+        Ok(edit::CancelReply { cancelled: self.jobs.cancel() })
     }
 
     fn reach(&self, params: ReachParams) -> Result<ReachReply, RpcError> {

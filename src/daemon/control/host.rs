@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use arc_swap::ArcSwap;
 
+use super::jobs::Jobs;
 use super::loop_link::LoopLink;
 use super::stroke::VirtualPen;
 use crate::Published;
@@ -38,8 +39,8 @@ pub struct Host {
     pub presets: Presets,
     /// The wall thickness of the object, as last asked for.
     pub thickness: Arc<Mutex<Option<KeptThickness>>>,
-    /// The Boolean under way.
-    pub joining: Arc<Mutex<Option<Arc<Job>>>>,
+    /// What requests are working on.
+    pub jobs: Arc<Jobs>,
     /// Health of the session file; `None` if the run is not recorded.
     pub journal: Option<Health>,
     /// The history of the session, if one is kept.
@@ -68,7 +69,7 @@ impl Host {
             published,
             presets,
             thickness: Arc::default(),
-            joining: Arc::default(),
+            jobs: Arc::default(),
             journal: None,
             history: None,
             pen: None,
@@ -109,31 +110,6 @@ impl Host {
     pub fn for_client(&self) -> Host {
         Host { effect: Arc::default(), ..self.clone() }
     }
-
-    /// Reserves the only place for a Boolean. The guard frees it when dropped, also on panic.
-    pub(super) fn begin_boolean(&self) -> Result<BooleanPlace<'_>, RpcError> {
-        let job = Arc::new(Job::default());
-        let mut place = locked(&self.joining);
-        if place.is_some() {
-            let text = "another operation is under way. Wait for it, or cancel it";
-            return Err(RpcError::failed(text));
-        }
-        *place = Some(job.clone());
-        Ok(BooleanPlace { host: self, job })
-    }
-}
-
-/// The place of the Boolean under way.
-#[derive(Debug)]
-pub(super) struct BooleanPlace<'a> {
-    host: &'a Host,
-    pub job: Arc<Job>,
-}
-
-impl Drop for BooleanPlace<'_> {
-    fn drop(&mut self) {
-        *locked(&self.host.joining) = None;
-    }
 }
 
 /// The value behind a lock, whether or not a thread that held it has panicked: every value here is
@@ -149,34 +125,4 @@ pub const MAX_MESH_FILE: u64 = 1 << 30;
 /// The refusal of a request that could not be carried out.
 pub(super) fn failed(e: impl std::fmt::Display) -> RpcError {
     RpcError::failed(e.to_string())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::published::PublishedFigures;
-    use sculptd_clay::Clay;
-    use sculptd_geometry::shapes;
-
-    #[test]
-    fn a_panic_during_a_boolean_gives_its_place_back() {
-        let mesh = Clay::build(&shapes::sphere_of_about(100), &Job::default()).expect("a ball");
-        let mut world = crate::startup::world(mesh, &crate::config::Config::default());
-        let shown = Published::of(&mut world, PublishedFigures::default());
-        let (commands, _queue) = crate::command_queue::command_queue(1);
-        let shown = Arc::new(ArcSwap::from_pointee(shown));
-        let host = Host::new(commands, shown, Presets::default());
-        let held = host.begin_boolean().expect("free");
-        assert!(host.begin_boolean().is_err(), "one at a time");
-        drop(held);
-        let inner = host.clone();
-        let thread = std::thread::spawn(move || {
-            let _place = inner.begin_boolean().expect("free");
-            let _lock = inner.thickness.lock();
-            panic!("a bug in a Boolean (expected in this test)");
-        });
-        assert!(thread.join().is_err());
-        assert!(host.begin_boolean().is_ok(), "the place is free again");
-        assert!(host.thickness.is_poisoned() && locked(&host.thickness).is_none());
-    }
 }

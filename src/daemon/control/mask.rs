@@ -5,7 +5,6 @@ use crate::mask_jobs;
 use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_control::RpcError;
 use sculptd_control::brush as asked;
-use sculptd_geometry::job::Job;
 
 /// Measures the active object on this thread and has the loop mask it.
 pub(super) fn measured(
@@ -28,7 +27,7 @@ pub(super) fn measured(
             return Err(RpcError::bad_params(format!("occlusion = {share}: {expected}")));
         }
     };
-    let job = Job::default();
-    let done = host.operate(&job, |now| mask_jobs::measured(now, by, &job))?;
+    let place = host.jobs.begin();
+    let done = host.operate(&place.job, |now| mask_jobs::measured(now, by, &place.job))?;
     Ok(asked::MaskMeasuredReply { protected: done.made })
 }

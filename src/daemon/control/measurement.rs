@@ -3,7 +3,6 @@
 use super::host::{Host, KeptThickness, failed, locked};
 use sculptd_control::RpcError;
 use sculptd_control::edit::{ThicknessDefinition, ThicknessParams, ThicknessReply};
-use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::check::ThicknessLimits;
 use sculptd_geometry::thickness::ready::ReadyPart;
 use sculptd_geometry::thickness::{ThicknessMethod, ThicknessSettings};
@@ -31,10 +30,11 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
     let limits =
         ThicknessLimits { fail_below: params.limit.filter(|l| *l > 0.0), ..Default::default() };
     let whole = mesh.to_tri().to_poly();
-    let job = Job::default();
-    let part = ReadyPart::new(&whole, scale, None, settings.crease, &job).map_err(failed)?;
+    let place = host.jobs.begin();
+    let job = &*place.job;
+    let part = ReadyPart::new(&whole, scale, None, settings.crease, job).map_err(failed)?;
     let vertices = part.whole().positions.len() as u64;
-    let found = part.judge("", &settings, limits, &job, || 0.0).map_err(failed)?;
+    let found = part.judge("", &settings, limits, job, || 0.0).map_err(failed)?;
     let (answer, values) = (found.answer, &found.thickness.values);
     let valid = values.iter().take(vertices as usize).filter(|v| v.is_finite()).count() as u64;
     let s = &answer.summary;

@@ -18,6 +18,7 @@ mod guests_reply;
 pub mod handler;
 mod history;
 pub mod host;
+pub mod jobs;
 mod layers;
 pub mod loop_link;
 mod mask;
@@ -31,6 +32,7 @@ mod snap;
 mod status_reply;
 pub mod stroke;
 mod view_region;
+mod waiting_room;
 
 pub use host::Host;
 pub use sculptd_control::client;

@@ -18,7 +18,7 @@ use sculptd_engine::scene::SceneCommand;
 use sculptd_geometry::remesh::LostParts;
 
 pub(super) fn remesh(host: &Host, params: RemeshParams) -> Result<RemeshReply, RpcError> {
-    let place = host.begin_boolean()?;
+    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let wanted = Wanted { voxel: params.voxel, sharp: params.sharp };
@@ -75,7 +75,7 @@ pub(super) fn remesh_quads(
         guides: guides.map(|line| line.into_iter().map(DVec3::from).collect()).collect(),
         levels: params.levels,
     };
-    let place = host.begin_boolean()?;
+    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let layers_baked = layers::count(host);
@@ -105,7 +105,7 @@ pub(super) fn decimate(
     }
     let wanted =
         DecimateWanted { triangles: params.triangles as usize, max_error: params.max_error };
-    let place = host.begin_boolean()?;
+    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let layers_baked = layers::count(host);

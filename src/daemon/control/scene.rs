@@ -141,23 +141,27 @@ impl From<SceneCommand> for QueuedSceneCommand {
     }
 }
 
-fn primitive(asked: AskedShape, edge: Option<f64>) -> Result<(Primitive, Clay), RpcError> {
+fn primitive(
+    asked: AskedShape,
+    edge: Option<f64>,
+    job: &Job,
+) -> Result<(Primitive, Clay), RpcError> {
     let shape = shape(asked);
     let primitive = Primitive { shape, edge: edge.unwrap_or_else(|| shape.usual_edge()) };
     let bad = |e: &dyn std::fmt::Display| RpcError::bad_params(format!("primitive: {e}"));
     let plain = primitive.triangles().map_err(|e| bad(&e))?;
-    let clay = Clay::build(&plain, &Job::default()).map_err(|e| bad(&e))?;
+    let clay = Clay::build(&plain, job).map_err(|e| bad(&e))?;
     Ok((primitive, clay))
 }
 
 pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcError> {
     let mut transform = params.transform.as_ref().map_or(Ok(ObjectTransform::NONE), placed)?;
-    let mut layers = None;
+    let (mut layers, place) = (None, host.jobs.begin());
     let (source, clay, name, warnings) = match (params.primitive, &params.path, params.held) {
         (None, None, true) => {
             let held = host.published.load().thing.clone();
             let held = held.ok_or_else(|| RpcError::failed("nothing is in the hands"))?;
-            let clay = Clay::build(&held.plain, &Job::default()).map_err(failed)?;
+            let clay = Clay::build(&held.plain, &place.job).map_err(failed)?;
             // A transform in the request replaces that of the hands.
             if params.transform.is_none() {
                 transform = held.place.to_object();
@@ -165,13 +169,12 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
             (ObjectSource::Mesh(held.plain), clay, "held object".into(), Vec::new())
         }
         (Some(asked), None, false) => {
-            let (primitive, clay) = primitive(asked, params.edge)?;
+            let (primitive, clay) = primitive(asked, params.edge, &place.job)?;
             let name = primitive.shape.name().to_owned();
             (ObjectSource::Primitive(primitive), clay, name, Vec::new())
         }
         (None, Some(path), false) => {
-            let loaded =
-                startup::load_within(path, MAX_MESH_FILE, &Job::default()).map_err(failed)?;
+            let loaded = startup::load_within(path, MAX_MESH_FILE, &place.job).map_err(failed)?;
             layers = scene_jobs::layers_of(&loaded.targets);
             let source = ObjectSource::Mesh(loaded.plain.into());
             (source, loaded.mesh, startup::object_name(path), loaded.warnings)
@@ -192,7 +195,8 @@ pub(super) fn add(host: &Host, params: &AddParams) -> Result<ObjectReply, RpcErr
 }
 
 pub(super) fn reshape(host: &Host, params: &ReshapeParams) -> Result<ObjectReply, RpcError> {
-    let (primitive, clay) = primitive(params.primitive, params.edge)?;
+    let place = host.jobs.begin();
+    let (primitive, clay) = primitive(params.primitive, params.edge, &place.job)?;
     let name = primitive.shape.name();
     let source = ObjectSource::Primitive(primitive);
     let new = NewObject::new(name, source, ObjectTransform::NONE);
@@ -211,13 +215,12 @@ pub(super) fn transform(host: &Host, params: &TransformParams) -> Result<ObjectR
     ask(host, SceneCommand::Transform(id, transform))
 }
 
-/// Carries out what makes new objects of others. One at a time, and `progress` and `cancel` know of
-/// it.
+/// Carries out what makes new objects of others.
 pub(super) fn combine(
     host: &Host,
     of: impl Fn(&Published, &Job) -> Result<Combined, scene_jobs::CombineError>,
 ) -> Result<CombineReply, RpcError> {
-    let place = host.begin_boolean()?;
+    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let done = host.operate(&place.job, |shown| {

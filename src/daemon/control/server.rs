@@ -1,6 +1,6 @@
 //! Listening: one thread that accepts, one a client, all bounded.
 
-use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
@@ -11,18 +11,19 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::host::{Host, locked};
-use super::places::{ClientPlace, ClientPlaces};
-use super::{IDLE_SECONDS, MAX_CLIENTS, MAX_MESSAGE, MAX_RATE, events, user_id};
+use super::places::ClientPlace;
+use super::waiting_room::WaitingRoom;
+use super::{IDLE_SECONDS, MAX_MESSAGE, MAX_RATE, events, user_id};
 use sculptd_control::client::foreign_folder;
-use sculptd_control::method::{self, ALWAYS_ANSWERED};
+use sculptd_control::method;
 use sculptd_control::wire::{Code, Response, parse};
 use sculptd_control::{Request, RpcError};
 use sculptd_devices::Clock;
 
 /// Longest that a reply may wait for its reader.
 const WRITE_PATIENCE: Duration = Duration::from_secs(5);
-/// Longest that the client on the owner's place may take for its one request.
-const OWNER_PATIENCE: Duration = Duration::from_secs(2);
+/// Pause after each refusal of a client that asks too often.
+const FLOOD_PAUSE: Duration = Duration::from_millis(5);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
@@ -72,6 +73,7 @@ impl Server {
             std::fs::remove_file(path).map_err(io)?;
         }
         let listener = UnixListener::bind(path).map_err(io)?;
+        listener.set_nonblocking(true).map_err(io)?;
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600)).map_err(io)?;
         let closing = Arc::new(AtomicBool::new(false));
         let closed = closing.clone();
@@ -97,38 +99,37 @@ impl Drop for Server {
 }
 
 fn accept(listener: &UnixListener, host: &Host, idle: Duration, closing: &AtomicBool) {
-    let (clients, owner) = (ClientPlaces::new(MAX_CLIENTS - 1), ClientPlaces::new(1));
-    for stream in listener.incoming() {
-        if closing.load(SeqCst) {
-            return;
-        }
-        let Ok(stream) = stream else { continue };
-        // A client that does not read must not delay the clients that wait to be accepted.
-        let _ = stream.set_write_timeout(Some(WRITE_PATIENCE));
-        if !allowed(&stream, user_id()) {
-            refuse(&stream, "another user's daemon");
-            continue;
-        }
-        let host = host.for_client();
-        // The last place is the owner's.
-        if let Some(place) = clients.take(stream.try_clone().ok()) {
-            start(place, move |place| serve(stream, &host, idle, &place));
-        } else if let Some(place) = owner.take(None) {
-            start(place, move |place| {
-                let response = answer_owner(&stream, &host);
-                // Free before the answer is read, so that whoever asks next is not refused.
-                drop(place);
-                if let Some(response) = response {
-                    write_line(&stream, &response);
+    let mut room = WaitingRoom::new(idle);
+    loop {
+        room.wait(listener);
+        loop {
+            let stream = match listener.accept() {
+                Ok((stream, _)) => stream,
+                Err(e) if e.kind() == ErrorKind::WouldBlock => break,
+                Err(_) => {
+                    room.make_room();
+                    break;
                 }
-            });
-        } else {
-            refuse(&stream, TOO_MANY);
+            };
+            if closing.load(SeqCst) {
+                return;
+            }
+            // A client that does not read must not delay the clients that wait to be accepted.
+            let _ = stream.set_write_timeout(Some(WRITE_PATIENCE));
+            match peer(&stream) {
+                Some((user, process)) if permitted(user, user_id()) => room.enter(stream, process),
+                _ => {
+                    let error = RpcError::failed("another user's daemon");
+                    write_line(&stream, &Response::new(Value::Null, Err(error)));
+                }
+            }
+        }
+        while let Some((stream, place)) = room.next(host) {
+            let host = host.for_client();
+            start(place, move |place| serve(stream, &host, idle, &place));
         }
     }
 }
-
-const TOO_MANY: &str = "too many clients at a time; only 'shutdown' and 'cancel' are answered";
 
 /// Serves a client on a separate thread, which owns the place.
 fn start(place: ClientPlace, serve: impl FnOnce(ClientPlace) + Send + 'static) {
@@ -137,57 +138,22 @@ fn start(place: ClientPlace, serve: impl FnOnce(ClientPlace) + Send + 'static) {
     let _ = client.spawn(move || serve(place));
 }
 
-fn refuse(stream: &UnixStream, why: &str) {
-    write_line(stream, &Response::new(Value::Null, Err(RpcError::failed(why))));
-}
-
 /// `false`: nobody reads.
-fn write_line(mut out: &UnixStream, response: &Response) -> bool {
+pub(super) fn write_line(mut out: &UnixStream, response: &Response) -> bool {
     let Ok(mut bytes) = serde_json::to_vec(response) else { return false };
     bytes.push(b'\n');
     out.write_all(&bytes).is_ok()
 }
 
-/// Only the daemon's own user and root, as the kernel names the peer.
-pub fn allowed(stream: &UnixStream, owner: u32) -> bool {
-    match rustix::net::sockopt::socket_peercred(stream) {
-        Ok(peer) => permitted(peer.uid.as_raw(), owner),
-        Err(_) => false,
-    }
+/// Returns user and process of the other end, as the kernel names them.
+fn peer(stream: &UnixStream) -> Option<(u32, i32)> {
+    let peer = rustix::net::sockopt::socket_peercred(stream).ok()?;
+    Some((peer.uid.as_raw(), peer.pid.as_raw_nonzero().get()))
 }
 
 /// Returns true if user `peer` may control the daemon of user `owner`.
 pub fn permitted(peer: u32, owner: u32) -> bool {
     peer == owner || peer == 0
-}
-
-/// Answers one request while every other place is taken: the methods that end the daemon or report
-/// who holds a place. Returns `None` if no request came in time.
-fn answer_owner(mut stream: &UnixStream, host: &Host) -> Option<Response> {
-    let clock = Clock::monotonic();
-    let until = clock.now_us() + OWNER_PATIENCE.as_micros() as u64;
-    let mut line = Vec::new();
-    let mut part = [0; 512];
-    // By single reads, so that a client that sends a byte a second takes no longer either.
-    while !line.contains(&b'\n') && line.len() <= MAX_MESSAGE {
-        let left = until.saturating_sub(clock.now_us()).max(1);
-        stream.set_read_timeout(Some(Duration::from_micros(left))).ok()?;
-        match stream.read(&mut part) {
-            Ok(n @ 1..) if clock.now_us() < until => line.extend_from_slice(&part[..n]),
-            _ => return None,
-        }
-    }
-    let line = line.split(|b| *b == b'\n').next().unwrap_or(&[]);
-    Some(match parse(line.trim_ascii()) {
-        Err(e) => Response::new(Value::Null, Err(e)),
-        Ok(asked) => {
-            let result = match ALWAYS_ANSWERED.contains(&asked.method.as_str()) {
-                true => super::handler::call(host, &asked.method, asked.params),
-                false => Err(RpcError::failed(TOO_MANY)),
-            };
-            Response::new(asked.id.unwrap_or(Value::Null), result)
-        }
-    })
 }
 
 fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
@@ -226,6 +192,9 @@ fn serve(stream: UnixStream, host: &Host, idle: Duration, place: &ClientPlace) {
         if let Some(before) = before {
             place.set_subscribed();
             let _ = events::start(host, before, out.clone(), gone.clone());
+        }
+        if asked > MAX_RATE {
+            let _ = crossbeam_channel::never::<()>().recv_timeout(FLOOD_PAUSE);
         }
         // After an oversized line, the start of the next request is unknown.
         if !whole {
@@ -303,19 +272,24 @@ fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
             reply
         })
     };
+    // The reply says that it is done: not even a kill takes it back.
+    if host.journal.as_ref().is_some_and(|journal| !journal.wait_until_safe()) {
+        tracing::debug!("{}: a reply did not wait for the session any longer", asked.method);
+    }
     let effect = Some(host.effect.load(SeqCst)).filter(|tick| *tick > 0);
     (asked.id.map(|id| Response::new(id, result).with_effect(effect)), subscribes)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::places::ClientPlaces;
     use super::*;
 
     #[test]
     fn a_panic_in_a_client_s_thread_gives_its_place_back() {
         let places = ClientPlaces::new(1);
-        let place = places.take(None).expect("free");
-        assert!(places.take(None).is_none());
+        let place = places.take(None, 1).expect("free");
+        assert!(places.take(None, 2).is_none());
         let (ended, wait) = crossbeam_channel::bounded::<()>(0);
         start(place, move |_place| {
             let _ended = ended;
@@ -325,7 +299,7 @@ mod tests {
         assert!(wait.recv().is_err());
         let free = (0..1000).any(|_| {
             let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(5));
-            places.take(None).is_some()
+            places.take(None, 2).is_some()
         });
         assert!(free, "the place is lost");
     }

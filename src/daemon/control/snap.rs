@@ -13,7 +13,6 @@ use sculptd_control::scene::{CombineReply, SceneBooleanParams};
 use sculptd_control::snap::{SnapAlignment, SnapParams, SnapReply};
 use sculptd_engine::scene::{FaceAlignment, ObjectId};
 use sculptd_geometry::boolean::Operation;
-use sculptd_geometry::job::Job;
 
 pub(super) fn snap(host: &Host, params: &SnapParams) -> Result<SnapReply, RpcError> {
     let picked = |id, at| PickedFace { id: ObjectId(id), at: DVec3::from_array(at) };
@@ -23,7 +22,8 @@ pub(super) fn snap(host: &Host, params: &SnapParams) -> Result<SnapReply, RpcErr
         SnapAlignment::Centre => FaceAlignment::Centre,
         SnapAlignment::Edge => FaceAlignment::Edge,
     };
-    let done = host.operate(&Job::default(), |now| {
+    let place = host.jobs.begin();
+    let done = host.operate(&place.job, |now| {
         let placed = snap_jobs::face_to_face(now, moved, target, alignment, params.spin)?;
         Ok(Computed::of_snap(placed))
     })?;

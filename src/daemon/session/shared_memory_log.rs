@@ -281,8 +281,9 @@ impl SharedMemoryLog {
             || part.bytes > PLENTY && part.last <= self.committed.load(Relaxed)
     }
 
-    /// Appends the input of some ticks. Input that does not fit goes to the session file alone.
-    pub fn put(&mut self, first: u64, last: u64, data: &[u8]) {
+    /// Appends the input of some ticks. Returns false for input that does not fit: it goes to the
+    /// session file alone.
+    pub fn put(&mut self, first: u64, last: u64, data: &[u8]) -> bool {
         let other = 1 - self.now;
         if self.parts[self.now].bytes > PART_BYTES && self.may_go(other) {
             self.now = other;
@@ -292,16 +293,16 @@ impl SharedMemoryLog {
                 || part.file.seek(SeekFrom::Start(0)).is_err()
                 || part.file.write_all(&self.head).is_err()
             {
-                return;
+                return false;
             }
         }
         let after = std::mem::replace(&mut self.after, last);
         let before = self.chain;
         self.chain = chain(before, data);
         let part = &mut self.parts[self.now];
-        let Ok(length) = u32::try_from(data.len()) else { return };
+        let Ok(length) = u32::try_from(data.len()) else { return false };
         if part.bytes + u64::from(length) > MOST {
-            return;
+            return false;
         }
         let mut entry = Vec::with_capacity(HEAD + data.len());
         entry.extend_from_slice(&first.to_le_bytes());
@@ -313,10 +314,12 @@ impl SharedMemoryLog {
         entry.extend_from_slice(&crc.to_le_bytes());
         entry.extend_from_slice(data);
         // In one call: a kill finds all of it or nothing.
-        if part.file.write_all(&entry).is_ok() {
+        let is_written = part.file.write_all(&entry).is_ok();
+        if is_written {
             part.bytes += entry.len() as u64;
             part.last = last;
         }
+        is_written
     }
 
     pub fn name(&self) -> &LogName {

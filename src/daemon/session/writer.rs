@@ -6,7 +6,7 @@
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -54,6 +54,8 @@ pub struct SessionWriter {
     /// Ticks whose input will never be in the file. After the first of them nothing more is handed
     /// over: a log with a hole cannot be replayed beyond it.
     lost: Arc<AtomicU64>,
+    /// The last tick that was handed over, or waits for room.
+    handed: Arc<AtomicU64>,
     /// Ticks that found no free buffer, while the disk is slow; handed over with the next that
     /// finds one.
     carry: Vec<u8>,
@@ -224,11 +226,14 @@ fn start_thread(
     // From here on the syncer does it.
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     commit_without_waiting(&db).map_err(store)?;
+    let safe = health.safe.clone();
+    safe.store(end.tick, SeqCst);
+    health.handed.store(end.tick, SeqCst);
     // Two threads: the first only copies, and never waits for a disk.
     let (onward, groups) = cc::unbounded();
     std::thread::Builder::new()
         .name("sculptd-tail".into())
-        .spawn(move || copy_on(tail, &inbox, &onward))
+        .spawn(move || copy_on(tail, &safe, &inbox, &onward))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
     let place = Arc::new(Mutex::new(SessionPlace::new(session_path.clone(), lock.clone())));
     let mut writing = JournalThread {
@@ -251,11 +256,12 @@ fn start_thread(
         .name("sculptd-journal".into())
         .spawn(move || writing.run(&groups))
         .map_err(|source| CreateError::Io { path: path.display().to_string(), source })?;
-    let lost = health.lost.clone();
+    let (lost, handed) = (health.lost.clone(), health.handed.clone());
     let writer = SessionWriter {
         full,
         empty,
         lost,
+        handed,
         carry: Vec::new(),
         carry_ticks: (0, 0),
         history: None,
@@ -289,6 +295,7 @@ impl SessionWriter {
             self.lost.fetch_add(1, Relaxed);
             return;
         }
+        self.handed.store(tick, SeqCst);
         let free = self.empty.try_recv().ok();
         if let Some(mut buffer) = free {
             buffer.clear();
@@ -340,14 +347,15 @@ struct InputGroup {
 /// Copies what comes into the tail and hands it on to whoever writes it.
 fn copy_on(
     mut tail: Option<SharedMemoryLog>,
+    safe: &AtomicU64,
     inbox: &cc::Receiver<InputMessage>,
     onward: &cc::Sender<InputMessage>,
 ) {
     raise_priority_below();
     for message in inbox {
         let InputMessage::Ticks(first, last, data) = &message;
-        if let Some(tail) = &mut tail {
-            tail.put(*first, *last, data);
+        if tail.as_mut().is_some_and(|tail| tail.put(*first, *last, data)) {
+            safe.fetch_max(*last, SeqCst);
         }
         if onward.send(message).is_err() {
             return;
@@ -530,6 +538,7 @@ impl JournalThread {
                 self.groups.clear();
                 if let Some(last) = last {
                     self.committed.fetch_max(last, Relaxed);
+                    self.health.safe.fetch_max(last, SeqCst);
                     if let Some(syncer) = &self.syncer {
                         syncer.committed(last, self.end.chain);
                     }

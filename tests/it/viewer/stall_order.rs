@@ -112,16 +112,13 @@ fn with_stalls(events: &[(u64, Event)], seed: u64) -> u64 {
         let _ = quiet.recv_timeout(Duration::from_micros(3_000));
     }
     for _ in 0..asked {
-        let answer = answered.recv_timeout(Duration::from_secs(20)).expect("an answer");
+        let answer = answered.recv_timeout(crate::waiting::PATIENCE).expect("an answer");
         assert!(answer.result.is_ok());
     }
-    for _ in 0..2_000 {
+    crate::waiting::until("all is stepped", || {
         let shown = live.published.load_full();
-        if shown.figures.samples == sent && !shown.is_behind {
-            break;
-        }
-        let _ = quiet.recv_timeout(Duration::from_millis(5));
-    }
+        shown.figures.samples == sent && !shown.is_behind
+    });
     let ended = live.stop().expect("ends");
     assert_eq!(ended.figures.samples, sent);
     ended.world.hash()

@@ -1,0 +1,154 @@
+//! Random requests of the control socket: for each method of the schema, parameters that mean
+//! something in the present state, mostly.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::seeded::Random;
+use sculptd_geometry::io::write_mesh;
+use sculptd_geometry::shapes;
+
+/// Asks the daemon; `None`: it refused.
+pub type Ask<'a> = &'a dyn Fn(&str, Value) -> Option<Value>;
+
+/// Writes the files that the requests name.
+pub fn write_files(dir: &Path) {
+    let small = shapes::icosphere(0.3, 8).to_poly();
+    write_mesh(&dir.join("ball.ply"), &shapes::icosphere(1.0, 12).to_poly()).expect("a file");
+    write_mesh(&dir.join("box.ply"), &small).expect("a file");
+    let picture = image::GrayImage::from_fn(16, 16, |x, y| image::Luma([(x * y) as u8]));
+    picture.save(dir.join("heights.png")).expect("a picture");
+}
+
+fn region(r: &mut Random) -> Value {
+    let (x, y) = (0.3 + 0.2 * r.part(), 0.3 + 0.2 * r.part());
+    json!({ "box": [x, y, x + 0.2, y + 0.2] })
+}
+
+/// Parameters that mean something in the present state, mostly.
+pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
+    let mut one_of = |method: &str, list: &str| {
+        let all = ask(method, Value::Null).map(|reply| reply[list].clone());
+        let all = all.as_ref().and_then(Value::as_array).map_or(&[][..], |a| a);
+        all.get(r.below(all.len().max(1) as u64) as usize).map_or(json!(0), |o| o["id"].clone())
+    };
+    let any = one_of("scene.list", "objects");
+    let other = one_of("scene.list", "objects");
+    let layer = one_of("layers.list", "layers");
+    let set = 1 + r.below(2);
+    let file = dir.join(r.of(&["ball.ply", "box.ply"]));
+    let operation = r.of(&["union", "intersection", "difference", "reverse-difference"]);
+    let node = || ask("history", Value::Null).map(|h| h["places"].clone());
+    let turn = [0.0, 0.0, 0.0, 1.0];
+    match method {
+        "guests.invite" => json!({ "role": "viewer" }),
+        "guests.revoke" => json!({ "key": 1 }),
+        "brush" => {
+            json!({ "radius": 0.05 + 0.3 * r.part(), "kind": r.of(&["draw", "clay", "smooth"]) })
+        }
+        "picture" => json!({ "path": dir.join("heights.png") }),
+        "mask" => json!({ "action": r.of(&["clear", "fill", "invert", "blur", "grow", "shrink"]) }),
+        "mask-measured" => json!({ "by": { "thin": 0.1 + r.part() } }),
+        "mask-region" => json!({ "region": region(r), "mask": r.part() }),
+        "curve" => json!({ "act": r.of(&["apply", "cancel"]) }),
+        "stroke" => {
+            let (x, y) = (0.45 + 0.1 * r.part(), 0.45 + 0.1 * r.part());
+            let points = json!([[x, y, 1.0, 0], [x + 0.05, y, 1.0, 20], [x + 0.1, y, 1.0, 40]]);
+            json!({ "points": points, "space": "view" })
+        }
+        "camera" => json!({ "yaw": r.part() * 3.0, "pitch": r.part() - 0.5 }),
+        "jump" => {
+            let places = node().unwrap_or_default();
+            let count = places.as_array().map_or(0, Vec::len).max(1) as u64;
+            json!({ "node": places[r.below(count) as usize]["node"] })
+        }
+        "load" | "take-up" => json!({ "path": file }),
+        "export" => json!({ "path": dir.join("out.ply") }),
+        "thickness" => json!({ "rays": 1 }),
+        "join" => json!({ "operation": operation }),
+        "trim" => json!({ "part": { "box": [0.0, 0.0, 0.45, 1.0] } }),
+        "level" => json!({ "to": r.of(&["up", "down"]) }),
+        "remesh" => json!({ "voxel": 0.08 + 0.1 * r.part() }),
+        "remesh.quads" => json!({ "quads": 200 + r.below(200) }),
+        "remesh.local" => json!({ "stretched_only": false, "edge": null }),
+        "decimate" => json!({ "triangles": 400 + r.below(400) }),
+        "boolean" => {
+            let at = [r.part() - 0.5, 0.9, r.part() - 0.5];
+            json!({ "operation": operation, "path": dir.join("box.ply"), "at": at })
+        }
+        "scene.add" => match r.below(3) {
+            0 => json!({ "path": file }),
+            1 => json!({ "held": true }),
+            _ => json!({ "primitive": { "ball": 0.4 }, "edge": 0.1 }),
+        },
+        "scene.rename" => json!({ "id": any, "name": format!("object {}", r.below(100)) }),
+        "scene.transform" => {
+            let shift = [r.part() - 0.5, 0.0, 0.0];
+            json!({ "id": any, "transform": { "shift": shift, "turn": turn, "scale": 1.0 } })
+        }
+        "scene.show" => json!({ "id": any, "visible": r.below(4) > 0 }),
+        "scene.lock" => json!({ "id": any, "locked": r.below(4) == 0 }),
+        "scene.reshape" => json!({ "id": any, "primitive": { "ball": 0.3 }, "edge": 0.1 }),
+        "scene.snap" => {
+            json!({ "id": any, "at": [0.0, 0.0, 1.0], "to": other, "to_at": [0.0, 1.0, 0.0] })
+        }
+        "scene.boolean" => json!({ "operation": operation, "a": any, "b": other }),
+        "scene.mirror" => json!({ "id": any, "axis": r.of(&["x", "y", "z"]) }),
+        "scene.move" => json!({ "id": any, "to": r.below(3) }),
+        "scene.group" => json!({ "ids": [any], "name": "group" }),
+        "scene.merge" => json!({ "ids": [any, other] }),
+        "layers.add" => json!({ "name": format!("layer {}", r.below(100)) }),
+        "layers.rename" => json!({ "layer": layer, "name": "renamed" }),
+        "layers.move" => json!({ "layer": layer, "to": r.below(3) }),
+        "layers.set" => {
+            json!({ "layer": layer, "intensity": r.part() * 2.0, "live": r.below(2) == 0 })
+        }
+        "layers.activate" => {
+            json!({ "layer": if r.below(2) == 0 { json!(layer) } else { Value::Null } })
+        }
+        m if m.starts_with("layers.") && !["layers.list", "layers.bake"].contains(&m) => {
+            json!({ "layer": layer })
+        }
+        "sets.rename" => json!({ "set": set, "name": "a set" }),
+        "sets.make" => {
+            json!({ "from": r.of(&["mask", "visible", "loose", "normals", "crease", "walls"]) })
+        }
+        "sets.hide" | "sets.isolate" => json!({ "set": set }),
+        "sets.region" => {
+            json!({ "region": region(r), "action": r.of(&["make", "hide", "isolate"]) })
+        }
+        "sets.extract" => json!({ "thickness": 0.05, "set": set }),
+        "reach" => json!({ "middle_mm": [0.0, 250.0, 0.0], "half_mm": 100.0 + 100.0 * r.part() }),
+        m if m.starts_with("scene.") && m != "scene.list" => json!({ "id": any }),
+        _ => Value::Null,
+    }
+}
+
+/// Brings the sculpture into a state in which the method can be carried out, mostly.
+pub fn prepare(method: &str, ask: Ask<'_>, dir: &Path) {
+    let triangles = ask("status", Value::Null).and_then(|s| s["triangles"].as_u64());
+    let ask = |method: &str, params: Value| ask(method, params);
+    if triangles.is_some_and(|n| n < 100) {
+        ask("load", json!({ "path": dir.join("ball.ply") }));
+    }
+    if let Some(scene) = ask("scene.list", Value::Null) {
+        ask("scene.lock", json!({ "id": scene["active"], "locked": false }));
+        ask("scene.show", json!({ "id": scene["active"], "visible": true }));
+    }
+    match method {
+        "join" => {
+            ask("take-up", json!({ "path": dir.join("box.ply") }));
+        }
+        m if m.starts_with("layers.") => {
+            for k in 0..2 {
+                ask("layers.add", json!({ "name": format!("layer {k}") }));
+            }
+        }
+        m if m.starts_with("sets.") && m != "sets.make" => {
+            ask("sets.show", json!({}));
+            ask("sets.make", json!({ "from": "visible" }));
+        }
+        _ => {}
+    }
+}
