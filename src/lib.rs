@@ -194,14 +194,13 @@
 //!   chooser. Waits for: the disk.
 //! * `sculptd-look`, made by `window::viewer::tasks`: reads and stores pictures for the look of the
 //!   clay. Waits for: the disk.
-//! * `sculptd-sound`, made by `window::sound` (feature `sound`, not in the default set):
-//!   opens, starts and stops the device that plays the sound of a contact; the sound system's
-//!   thread computes it. Waits for: the window.
 //! * `sculptd-thickness`, made by `window::viewer::tasks`: the live thickness map. Waits for: a
 //!   request; a newer one replaces it.
 //! * `sculptd-preview`, `sculptd-distance`, `sculptd-measure`, `sculptd-section`, `sculptd-check`,
 //!   made by `window::viewer::snapshot_workers`: follow the newest snapshot for the window. Waits
 //!   for: a request; a newer one replaces it.
+//! * `sculptd-coarse`, made by `window::viewer::coarse_pages`: makes the fewer triangles that far
+//!   pages are drawn with. Waits for: nothing; it ends when all are made.
 //! * `sculptd-pictures`, made by `window::viewer::version_pictures`: reads thumbnails of the
 //!   history. Waits for: the disk.
 //! * `sculptd-earlier`, made by `window::viewer::earlier_pictures`: reads the pictures of earlier

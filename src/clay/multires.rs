@@ -23,7 +23,7 @@ use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use sculptd_geometry::job::{Cancelled, Job};
-use sculptd_geometry::subdivide::{Stencils, loop_};
+use sculptd_geometry::subdivide::{Stencils, edge_ends, loop_};
 use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// Triangles of the finest level at most.
@@ -124,8 +124,9 @@ impl Levels {
             return Err(LevelError::Cut);
         }
         let coarse = now.mesh.to_poly();
-        let ends = Stencils::of(&coarse).ends;
+        let ends = edge_ends(&coarse, job)?;
         let smooth = loop_(&coarse, 1, job)?;
+        job.check()?;
         let mut new = Level { mesh: plain(&smooth), masks: None };
         let kept = if levels.above.is_empty() { None } else { Some(levels.above.remove(0)) };
         if let Some(kept) = &kept {
@@ -159,6 +160,7 @@ impl Levels {
             free: 0.0,
         };
         new.masks = masks.up(&ends, now.mesh.positions.len(), kept.is_some(), |a, b| (a + b) * 0.5);
+        job.check()?;
         levels.below.push(Lower { left: now.clone(), came: new.mesh.positions.clone() });
         levels.shape = shape(&new.mesh);
         Ok((new, levels))
@@ -175,7 +177,7 @@ impl Levels {
         if came != now.mesh.positions {
             let moved = |(p, q): (&Vec3, &Vec3)| p.as_dvec3() - q.as_dvec3();
             let wanted: Vec<DVec3> = now.mesh.positions.iter().zip(&came).map(moved).collect();
-            let by = Stencils::of(&coarse.mesh.to_poly()).fit(&wanted, ROUNDS, job)?;
+            let by = Stencils::of(&coarse.mesh.to_poly(), job)?.fit(&wanted, ROUNDS, job)?;
             for (p, by) in coarse.mesh.positions.iter_mut().zip(by) {
                 *p = (p.as_dvec3() + by).as_vec3();
             }

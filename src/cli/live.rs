@@ -56,10 +56,12 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
     /// serves nobody: it ends, and whoever watches over it starts it again.
     fn close_without_window(self) -> u8 {
         self.run.window_lost();
-        let kiosk = self.run.kiosk.is_some();
+        let kiosk = end_installation(&self.run);
         if kiosk {
-            eprintln!("sculptd: the screen is gone: the installation ends");
-            self.run.stop.store(true, Relaxed);
+            eprintln!(
+                "sculptd: the screen is gone: the installation ends, and the visit goes on at the \
+                 next start"
+            );
         } else if self.run.window.session().is_some() {
             eprintln!(
                 "sculptd: the screen is gone: going on without a window; `sculptd window` opens a \
@@ -72,6 +74,15 @@ impl<F: FnOnce(Summary) -> Outcome> Closing<F> {
         let _ = std::io::stdout().flush();
         if kiosk { code.max(1) } else { code }
     }
+}
+
+/// Ends an installation without a screen, and leaves its visit for the next start. Returns false
+/// for other runs.
+fn end_installation(run: &LiveRun) -> bool {
+    let Some(screen) = &run.kiosk else { return false };
+    screen.desk.screen_gone.store(true, Relaxed);
+    run.stop.store(true, Relaxed);
+    true
 }
 
 /// Loads the mesh that no window can show loading.
@@ -130,7 +141,7 @@ pub fn run(
         // An installation without its screen serves nobody: whoever watches over it starts it
         // again, and finds the port free.
         closing.run.window_lost();
-        closing.run.stop.store(true, Relaxed);
+        end_installation(&closing.run);
         let why = format!("the installation ends, for it has no screen: {why}");
         return closing.close().and(Err(Fail::Check(why)));
     }

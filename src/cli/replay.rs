@@ -128,6 +128,9 @@ fn cannot(args: &ReplayArgs, e: &BuildError) -> Fail {
 pub fn run(args: &ReplayArgs, json: bool) -> Outcome {
     let opened = session::open(&args.session).map_err(|e| match e {
         OpenError::Io { source, .. } => Fail::io(&args.session, &source),
+        e @ OpenError::Damaged { .. } => Fail::Input(format!(
+            "{e}. `sculptd session save` writes what can be read into a new file beside it"
+        )),
         e => Fail::Input(e.to_string()),
     })?;
     if let Some(text) = &opened.not_ended {

@@ -35,8 +35,9 @@ struct VertexSurroundings {
 }
 
 impl VertexSurroundings {
-    fn of(mesh: &PolyMesh) -> VertexSurroundings {
+    fn of(mesh: &PolyMesh, job: &Job) -> Result<VertexSurroundings, Cancelled> {
         let edges = EdgeTable::of(mesh);
+        job.check()?;
         let n = mesh.positions.len();
         let mut a = VertexSurroundings {
             edge_of: vec![u32::MAX; mesh.corners.len()],
@@ -49,6 +50,7 @@ impl VertexSurroundings {
         };
         for half_edges in edges.each() {
             let id = a.ends.len() as u32;
+            look(id as usize, job)?;
             let (u, v) = half_edges[0].ends;
             for s in half_edges {
                 a.edge_of[s.corner as usize] = id;
@@ -72,7 +74,7 @@ impl VertexSurroundings {
         for &c in &mesh.corners {
             a.faces[c as usize] += 1;
         }
-        a
+        Ok(a)
     }
 
     fn rule(&self, v: usize) -> VertexRule {
@@ -118,14 +120,28 @@ pub struct Stencils {
     starts: Vec<u32>,
     from: Vec<u32>,
     weight: Vec<f64>,
-    /// The two ends of each edge, in the order of their new vertices.
-    pub ends: Vec<(u32, u32)>,
+}
+
+/// Looks at the job now and then.
+fn look(i: usize, job: &Job) -> Result<(), Cancelled> {
+    if i.is_multiple_of(1 << 14) { job.check() } else { Ok(()) }
+}
+
+/// Returns the two ends of each edge, in the order of the new vertices that [`loop_`] makes of them.
+///
+/// # Errors
+/// Returns an error if the job was cancelled.
+pub fn edge_ends(mesh: &PolyMesh, job: &Job) -> Result<Vec<(u32, u32)>, Cancelled> {
+    Ok(VertexSurroundings::of(mesh, job)?.ends)
 }
 
 impl Stencils {
     /// Of a mesh of triangles.
-    pub fn of(mesh: &PolyMesh) -> Stencils {
-        let around = VertexSurroundings::of(mesh);
+    ///
+    /// # Errors
+    /// Returns an error if the job was cancelled.
+    pub fn of(mesh: &PolyMesh, job: &Job) -> Result<Stencils, Cancelled> {
+        let around = VertexSurroundings::of(mesh, job)?;
         let n = mesh.positions.len();
         let mut rows: Vec<(u32, u32, f64)> = Vec::with_capacity(n * 7 + around.ends.len() * 4);
         for v in 0..n {
@@ -159,6 +175,7 @@ impl Stencils {
                 rows.push((n as u32 + e, mesh.corners[c - c % 3 + (c + 2) % 3], 0.125));
             }
         }
+        job.check()?;
         // By row, and in it as they were found: the sort is stable.
         rows.sort_by_key(|r| r.0);
         let mut starts = Vec::with_capacity(n + around.ends.len() + 1);
@@ -168,13 +185,12 @@ impl Stencils {
             }
         }
         starts.push(rows.len() as u32);
-        Stencils {
+        Ok(Stencils {
             old: n,
             starts,
             from: rows.iter().map(|r| r.1).collect(),
             weight: rows.iter().map(|r| r.2).collect(),
-            ends: around.ends,
-        }
+        })
     }
 
     fn row(&self, f: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
@@ -236,17 +252,18 @@ pub fn loop_(mesh: &PolyMesh, levels: u32, job: &Job) -> Result<PolyMesh, Cancel
     };
     for _ in 0..levels {
         job.check()?;
-        now = loop_once(&now);
+        now = loop_once(&now, job)?;
     }
     Ok(now)
 }
 
-fn loop_once(mesh: &PolyMesh) -> PolyMesh {
-    let around = VertexSurroundings::of(mesh);
+fn loop_once(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Cancelled> {
+    let around = VertexSurroundings::of(mesh, job)?;
     let n = mesh.positions.len();
     let mut out = PolyMesh::new();
     out.positions.reserve_exact(n + around.ends.len());
     for v in 0..n {
+        look(v, job)?;
         let p = around.special(mesh, v).unwrap_or_else(|| {
             let (k, sum) = around.ring[v];
             let k = k as f64;
@@ -270,6 +287,7 @@ fn loop_once(mesh: &PolyMesh) -> PolyMesh {
         out.positions.push(if inside { sum * 0.375 + opposite[e] * 0.125 } else { sum * 0.5 });
     }
     for t in 0..mesh.corners.len() / 3 {
+        look(t, job)?;
         let v = [0, 1, 2].map(|i| mesh.corners[t * 3 + i]);
         // A side without length has no middle but its end.
         let m = [0, 1, 2].map(|i| match around.edge_of[t * 3 + i] {
@@ -285,7 +303,7 @@ fn loop_once(mesh: &PolyMesh) -> PolyMesh {
         c.iter().copied().chain(middles).collect()
     });
     out.groups = mesh.groups.as_ref().map(|g| g.iter().flat_map(|&g| [g; 4]).collect());
-    out
+    Ok(out)
 }
 
 /// Catmull and Clark's scheme (1978): a quadrilateral for each corner of each polygon.
@@ -293,13 +311,13 @@ pub fn catmull_clark(mesh: &PolyMesh, levels: u32, job: &Job) -> Result<PolyMesh
     let mut now = mesh.clone();
     for _ in 0..levels {
         job.check()?;
-        now = catmull_clark_once(&now);
+        now = catmull_clark_once(&now, job)?;
     }
     Ok(now)
 }
 
-fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
-    let around = VertexSurroundings::of(mesh);
+fn catmull_clark_once(mesh: &PolyMesh, job: &Job) -> Result<PolyMesh, Cancelled> {
+    let around = VertexSurroundings::of(mesh, job)?;
     let (n, edges) = (mesh.positions.len(), around.ends.len());
     let centres: Vec<DVec3> = mesh
         .faces()
@@ -319,6 +337,7 @@ fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
     let mut out = PolyMesh::new();
     out.positions.reserve_exact(n + edges + centres.len());
     for v in 0..n {
+        look(v, job)?;
         let p = around.special(mesh, v).unwrap_or_else(|| {
             let (k, sum) = around.ring[v];
             let k = k as f64;
@@ -356,7 +375,7 @@ fn catmull_clark_once(mesh: &PolyMesh) -> PolyMesh {
         let middles = around.ends.iter().map(|&(u, v)| mix(c, &[u, v]));
         c.iter().copied().chain(middles).chain(mesh.faces().map(|f| mix(c, f))).collect()
     });
-    out
+    Ok(out)
 }
 
 /// Returns the number of corners after this many levels, to check before memory is allocated.
@@ -393,7 +412,7 @@ mod tests {
         for mesh in [torus(3.0, 1.0, 12, 8), grid(2.0, 2.0, 5, 4)] {
             let mesh = mesh.triangulate().0.to_poly();
             let fine = loop_(&mesh, 1, &job).unwrap();
-            let map = Stencils::of(&mesh);
+            let map = Stencils::of(&mesh, &job).unwrap();
             for (f, p) in fine.positions.iter().enumerate() {
                 let q = map.row(f).fold(DVec3::ZERO, |q, (v, w)| q + mesh.positions[v] * w);
                 assert!(

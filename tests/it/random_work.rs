@@ -33,7 +33,8 @@ fn of_copy(copy: &Path) -> Option<Value> {
             let saved = told(&["session", "save"], copy).unwrap_or_else(|e| panic!("{why}: {e}"));
             println!("a torn copy: {why}: {saved}");
             let path = saved["path"].as_str().expect("a path");
-            assert!(told(&["replay"], path.as_ref()).is_ok(), "{saved}");
+            let replayed = told(&["replay", "--from-checkpoint"], path.as_ref());
+            assert!(replayed.is_ok(), "{saved}: {replayed:?}");
             std::fs::remove_file(path).expect("removed");
             None
         }

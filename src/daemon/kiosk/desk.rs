@@ -39,6 +39,8 @@ pub struct KioskDesk {
     pub staff: Mutex<StaffFacts>,
     /// Set before the end of the run if a new one is to follow it.
     pub again: AtomicBool,
+    /// Set before the end of the run if the screen is gone: the visit goes on at the next start.
+    pub screen_gone: AtomicBool,
     /// Message from the fleet's staff to those on site, until dismissed.
     pub message: Mutex<Option<String>>,
     /// Link to the last visitor's sculpture, until another visitor comes.
@@ -60,6 +62,7 @@ impl Default for KioskDesk {
             requests: Mutex::default(),
             staff: Mutex::default(),
             again: AtomicBool::default(),
+            screen_gone: AtomicBool::default(),
             message: Mutex::default(),
             #[cfg(unix)]
             link: Mutex::default(),

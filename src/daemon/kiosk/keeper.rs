@@ -236,9 +236,12 @@ impl KioskThread {
             self.show(&cycle);
             let _ = quiet.recv_timeout(Duration::from_secs_f64(1.0 / RATE_HZ));
         }
-        // The program ends, the visitor's work is put away.
-        let act = cycle.interrupt();
-        self.carry_out(act, &mut cycle);
+        // The program ends, the visitor's work is put away. Who has lost the screen alone is still
+        // there.
+        if !self.desk.screen_gone.load(Relaxed) {
+            let act = cycle.interrupt();
+            self.carry_out(act, &mut cycle);
+        }
     }
 
     /// Shows the state to the screen.

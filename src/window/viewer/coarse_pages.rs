@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use crossbeam_channel as cc;
 use glam::{Mat4, Vec3};
 
 use super::page_place::place;
@@ -18,10 +19,10 @@ pub const MANY: usize = 500_000;
 const FAR_PIXELS: f32 = 40.0;
 /// Own vertices that become one.
 const MERGED: f32 = 6.0;
-/// Pages that are made coarse a frame.
-const A_FRAME: usize = 192;
+/// Bytes that are sent to the card a frame, about.
+const A_FRAME: u64 = 4 << 20;
 
-/// The coarse index sets of a clay.
+/// The coarse index sets of a clay. A thread makes them: a frame sends what has come meanwhile.
 #[derive(Debug)]
 pub struct CoarsePages {
     buffer: wgpu::Buffer,
@@ -29,19 +30,47 @@ pub struct CoarsePages {
     ranges: Vec<Option<Range<u32>>>,
     /// Start of the next page's range: ranges are contiguous, so that neighbours are one call.
     next: u32,
-    indices: Vec<u32>,
+    pages: usize,
+    /// Page by page; empty: not worth it.
+    made: cc::Receiver<Vec<u32>>,
 }
 
 impl CoarsePages {
-    /// Room for as many as half of the clay's own: what takes more is not worth it.
-    pub fn new(device: &wgpu::Device, triangles: usize) -> CoarsePages {
+    /// Begins to make them. `ranges`: the pages' own indices, which bound the coarse ones: what
+    /// takes more than half as many is not worth it.
+    pub fn new(
+        device: &wgpu::Device,
+        mesh: &Snapshot,
+        ranges: &[Range<u32>],
+        slot: usize,
+    ) -> CoarsePages {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("coarse pages"),
-            size: (triangles / 2 * 3 * size_of::<u32>()).max(4) as u64,
+            size: (mesh.triangle_count() / 2 * 3 * size_of::<u32>()).max(4) as u64,
             usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        CoarsePages { buffer, ranges: Vec::new(), next: 0, indices: Vec::new() }
+        let (send, made) = cc::unbounded();
+        let (mesh, rooms) = (mesh.clone(), ranges.iter().map(|r| r.len() / 6 * 3));
+        let rooms: Vec<usize> = rooms.collect();
+        let make = move || {
+            for (p, room) in rooms.into_iter().enumerate() {
+                let page = mesh.page(p as u32);
+                let triangles = coarse_triangles(page).into_iter();
+                let indices = triangles.flat_map(|t| t.map(|v| place(page, p, slot, v)));
+                let mut indices: Vec<u32> = indices.collect();
+                if indices.len() > room {
+                    indices.clear();
+                }
+                // Nobody wants them once the clay has other triangles.
+                if send.send(indices).is_err() {
+                    return;
+                }
+            }
+        };
+        // Without a thread every page is drawn as it is.
+        let _ = std::thread::Builder::new().name("sculptd-coarse".into()).spawn(make);
+        CoarsePages { buffer, ranges: Vec::new(), next: 0, pages: ranges.len(), made }
     }
 
     /// The indices of all pages.
@@ -49,9 +78,9 @@ impl CoarsePages {
         &self.buffer
     }
 
-    /// Returns the number of pages not examined yet.
-    pub fn waiting(&self, mesh: &Snapshot) -> usize {
-        mesh.page_count() - self.ranges.len().min(mesh.page_count())
+    /// Returns the number of pages that are not made and sent yet.
+    pub fn waiting(&self) -> usize {
+        self.pages - self.ranges.len()
     }
 
     /// The indices of a page; `None`: it is drawn as it is.
@@ -59,30 +88,18 @@ impl CoarsePages {
         self.ranges.get(page as usize)?.clone()
     }
 
-    /// Makes the next pages coarse. `ranges`: their own indices, which bound the coarse ones.
-    pub fn advance(
-        &mut self,
-        queue: &wgpu::Queue,
-        mesh: &Snapshot,
-        ranges: &[Range<u32>],
-        slot: usize,
-    ) {
-        let first = self.ranges.len();
-        for p in first..(first + A_FRAME).min(ranges.len()) {
-            let room = ranges[p].len() / 6 * 3;
-            self.indices.clear();
-            let page = mesh.page(p as u32);
-            for t in coarse_triangles(page) {
-                self.indices.extend(t.map(|v| place(page, p, slot, v)));
-            }
-            let worth = !self.indices.is_empty() && self.indices.len() <= room;
-            let end = self.next + self.indices.len() as u32;
-            self.ranges.push(worth.then_some(self.next..end));
-            if worth {
-                let at = u64::from(self.next) * size_of::<u32>() as u64;
-                queue.write_buffer(&self.buffer, at, bytemuck::cast_slice(&self.indices));
-                self.next = end;
-            }
+    /// Sends to the card what was made.
+    pub fn advance(&mut self, queue: &wgpu::Queue) {
+        let mut sent = 0;
+        while sent < A_FRAME
+            && let Ok(indices) = self.made.try_recv()
+        {
+            let end = self.next + indices.len() as u32;
+            self.ranges.push((!indices.is_empty()).then_some(self.next..end));
+            let bytes: &[u8] = bytemuck::cast_slice(&indices);
+            queue.write_buffer(&self.buffer, u64::from(self.next) * size_of::<u32>() as u64, bytes);
+            self.next = end;
+            sent += bytes.len() as u64;
         }
     }
 }

@@ -174,17 +174,21 @@ impl Pages {
         }
     }
 
-    /// Pages that changed and are not sent yet, or may be made coarse.
+    /// Pages that changed and are not sent yet.
     pub fn waiting(&self) -> usize {
-        let coarse = self.coarse.as_ref().zip(self.seen.as_ref());
-        self.queue.len() + coarse.map_or(0, |(coarse, mesh)| coarse.waiting(mesh))
+        self.queue.len()
+    }
+
+    /// Pages of which the coarse triangles are still being made.
+    pub fn coarse_waiting(&self) -> usize {
+        self.coarse.as_ref().map_or(0, CoarsePages::waiting)
     }
 
     /// From now on far pages of a large clay are drawn with fewer triangles, as these are made.
     pub fn coarsen(&mut self, device: &wgpu::Device, mesh: &Snapshot) {
         let count = mesh.triangle_count();
         if count >= MANY && self.coarse.is_none() {
-            self.coarse = Some(CoarsePages::new(device, count));
+            self.coarse = Some(CoarsePages::new(device, mesh, &self.ranges, self.slot));
         }
     }
 
@@ -261,7 +265,7 @@ impl Pages {
         }
         self.queue.drain(..sent);
         if let Some(coarse) = &mut self.coarse {
-            coarse.advance(queue, mesh, &self.ranges, self.slot);
+            coarse.advance(queue);
         }
     }
 

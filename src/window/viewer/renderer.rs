@@ -117,6 +117,8 @@ pub struct Renderer {
     pub drawn: (usize, usize),
     /// Number of the active object's pages drawn with fewer triangles, because they are small.
     pub coarse: usize,
+    /// Pages of the active object of which the coarse triangles are still being made.
+    pub coarse_waiting: usize,
     /// Far pages of a large object may be drawn with fewer triangles: in a window, not in a picture
     /// that is kept.
     pub coarsens: bool,
@@ -257,6 +259,7 @@ impl Renderer {
             waiting: 0,
             drawn: (0, 0),
             coarse: 0,
+            coarse_waiting: 0,
             coarsens: false,
         }
     }
@@ -385,6 +388,7 @@ impl Renderer {
             }
             pages.update(&gpu.queue, scene.mesh, scene.look.sets);
             (self.uploaded, self.waiting) = (pages.uploaded, pages.waiting());
+            self.coarse_waiting = pages.coarse_waiting();
             if let Some(values) = scene.values.filter(|_| kind == 2.0) {
                 pages.set_map(&gpu.queue, values);
             }

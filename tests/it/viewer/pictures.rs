@@ -278,7 +278,12 @@ fn far_pages_of_a_large_work_look_as_all_their_triangles_do() {
     let first = painter.paint(&scene, size.0, size.1).expect("a picture");
     let begun = painter.renderer().coarse;
     painter.set_coarsens(true);
-    let last = painter.paint(&scene, size.0, size.1).expect("a picture");
+    let mut last = None;
+    crate::waiting::until("all far pages are coarse", || {
+        last = painter.paint(&scene, size.0, size.1).ok();
+        painter.renderer().coarse_waiting == 0
+    });
+    let last = last.expect("a picture");
     let (coarse, drawn) = (painter.renderer().coarse, painter.renderer().drawn.0);
     let differs = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
         a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 12)
