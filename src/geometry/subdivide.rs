@@ -127,7 +127,7 @@ fn look(i: usize, job: &Job) -> Result<(), Cancelled> {
     if i.is_multiple_of(1 << 14) { job.check() } else { Ok(()) }
 }
 
-/// Returns the two ends of each edge, in the order of the new vertices that [`loop_`] makes of them.
+/// Returns the two ends of each edge, in the order of the new vertices that [`loop_`] makes.
 ///
 /// # Errors
 /// Returns an error if the job was cancelled.

@@ -1,6 +1,6 @@
 //! Random work with a real daemon: whatever was asked of it, its session opens with the hash that
-//! was there after a kill and after an ordinary end, a copy of the file has it within seconds, and a
-//! replay gives it, from the start and from the newest checkpoint.
+//! was there after a kill and after an ordinary end, a copy of the file has it within seconds, and
+//! a replay gives it, from the start and from the newest checkpoint.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,17 +1,16 @@
 //! The work of requests that takes time, as `progress` and `cancel` know it.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::host::{failed, locked};
 use sculptd_control::RpcError;
 use sculptd_geometry::job::Job;
 
 /// All work under way, oldest first.
 #[derive(Debug, Default)]
-pub struct Jobs(Mutex<Vec<Entry>>);
+pub struct Jobs(Mutex<Vec<JobEntry>>);
 
 #[derive(Debug)]
-struct Entry {
+struct JobEntry {
     job: Arc<Job>,
     /// Operations change whole objects; there is one at a time.
     is_operation: bool,
@@ -25,33 +24,39 @@ pub(super) struct JobPlace<'a> {
 }
 
 impl Jobs {
+    /// The list, whether or not a thread that held it has panicked.
+    fn all(&self) -> MutexGuard<'_, Vec<JobEntry>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Begins to change a whole object, or refuses if that is done for another request.
     pub(super) fn begin_operation(&self) -> Result<JobPlace<'_>, RpcError> {
-        let mut all = locked(&self.0);
+        let mut all = self.all();
         if all.iter().any(|e| e.is_operation) {
-            return Err(failed("another operation is under way. Wait for it, or cancel it"));
+            let text = "another operation is under way. Wait for it, or cancel it";
+            return Err(RpcError::failed(text));
         }
         let job = Arc::new(Job::default());
-        all.push(Entry { job: job.clone(), is_operation: true });
+        all.push(JobEntry { job: job.clone(), is_operation: true });
         Ok(JobPlace { jobs: self, job })
     }
 
     /// Begins work of which there may be more at a time.
     pub(super) fn begin(&self) -> JobPlace<'_> {
         let job = Arc::new(Job::default());
-        locked(&self.0).push(Entry { job: job.clone(), is_operation: false });
+        self.all().push(JobEntry { job: job.clone(), is_operation: false });
         JobPlace { jobs: self, job }
     }
 
     /// Progress of the operation, else of the oldest work; `None`: nothing is under way.
     pub(super) fn done(&self) -> Option<f32> {
-        let all = locked(&self.0);
+        let all = self.all();
         all.iter().find(|e| e.is_operation).or(all.first()).map(|e| e.job.done())
     }
 
     /// Cancels all work. Returns false if there is none.
     pub(super) fn cancel(&self) -> bool {
-        let all = locked(&self.0);
+        let all = self.all();
         all.iter().for_each(|e| e.job.cancel());
         !all.is_empty()
     }
@@ -59,7 +64,7 @@ impl Jobs {
 
 impl Drop for JobPlace<'_> {
     fn drop(&mut self) {
-        locked(&self.jobs.0).retain(|e| !Arc::ptr_eq(&e.job, &self.job));
+        self.jobs.all().retain(|e| !Arc::ptr_eq(&e.job, &self.job));
     }
 }
 

@@ -20,12 +20,12 @@ const FADES_US: u64 = 1_000_000;
 const REMEMBERED: usize = 1024;
 
 /// Number of requests of each process, which fades, and the time of the last one.
-type Asked = BTreeMap<i32, (u64, u64)>;
+type RequestCounts = BTreeMap<i32, (u64, u64)>;
 
 #[derive(Debug)]
 pub(super) struct ClientPlaces {
     clients: Arc<Mutex<Vec<Arc<ConnectedClient>>>>,
-    asked: Arc<Mutex<Asked>>,
+    asked: Arc<Mutex<RequestCounts>>,
     most: usize,
     clock: Clock,
 }
@@ -50,7 +50,7 @@ struct ConnectedClient {
 pub(super) struct ClientPlace {
     client: Arc<ConnectedClient>,
     clients: Arc<Mutex<Vec<Arc<ConnectedClient>>>>,
-    asked: Arc<Mutex<Asked>>,
+    asked: Arc<Mutex<RequestCounts>>,
     clock: Clock,
 }
 

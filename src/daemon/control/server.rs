@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::host::{Host, locked};
 use super::places::ClientPlace;
-use super::waiting_room::WaitingRoom;
+use super::waiting_room::{WaitingRoom, write_line};
 use super::{IDLE_SECONDS, MAX_MESSAGE, MAX_RATE, events, user_id};
 use sculptd_control::client::foreign_folder;
 use sculptd_control::method;
@@ -136,13 +136,6 @@ fn start(place: ClientPlace, serve: impl FnOnce(ClientPlace) + Send + 'static) {
     // If the thread cannot start, the closure is dropped, and with it the place and the stream.
     let client = std::thread::Builder::new().name("sculptd-client".into());
     let _ = client.spawn(move || serve(place));
-}
-
-/// `false`: nobody reads.
-pub(super) fn write_line(mut out: &UnixStream, response: &Response) -> bool {
-    let Ok(mut bytes) = serde_json::to_vec(response) else { return false };
-    bytes.push(b'\n');
-    out.write_all(&bytes).is_ok()
 }
 
 /// Returns user and process of the other end, as the kernel names them.

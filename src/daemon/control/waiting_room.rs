@@ -5,6 +5,7 @@
 //! they asked. `shutdown` and `cancel` are answered without a place.
 
 use std::collections::VecDeque;
+use std::io::Write;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::time::Duration;
 
@@ -15,7 +16,6 @@ use serde_json::Value;
 use super::MAX_CLIENTS;
 use super::host::Host;
 use super::places::{ClientPlace, ClientPlaces};
-use super::server::write_line;
 use sculptd_control::RpcError;
 use sculptd_control::method::ALWAYS_ANSWERED;
 use sculptd_control::wire::{Envelope, Response, parse};
@@ -124,9 +124,9 @@ impl WaitingRoom {
         self.asking.retain(|c| {
             let is_late = now >= c.since_us + PATIENCE_US;
             let asked = match first_request(&c.stream) {
-                Asked::Gone => return false,
-                Asked::Whole(asked) => asked,
-                Asked::Unreadable => {
+                FirstRequest::Gone => return false,
+                FirstRequest::Whole(asked) => asked,
+                FirstRequest::Unreadable => {
                     is_late.then(|| refuse(&c.stream));
                     return !is_late;
                 }
@@ -146,7 +146,7 @@ impl WaitingRoom {
 }
 
 /// The first request of a connection.
-enum Asked {
+enum FirstRequest {
     Whole(Envelope),
     /// It is not there as a whole, too long to be looked at, or wrong.
     Unreadable,
@@ -155,19 +155,26 @@ enum Asked {
 }
 
 /// Looks at the first request of a connection, which stays to be read.
-fn first_request(stream: &UnixStream) -> Asked {
+fn first_request(stream: &UnixStream) -> FirstRequest {
     let mut start = [0; 512];
     let flags = RecvFlags::PEEK | RecvFlags::DONTWAIT;
     let n = match rustix::net::recv(stream, &mut start[..], flags) {
-        Ok((0, _)) => return Asked::Gone,
+        Ok((0, _)) => return FirstRequest::Gone,
         Ok((n, _)) => n,
-        Err(_) => return Asked::Unreadable,
+        Err(_) => return FirstRequest::Unreadable,
     };
     let end = start[..n].iter().position(|b| *b == b'\n');
     let asked = end.and_then(|end| parse(start[..end].trim_ascii()).ok());
-    asked.map_or(Asked::Unreadable, Asked::Whole)
+    asked.map_or(FirstRequest::Unreadable, FirstRequest::Whole)
 }
 
 fn refuse(stream: &UnixStream) {
     write_line(stream, &Response::new(Value::Null, Err(RpcError::failed(TOO_MANY))));
+}
+
+/// `false`: nobody reads.
+pub(super) fn write_line(mut out: &UnixStream, response: &Response) -> bool {
+    let Ok(mut bytes) = serde_json::to_vec(response) else { return false };
+    bytes.push(b'\n');
+    out.write_all(&bytes).is_ok()
 }
