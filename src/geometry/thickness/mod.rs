@@ -15,6 +15,8 @@
 pub mod ball;
 mod bands;
 mod below;
+pub mod change_report;
+pub mod changes;
 pub mod check;
 pub mod colour;
 pub mod cone;
