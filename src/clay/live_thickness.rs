@@ -15,8 +15,9 @@ use rayon::prelude::*;
 
 use crate::{Ranks, Snapshot};
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::bvh::{Bvh8, Parents};
+use sculptd_geometry::bvh::{Bvh8, Parents, Ray};
 use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::thickness::changes::EarlierVersion;
 use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights};
 use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
 
@@ -191,16 +192,7 @@ impl LiveMap {
         let mut now: Vec<u32> = self.stale[..most.min(self.stale.len())].to_vec();
         // In the order of the loaded mesh: neighbours in memory, as a rule in space.
         now.sort_unstable();
-        let caster = Caster {
-            tree: &self.tree,
-            face_normals: &self.face_normals,
-            corner_normals: &[],
-            sign: 1.0,
-            cone: &self.axis,
-            outliers: Outliers::Keep,
-            correction: Correction::None,
-            acute: None,
-        };
+        let caster = self.caster();
         let found: Vec<(f32, (Vec3, Vec3))> = now
             .par_chunks(256)
             .map(|chunk| {
@@ -234,9 +226,55 @@ impl LiveMap {
         self.stale.len()
     }
 
+    /// Returns the diameter of the largest ball between the place of the surface that is nearest to
+    /// `place` and the side opposite, by the definition *sphere*; `None` where nothing holds one.
+    pub fn ball(&self, place: Vec3) -> Option<f32> {
+        let near = self.tree.nearest(place.as_dvec3(), f64::INFINITY)?;
+        let own = [near.triangle];
+        let (point, away) = (near.point.as_vec3(), self.face_normals[near.triangle as usize]);
+        let site = Site { point, away, along: Vec3::ZERO, own: &own, clear: f32::INFINITY };
+        self.caster().wall_ball(&site).map(|ball| ball.diameter)
+    }
+
+    /// Returns each vertex's wall less that of the earlier version at the place from which the
+    /// vertex came, on the current rayon pool; NaN where either is not known.
+    ///
+    /// # Errors
+    /// Returns an error if the job was cancelled.
+    pub fn changes(&self, earlier: &EarlierVersion, job: &Job) -> Result<Vec<f32>, Cancelled> {
+        let change = |v: usize| {
+            let (place, out) = (self.mesh.positions[v], self.normals[v]);
+            let clear = |dir, [t_min, t_max]: [f32; 2]| {
+                !self.tree.any_hit(Ray { origin: place, dir, t_min, t_max }, |_| true)
+            };
+            let known = self.values[v].is_finite();
+            let was = known.then(|| earlier.wall(place.as_dvec3(), out, clear)).flatten();
+            was.map_or(f32::NAN, |was| self.values[v] - was)
+        };
+        let all: Vec<u32> = (0..self.values.len() as u32).collect();
+        let found = all.par_chunks(256).map(|chunk| {
+            job.check()?;
+            Ok(chunk.iter().map(|&v| change(v as usize)).collect::<Vec<f32>>())
+        });
+        Ok(found.collect::<Result<Vec<_>, Cancelled>>()?.concat())
+    }
+
     /// Of the snapshot that the map follows.
     pub fn revision(&self) -> u64 {
         self.snapshot.revision()
+    }
+
+    fn caster(&self) -> Caster<'_> {
+        Caster {
+            tree: &self.tree,
+            face_normals: &self.face_normals,
+            corner_normals: &[],
+            sign: 1.0,
+            cone: &self.axis,
+            outliers: Outliers::Keep,
+            correction: Correction::None,
+            acute: None,
+        }
     }
 
     fn measure(&self, caster: &Caster<'_>, v: usize) -> (f32, (Vec3, Vec3)) {

@@ -6,6 +6,8 @@
 
 use std::collections::VecDeque;
 
+use crate::job::{Cancelled, Job};
+
 /// No arc.
 const NONE: u32 = u32::MAX;
 /// The node hangs on its terminal.
@@ -94,7 +96,7 @@ impl CutGraph {
 
     /// Cuts at the least cost. Returns for each node whether it is on the source's side; of several
     /// such cuts the one with the fewest nodes there.
-    pub fn cut(mut self) -> Vec<bool> {
+    pub fn cut(mut self, job: &Job) -> Result<Vec<bool>, Cancelled> {
         for n in 0..self.pull.len() as u32 {
             let i = n as usize;
             self.tree[i] = match self.pull[i] {
@@ -107,6 +109,7 @@ impl CutGraph {
             self.wake(n);
         }
         while let Some(n) = self.active.pop_front() {
+            job.check()?;
             self.is_active[n as usize] = false;
             while self.parent[n as usize] != NONE {
                 let Some(middle) = self.grow(n) else { break };
@@ -117,7 +120,7 @@ impl CutGraph {
                 }
             }
         }
-        self.tree.iter().map(|t| *t == Tree::Source).collect()
+        Ok(self.tree.iter().map(|t| *t == Tree::Source).collect())
     }
 
     fn wake(&mut self, n: u32) {
@@ -314,7 +317,8 @@ mod tests {
                 .map(|(a, b, w)| (a % n as u32, b % n as u32, w))
                 .filter(|e| e.0 != e.1)
                 .collect();
-            let found = CutGraph::new(pull.clone(), &edges).cut();
+            let found = CutGraph::new(pull.clone(), &edges).cut(&Job::default());
+            let found = found.expect("not cancelled");
             let paid = cost(&pull, &edges, |i| found[i]);
             let size = found.iter().filter(|s| **s).count() as u32;
             for other in 0u32..1 << n {

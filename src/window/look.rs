@@ -86,6 +86,8 @@ pub enum Map {
     Thickness,
     /// Distance to another form, in the mesh's unit: negative within it, positive outside.
     Distance,
+    /// Wall thickness less that of an earlier form, in the mesh's unit.
+    WallChange,
     /// Angle of faces that look down, from the vertical, as in the check.
     Overhang,
     /// Angle between faces and the direction in which a mould opens, as in the check.
@@ -153,9 +155,14 @@ impl Map {
         matches!(self, Map::Overhang | Map::Draft)
     }
 
+    /// Returns true for a map of walls.
+    pub fn is_of_walls(self) -> bool {
+        matches!(self, Map::Thickness | Map::WallChange)
+    }
+
     /// Returns true for a map of lengths, which can be shown in steps.
     pub fn has_bands(self) -> bool {
-        matches!(self, Map::Thickness | Map::Distance)
+        matches!(self, Map::Thickness | Map::Distance | Map::WallChange)
     }
 
     /// The colour of an angle: `x` from 0 to 1 below the limit, or above it.
@@ -184,6 +191,10 @@ impl Map {
                 let i = (at as usize).min(DISTANCE.len() - 2);
                 mixed(DISTANCE[i], DISTANCE[i + 1], at - i as f32)
             }
+            Map::WallChange => {
+                let x = (value - low) / (high - low).max(1e-12);
+                sculptd_geometry::thickness::colour::change_colour(2.0 * x - 1.0, 1.0)
+            }
             Map::Overhang | Map::Draft => {
                 let x = ((value - low) / (high - low).max(1e-12)).clamp(0.0, 1.0) * 2.0;
                 self.angle_colour(if x < 1.0 { x } else { x - 1.0 }, x >= 1.0)
@@ -208,6 +219,7 @@ impl Map {
             Map::Mask => "map-mask",
             Map::Thickness => "map-thickness",
             Map::Distance => "map-distance",
+            Map::WallChange => "map-wall-change",
             Map::Overhang => "map-overhang",
             Map::Draft => "map-draft",
         }
@@ -406,7 +418,9 @@ mod tests {
 
     #[test]
     fn a_scale_runs_from_its_low_to_its_high_colour() {
-        for map in [Map::Mask, Map::Thickness, Map::Distance, Map::Overhang, Map::Draft] {
+        for map in
+            [Map::Mask, Map::Thickness, Map::Distance, Map::WallChange, Map::Overhang, Map::Draft]
+        {
             assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
             assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
             assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);

@@ -6,8 +6,10 @@ use sculptd_clay::live_thickness::{LiveMap, Rebuild};
 use sculptd_clay::{Clay, Reach, Workers};
 use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::ThicknessSettings;
+use sculptd_geometry::thickness::changes::EarlierVersion;
 
-use crate::thickness_shapes::shell;
+use crate::thickness_shapes::{shell, slab};
 
 #[test]
 fn after_a_stroke_the_map_equals_a_new_one() {
@@ -60,4 +62,36 @@ fn another_topology_asks_for_a_new_map() {
     let mut b = Clay::build(&shell(10.0, 8.5, 14), &job).expect("a good mesh");
     let mut map = LiveMap::new(&a.snapshot(), &job).expect("not cancelled");
     assert_eq!(map.advance(&b.snapshot()), Err(Rebuild));
+}
+
+#[test]
+fn the_live_map_has_the_ball_in_a_wall_and_the_change_of_walls() {
+    let job = Job::default();
+    let mut plate = slab(40.0, 2.0, 24);
+    let before = plate.clone();
+    // A hill of 1 in the middle of the top.
+    let inside = |p: &Vec3| (p.truncate() - 20.0).abs().max_element() < 8.0 && p.z > 1.0;
+    plate.positions.iter_mut().filter(|p| inside(p)).for_each(|p| p.z += 1.0);
+    let mut clay = Clay::build(&plate, &job).expect("a good mesh");
+    let mut map = LiveMap::new(&clay.snapshot(), &job).expect("not cancelled");
+    assert_eq!(map.work(Vec3::ZERO, usize::MAX, &job), Ok(0));
+    let earlier = EarlierVersion::new(&before, 1e-3, &ThicknessSettings::default(), &job);
+    let found = map.changes(&earlier.expect("prepared"), &job).expect("not cancelled");
+    let mut seen = [0, 0];
+    for (p, change) in plate.positions.iter().zip(&found) {
+        let from_middle = (p.truncate() - 20.0).abs().max_element();
+        // Beside the hill's flank, rays meet the flank.
+        if from_middle < 5.0 {
+            assert!((change - 1.0).abs() < 1e-3, "{p}: {change}");
+            seen[0] += 1;
+        } else if (11.0..19.0).contains(&from_middle) {
+            assert!(change.abs() < 1e-3, "{p}: {change}");
+            seen[1] += 1;
+        }
+    }
+    assert!(seen.into_iter().all(|n| n > 40), "{seen:?}");
+    for (place, ball) in [(Vec3::new(20.3, 20.4, 3.0), 3.0), (Vec3::new(5.3, 20.4, 2.0), 2.0)] {
+        let found = map.ball(place).expect("a wall");
+        assert!((found - ball).abs() < 1e-3, "{place}: {found}");
+    }
 }

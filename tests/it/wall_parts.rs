@@ -8,7 +8,7 @@ use glam::DVec3;
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::shapes::torus;
+use sculptd_geometry::shapes::{cuboid, torus};
 use serde_json::Value;
 
 fn thickness(args: &[&str]) -> Output {
@@ -132,4 +132,43 @@ fn what_cannot_be_divided_is_refused_before_anything_is_written() {
         assert!(!said.stderr.is_empty(), "{args:?}");
         assert!(!Path::new(&lines).exists() && !Path::new(&out).exists(), "{args:?}");
     }
+}
+
+#[test]
+fn a_later_version_is_compared_with_the_one_before() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let (old, new) = (path("old.obj"), path("new.obj"));
+    let (ply, png, report) = (path("map.ply"), path("map.png"), path("report.html"));
+    let far = DVec3::new(4000.0, -250.0, 90.0);
+    let plate = cuboid(far, far + DVec3::new(60.0, 40.0, 5.0));
+    write_mesh(Path::new(&old), &plate).expect("written");
+    write_mesh(Path::new(&new), &slab(far)).expect("written");
+    let files = ["--ply", &ply, "--png", &png, "--report", &report];
+    let args = [&old[..], "--compare", &new, "--fail-below", "3", "--json"];
+    let out = thickness(&[&args[..], &files].concat());
+    assert_eq!(out.status.code(), Some(1), "{}", String::from_utf8_lossy(&out.stderr));
+    let said: Value = serde_json::from_slice(&out.stdout).expect("one JSON object");
+    assert!(near(&said["before"]["min"], 5.0, 1e-3) && near(&said["after"]["min"], 2.0, 1e-3));
+    assert!(near(&said["before"]["below"]["area_percent"], 0.0, 0.0), "{said}");
+    let changes = &said["changes"];
+    // Over half of the plate on both sides by 3.
+    assert!(near(&changes["newly_below_area"], 2.0 * 30.0 * 40.0, 24.0), "{changes}");
+    let spot = &changes["spots"][0];
+    assert!(near(&spot["before"], 5.0, 1e-3) && near(&spot["after"], 2.0, 1e-3), "{spot}");
+    assert!(near(&spot["position"][0], far.x + 15.0, 15.0), "{spot}");
+    let map = std::fs::read(&ply).expect("a map");
+    assert!(String::from_utf8_lossy(&map[..600]).contains("property float difference"));
+    read_mesh(Path::new(&ply), &Job::default()).expect("others read it");
+    // Thinner is red, unchanged pale.
+    let picture = image::open(&png).expect("a picture").to_rgb8();
+    let red = picture.pixels().filter(|p| p[0] > p[2] + 30).count();
+    assert!(red > 20_000, "{red}");
+    let page = std::fs::read_to_string(&report).expect("a report");
+    assert!(page.contains("Came below the limit") && page.contains("new.obj"));
+    let text = thickness(&args[..5]);
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(text.contains("came below") && text.contains("verdict    fail"), "{text}");
+    let several = thickness(&[&old, &new, "--compare", &new]);
+    assert_eq!(several.status.code(), Some(2));
 }

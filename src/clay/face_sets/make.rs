@@ -153,7 +153,7 @@ fn parts_of_equal_wall(
     };
     let measured = measure(tri, &settings, job).map_err(refused)?;
     let how = PartitionSettings { levels, ..PartitionSettings::default() };
-    let found = measured.partition(how).map_err(refused)?;
+    let found = measured.partition(how, job).map_err(refused)?;
     let rest = found.parts.len() as u32;
     Ok(found.of.into_iter().map(|part| part.min(rest)).collect())
 }

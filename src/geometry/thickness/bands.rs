@@ -7,6 +7,7 @@ use super::partition::{SharedEdge, median_by_area};
 use super::summary::triangle_area;
 use super::surface::{DROPPED, WeldedSurface};
 use crate::disjoint_sets::DisjointSets;
+use crate::job::{Cancelled, Job};
 
 /// The width of a band, of the usual wall of the shell.
 const BAND: f64 = 0.5;
@@ -24,7 +25,12 @@ pub(super) struct BandPieces {
 }
 
 impl BandPieces {
-    pub(super) fn cut(surface: &WeldedSurface, values: &[f32], edges: &[SharedEdge]) -> BandPieces {
+    pub(super) fn cut(
+        surface: &WeldedSurface,
+        values: &[f32],
+        edges: &[SharedEdge],
+        job: &Job,
+    ) -> Result<BandPieces, Cancelled> {
         let n = surface.triangles.len();
         let ways = Ways::new(surface, edges);
         let width = band_widths(surface, values, edges);
@@ -44,8 +50,8 @@ impl BandPieces {
                 continue;
             }
             // The farthest from any vertex is a tip.
-            let tip = ways.measure(a, |v, d| lower(&mut first[v as usize], d));
-            ways.measure(tip, |v, d| lower(&mut away[v as usize], d));
+            let tip = ways.measure(a, job, |v, d| lower(&mut first[v as usize], d))?;
+            ways.measure(tip, job, |v, d| lower(&mut away[v as usize], d))?;
         }
         for (t, corners) in surface.triangles.iter().enumerate().filter(|t| t.1[0] != DROPPED) {
             let mean = corners.iter().map(|&v| away[v as usize]).sum::<f64>() / 3.0;
@@ -60,7 +66,7 @@ impl BandPieces {
         }
         let mut of: Vec<u32> = (0..n as u32).map(|t| joined.root(t)).collect();
         join_specks(surface, values, edges, &width, &mut of);
-        BandPieces { of, band }
+        Ok(BandPieces { of, band })
     }
 }
 
@@ -175,12 +181,18 @@ impl Ways {
 
     /// Dijkstra's distances from `from`. `nearer` takes a vertex and a distance, keeps it if it is
     /// the least so far, and says whether it was. Returns the farthest vertex.
-    fn measure(&self, from: u32, mut nearer: impl FnMut(u32, f64) -> bool) -> u32 {
+    fn measure(
+        &self,
+        from: u32,
+        job: &Job,
+        mut nearer: impl FnMut(u32, f64) -> bool,
+    ) -> Result<u32, Cancelled> {
         // Distances are not negative, so their bits are in their order.
         let mut open = BinaryHeap::from([Reverse((0u64, from))]);
         nearer(from, 0.0);
         let mut farthest = (0u64, Reverse(from));
         while let Some(Reverse((bits, v))) = open.pop() {
+            job.check()?;
             farthest = farthest.max((bits, Reverse(v)));
             let own = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
             for &(to, long) in &self.to[own] {
@@ -190,6 +202,6 @@ impl Ways {
                 }
             }
         }
-        farthest.1.0
+        Ok(farthest.1.0)
     }
 }

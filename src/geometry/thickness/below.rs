@@ -6,7 +6,6 @@ use super::ThinFacets;
 use super::least::Solid;
 use super::measuring::single;
 use super::opposed::may_be_thin;
-use super::sharp_edges::AcuteEdges;
 use super::surface::WeldedSurface;
 use crate::bvh::Bvh8;
 use crate::job::{Cancelled, Job};
@@ -45,9 +44,7 @@ pub fn walls_below(
     let sign = if side == MeasuredSide::Wall { inside_out } else { -inside_out };
     let grain = grain + single(tree);
     let tilts = surface.tilts(grain);
-    let edges = AcuteEdges::new(surface, &tilts, sign);
-    let solid =
-        Solid { tree, surface, sign, grain, edges: &edges, tilts: &tilts, opposed_only: false };
+    let solid = Solid { tree, surface, sign, grain, tilts: &tilts, opposed_only: false };
     let order = may_be_thin(surface, tree, sign, limit, job)?;
     let facets = solid.thin(&order, limit - solid.tolerance(), false, job)?;
     Ok(ThinFacets { limit, facets })

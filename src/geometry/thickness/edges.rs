@@ -3,9 +3,12 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::least::Solid;
 use super::ray::{Caster, Site};
 use super::walls::OwnWalls;
-use super::{EdgePolicy, Reason, SiteValue, ThicknessMethod, ThicknessSettings, WeldedSurface};
+use super::{
+    EdgePolicy, Opposite, Reason, SiteValue, ThicknessMethod, ThicknessSettings, WeldedSurface,
+};
 
 /// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along
 /// the mesh is longer.
@@ -14,12 +17,13 @@ const REACH: f32 = 1.5;
 /// Applies the policy to the values marked [`Reason::Edge`].
 pub(super) fn apply(
     caster: &Caster<'_>,
+    solid: &Solid<'_>,
     surface: &WeldedSurface,
     own: &OwnWalls<'_>,
     settings: &ThicknessSettings,
     values: &mut [SiteValue],
 ) {
-    mark(surface, values);
+    mark(solid, surface, values);
     let marked: Vec<usize> =
         (0..values.len()).filter(|&v| values[v].reason == Reason::Edge).collect();
     match settings.edges {
@@ -39,7 +43,7 @@ pub(super) fn apply(
                         value: ball.diameter,
                         error: 0.0,
                         reason: Reason::Edge,
-                        turned: false,
+                        opposite: Opposite::Parallel,
                     };
                 }
             }
@@ -56,16 +60,17 @@ pub(super) fn apply(
     }
 }
 
-/// Marks values that measure an edge and not a wall: the opposite side is turned by more than 40
-/// degrees, and a sharp vertex is as near (along the mesh's edges) as the edge of such a wedge must
-/// be, within 1.5 times the value.
-fn mark(surface: &WeldedSurface, values: &mut [SiteValue]) {
-    if !values.iter().any(|v| v.turned && v.reason == Reason::Measured) {
+/// Marks values that measure an edge and not a wall: the opposite side is one of an edge
+/// ([`Solid::is_edge`]), and a sharp vertex is as near (along the mesh's edges) as the edge of a
+/// wedge must be, within 1.5 times the value.
+fn mark(solid: &Solid<'_>, surface: &WeldedSurface, values: &mut [SiteValue]) {
+    let turned = |v: &SiteValue| v.opposite != Opposite::Parallel && v.reason == Reason::Measured;
+    if !values.iter().any(turned) {
         return;
     }
     let longest = values
         .iter()
-        .filter(|v| v.turned && v.value.is_finite())
+        .filter(|v| turned(v) && v.value.is_finite())
         .map(|v| v.value)
         .fold(0.0f32, f32::max);
     let mut far = vec![f32::INFINITY; values.len()];
@@ -90,8 +95,9 @@ fn mark(surface: &WeldedSurface, values: &mut [SiteValue]) {
             }
         }
     }
-    for (value, far) in values.iter_mut().zip(far) {
-        if value.turned && value.reason == Reason::Measured && far <= REACH * value.value {
+    for (v, (value, far)) in values.iter_mut().zip(far).enumerate() {
+        if turned(value) && far <= REACH * value.value && solid.of_edge(surface, v, value.opposite)
+        {
             value.reason = Reason::Edge;
         }
     }
@@ -155,6 +161,6 @@ fn under_faces(
         value: least,
         error: 0.0,
         reason: Reason::Edge,
-        turned: false,
+        opposite: Opposite::Parallel,
     })
 }

@@ -18,8 +18,9 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::Opposite;
 use super::shaft::{FacetShaft, Patch};
-use super::sharp_edges::{AcuteEdges, OPPOSED, REACH, distance_squared, grazing};
+use super::sharp_edges::{OPPOSED, grazing};
 use super::surface::WeldedSurface;
 use super::valley::Valley;
 use crate::bvh::{Bvh8, Ray};
@@ -45,7 +46,6 @@ pub(super) struct Solid<'a> {
     pub sign: f64,
     /// The greatest error of a coordinate, in the mesh's unit.
     pub grain: f64,
-    pub edges: &'a AcuteEdges,
     /// See [`WeldedSurface::tilts`].
     pub tilts: &'a [f32],
     /// True to ignore sides turned by more than 40 degrees from parallel.
@@ -304,7 +304,7 @@ impl Solid<'_> {
                 continue;
             }
             if self.hidden(shaft, t, low, part.middle()) {
-                parts.extend(part.halves().0);
+                parts.extend(part.halves());
                 continue;
             }
             // The sides of shafts were moved inwards, and narrow patches left out.
@@ -328,10 +328,7 @@ impl Solid<'_> {
     /// Looks for the bottoms of valleys along the sides of facet `u`, which is turned too far to be
     /// a wall's other side.
     fn valley(&self, shaft: &FacetShaft, t: u32, u: u32, search: &mut Search) {
-        let faces_ray = |f: u32| self.facing(shaft, f) > -grazing(self.tilts, t, f);
-        let (surface, into) = (self.surface, shaft.into);
-        let valley = Valley { surface, faces_ray, into, grain: self.grain };
-        valley.each_bottom(u, |ends| {
+        self.along(shaft.into).each_bottom(u, |ends| {
             // A line has no width: between two shafts it would be in neither.
             let (least, wider) = (ROUNDINGS * self.grain, 4.0 * self.grain);
             let Some(ends) = shaft.clip_line(ends, least, wider) else { return };
@@ -351,15 +348,26 @@ impl Solid<'_> {
         depth < inside.z - 16.0 * self.grain && self.facing(shaft, u) < OPPOSED
     }
 
-    /// Returns true if a value to a turned side, measured at `place`, belongs to an edge.
-    pub fn is_edge(&self, place: Vec3, value: f32) -> bool {
-        let reach = REACH * f64::from(value) + 8.0 * self.grain;
-        self.edges.nearest(place.as_dvec3(), reach).is_some()
+    fn along(&self, into: DVec3) -> Valley<'_> {
+        let Solid { surface, tilts, sign, grain, .. } = *self;
+        Valley { surface, tilts, sign, into, grain }
     }
 
-    /// Returns true if a value of `depth`, to a turned side, belongs to an edge at this place.
-    fn edge_at(&self, shaft: &FacetShaft, place: DVec3, depth: f64) -> bool {
-        self.edges.nearest(shaft.foot(place), REACH * depth + 8.0 * self.grain).is_some()
+    /// Returns true if facet `u`, met by the ray from `place` along `into`, is no other side of a
+    /// wall there: it is turned too far, and not the side of a valley.
+    pub fn is_edge(&self, place: DVec3, into: DVec3, u: u32) -> bool {
+        let facing = self.surface.face_normals[u as usize].as_dvec3().dot(into) * self.sign;
+        facing < OPPOSED && !self.along(into).is_side(u, place.dot(into))
+    }
+
+    /// Returns true if a value at welded vertex `v` of `surface` to this side is an edge's.
+    pub fn of_edge(&self, surface: &WeldedSurface, v: usize, opposite: Opposite) -> bool {
+        let away = surface.normals[v].as_dvec3() * self.sign;
+        match opposite {
+            Opposite::Parallel => false,
+            Opposite::Turned(u) => self.is_edge(surface.positions[v].as_dvec3(), -away, u),
+            Opposite::Corner => true,
+        }
     }
 
     /// The facets with walls below `limit`, rising; `sides`: also those that are only under the
@@ -421,7 +429,7 @@ impl Solid<'_> {
         });
         met.sort_unstable_by_key(|m| m.0);
         met.dedup_by_key(|m| m.0);
-        let (mut area, mut error, mut again) = (0.0, 0.0, 0.0);
+        let (mut area, mut again) = (0.0, 0.0);
         for (u, corners) in met {
             let facing = self.facing(shaft, u);
             let mut patch = shaft.clip(corners.map(Vec3::as_dvec3), least);
@@ -431,16 +439,16 @@ impl Solid<'_> {
             }
             let side = grazing(self.tilts, t, u);
             if facing > side {
-                let (own, doubt) = self.area_of_walls(shaft, facing, patch);
-                area += own;
-                error += doubt;
+                if !self.is_edge(shaft.foot(DVec3::ZERO), shaft.into, u) {
+                    area += patch.area();
+                }
             } else if facing < -side {
                 // A ray that re-enters matter may leave it again and be counted twice.
                 again += patch.area();
             }
         }
         if again <= 0.0 || area <= 0.0 {
-            return (area.min(shaft.area), error);
+            return (area.min(shaft.area), 0.0);
         }
         if shaft.area <= SMALL * all {
             return self.area_by_rays(shaft, t, limit);
@@ -459,45 +467,10 @@ impl Solid<'_> {
         let parts = shaft.four();
         let hits = parts.iter().filter(|c| {
             let foot = c.iter().sum::<DVec3>() / 3.0;
-            self.first_hit(shaft, t, foot).is_some_and(|(u, depth)| {
-                let turned = self.facing(shaft, u) < OPPOSED;
-                let reach = REACH * depth + 8.0 * self.grain;
-                depth < limit && !(turned && self.edges.nearest(foot, reach).is_some())
-            })
+            self.first_hit(shaft, t, foot)
+                .is_some_and(|(u, depth)| depth < limit && !self.is_edge(foot, shaft.into, u))
         });
         let share = hits.count() as f64 / 4.0;
         (shaft.area * share, if share > 0.0 && share < 1.0 { shaft.area * 0.25 } else { 0.0 })
-    }
-
-    /// The area of a patch without what is an edge's, and its error.
-    fn area_of_walls(&self, shaft: &FacetShaft, facing: f64, patch: Patch) -> (f64, f64) {
-        if facing >= OPPOSED || self.edges.is_empty() {
-            return (patch.area(), 0.0);
-        }
-        let small = patch.area() / PARTS as f64;
-        let (mut area, mut error) = (0.0, 0.0);
-        let mut parts = vec![patch];
-        while let Some(part) = parts.pop() {
-            let middle = part.middle();
-            let foot = shaft.foot(middle);
-            let size = part.corners().iter().map(|c| shaft.foot(*c).distance(foot));
-            let reach = size.fold(0.0, f64::max) + REACH * part.deepest();
-            let Some((segment, _)) = self.edges.nearest(foot, reach) else {
-                area += part.area();
-                continue;
-            };
-            let far = |c: &DVec3| distance_squared(shaft.foot(*c), segment).sqrt() - REACH * c.z;
-            if part.corners().iter().all(|c| far(c) <= 8.0 * self.grain) {
-                continue;
-            }
-            if part.area() <= small {
-                let own = part.area();
-                area += if self.edge_at(shaft, middle, middle.z) { 0.0 } else { own };
-                error += own * 0.5;
-                continue;
-            }
-            parts.extend(part.halves().0);
-        }
-        (area, error)
     }
 }

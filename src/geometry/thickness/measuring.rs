@@ -13,8 +13,8 @@ use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
 use super::walls::{OwnWalls, Walls, flatten_what_was_cut};
 use super::{
-    MeasuredPlaces, MeasuredSide, Reason, SiteValue, Thickness, ThicknessError, ThicknessMethod,
-    ThicknessSettings, ThinFacets, edges,
+    MeasuredPlaces, MeasuredSide, Opposite, Reason, SiteValue, Thickness, ThicknessError,
+    ThicknessMethod, ThicknessSettings, ThinFacets, edges,
 };
 use crate::TriMesh;
 use crate::bvh::Bvh8;
@@ -138,7 +138,8 @@ pub fn measure_prepared(
     let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
     let grain = query.grain + single(tree);
     let tilts = whole.tilts(grain);
-    let acute = AcuteEdges::new(whole, &tilts, f64::from(sign));
+    let sphere = settings.method == ThicknessMethod::Sphere;
+    let acute = sphere.then(|| AcuteEdges::new(whole, &tilts, f64::from(sign)));
     let caster = Caster {
         tree,
         face_normals: &whole.face_normals,
@@ -149,7 +150,7 @@ pub fn measure_prepared(
         // A single ray is the axis: exact along it whatever the correction, and needs no smooth
         // normals.
         correction: if rays == 1 { Correction::None } else { settings.correction },
-        acute: Some(&acute),
+        acute: acute.as_ref(),
     };
     let own = OwnWalls::new(&surface, walls.map(|w| w.1));
     let faces = own.in_order(tree);
@@ -171,7 +172,15 @@ pub fn measure_prepared(
         one(&caster, &site, settings, whole, surface.sharp[v], scratch)
     };
     let mut welded = scattered(&order, surface.positions.len(), job, (0.2, 0.8), at_vertex)?;
-    edges::apply(&caster, &surface, &own, settings, &mut welded);
+    let solid = Solid {
+        tree,
+        surface: whole,
+        sign: f64::from(caster.sign),
+        grain,
+        tilts: &tilts,
+        opposed_only: sphere,
+    };
+    edges::apply(&caster, &solid, &surface, &own, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
     let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
         let Some([a, b, c]) = surface.corners(t) else {
@@ -192,15 +201,6 @@ pub fn measure_prepared(
         face_values = faces.iter().map(|v| v.value).collect();
         face_reasons = faces.iter().map(|v| v.reason).collect();
     }
-    let solid = Solid {
-        tree,
-        surface: whole,
-        sign: f64::from(caster.sign),
-        grain,
-        edges: &acute,
-        tilts: &tilts,
-        opposed_only: settings.method == ThicknessMethod::Sphere,
-    };
     let order = facets_in_order(whole, tree);
     let (samples, sample_area) = sampled(&caster, whole, settings, &order, job)?;
     let least = least_wall(&solid, &samples, &welded, &surface, settings, &order, job)?;
@@ -242,14 +242,14 @@ fn facets_in_order(surface: &WeldedSurface, tree: &Bvh8) -> Vec<u32> {
     tree.packs().iter().flat_map(|p| p.id).filter(once).collect()
 }
 
-/// The statistics' places with their values, and whether the opposite side is turned there.
+/// The statistics' places with their values and the sides opposite.
 fn sampled(
     caster: &Caster<'_>,
     whole: &WeldedSurface,
     settings: &ThicknessSettings,
     order: &[u32],
     job: &Job,
-) -> Result<(Vec<(AreaSample, bool)>, f64), Cancelled> {
+) -> Result<(Vec<(AreaSample, Opposite)>, f64), Cancelled> {
     let costly = settings.method != ThicknessMethod::Ray;
     let (places, each) = samples::spread(whole, order, costly);
     let at = |sample: &AreaSample, scratch: &mut ConeScratch| {
@@ -263,11 +263,13 @@ fn sampled(
             clear: f32::INFINITY,
         };
         let found = match settings.method {
-            ThicknessMethod::Sphere => caster.wall_ball(&site).map(|b| (b.diameter, false)),
-            _ => caster.measure(&site, scratch).map(|c| (c.folded.value, c.turned)),
+            ThicknessMethod::Sphere => {
+                caster.wall_ball(&site).map(|b| (b.diameter, Opposite::Parallel))
+            }
+            _ => caster.measure(&site, scratch).map(|c| (c.folded.value, c.opposite)),
         };
-        let (value, turned) = found.unwrap_or((f32::NAN, false));
-        (AreaSample { value, ..*sample }, turned)
+        let (value, opposite) = found.unwrap_or((f32::NAN, Opposite::Parallel));
+        (AreaSample { value, ..*sample }, opposite)
     };
     let found = places
         .par_chunks(CHUNK)
@@ -284,7 +286,7 @@ fn sampled(
 /// The least wall: proven by rays along the normal, found at sampled places by the others.
 fn least_wall(
     solid: &Solid<'_>,
-    samples: &[(AreaSample, bool)],
+    samples: &[(AreaSample, Opposite)],
     welded: &[SiteValue],
     surface: &WeldedSurface,
     settings: &ThicknessSettings,
@@ -299,8 +301,10 @@ fn least_wall(
         ThicknessMethod::Sphere => solid.least(order, job)?,
         _ => None,
     };
-    let wall = |s: &&(AreaSample, bool)| {
-        s.0.value.is_finite() && !(s.1 && solid.is_edge(s.0.position, s.0.value))
+    let wall = |(s, opposite): &&(AreaSample, Opposite)| {
+        let into = surface_normal(solid.surface, s.triangle).as_dvec3() * -solid.sign;
+        let edge = |u| solid.is_edge(s.position.as_dvec3(), into, u);
+        s.value.is_finite() && !matches!(opposite, Opposite::Turned(u) if edge(*u))
     };
     let at_sample = samples.iter().filter(wall).map(|(s, _)| {
         (s.value, s.position, surface_normal(solid.surface, s.triangle) * solid.sign as f32)
@@ -308,7 +312,7 @@ fn least_wall(
     let measured = |v: &usize| {
         let s = welded[*v];
         let value = s.reason == Reason::Measured && s.value.is_finite();
-        value && !(s.turned && solid.is_edge(surface.positions[*v], s.value))
+        value && !solid.of_edge(surface, *v, s.opposite)
     };
     let at_vertex = (0..welded.len())
         .filter(measured)
@@ -339,7 +343,7 @@ fn surface_normal(surface: &WeldedSurface, t: u32) -> Vec3 {
 fn thin_facets(
     solid: &Solid<'_>,
     least: Option<LeastWall>,
-    samples: &[(AreaSample, bool)],
+    samples: &[(AreaSample, Opposite)],
     settings: &ThicknessSettings,
     query: WallQuery,
     order: &[u32],
@@ -384,7 +388,7 @@ fn one(
     };
     if let Some(c) = by_rays {
         let error = c.folded.error + c.wall.map_or(0.0, |t| whole.sagitta(t));
-        return SiteValue { value: c.folded.value, error, reason, turned: c.turned };
+        return SiteValue { value: c.folded.value, error, reason, opposite: c.opposite };
     }
     // If every ray of the cone leaves the solid (at a needle's tip), the ball still has a size.
     let ball = caster.wall_ball(site).or_else(|| caster.ball(site));
@@ -392,7 +396,7 @@ fn one(
         value: b.diameter,
         error: 0.0,
         reason,
-        turned: b.in_corner,
+        opposite: if b.in_corner { Opposite::Corner } else { Opposite::Parallel },
     })
 }
 

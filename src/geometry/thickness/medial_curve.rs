@@ -17,6 +17,7 @@ use super::bands::{BandPieces, area_of};
 use super::partition::{SharedEdge, median_by_area, shared_edges};
 use super::surface::WeldedSurface;
 use super::{Thickness, ThicknessError};
+use crate::job::Job;
 
 /// Around a piece, what is thicker than this many of its medians is measured along the limb.
 const ACROSS: f32 = 1.5;
@@ -72,8 +73,8 @@ impl Thickness {
     /// ([`super::MeasuredPlaces::VerticesAndFaces`]), which should be small beside the walls.
     ///
     /// # Errors
-    /// Returns an error if there are no values of triangles.
-    pub fn medial_curve(&self) -> Result<MedialCurve, ThicknessError> {
+    /// Returns an error if there are no values of triangles, or the job was cancelled.
+    pub fn medial_curve(&self, job: &Job) -> Result<MedialCurve, ThicknessError> {
         if self.face_values.len() != self.surface.triangles.len() {
             return Err(ThicknessError::Setting {
                 what: "the number of values of triangles",
@@ -82,9 +83,11 @@ impl Thickness {
             });
         }
         let edges = shared_edges(&self.surface);
-        let pieces = BandPieces::cut(&self.surface, &self.face_values, &edges);
+        let pieces = BandPieces::cut(&self.surface, &self.face_values, &edges, job)?;
+        job.progress(0.8);
         let mut graph = graph_of(&pieces, &self.surface, &self.face_values, &edges);
         graph.straighten();
+        job.check()?;
         graph.trim();
         Ok(graph.curve())
     }
@@ -326,7 +329,6 @@ mod tests {
     use super::*;
     use crate::TriMesh;
     use crate::implicit::surface;
-    use crate::job::Job;
     use crate::shapes;
 
     fn curve_of(mesh: &TriMesh) -> MedialCurve {
@@ -336,7 +338,7 @@ mod tests {
             ..ThicknessSettings::default()
         };
         let measured = measure(mesh, &settings, &Job::default()).expect("not cancelled");
-        measured.medial_curve().expect("values of triangles")
+        measured.medial_curve(&Job::default()).expect("values of triangles")
     }
 
     /// The distance from a rod with round ends.

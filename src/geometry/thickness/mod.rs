@@ -15,6 +15,8 @@
 pub mod ball;
 mod bands;
 mod below;
+pub mod change_report;
+pub mod changes;
 pub mod check;
 pub mod colour;
 pub mod cone;
@@ -294,13 +296,22 @@ struct SiteValue {
     value: f32,
     error: f32,
     reason: Reason,
-    /// True if the other side is not parallel enough to make a wall: near a sharp edge the value
-    /// measures the edge.
-    turned: bool,
+    opposite: Opposite,
+}
+
+/// The other end of a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Opposite {
+    /// A side within 40 degrees of parallel.
+    Parallel,
+    /// This facet, which is turned by more.
+    Turned(u32),
+    /// The corner that holds a ball.
+    Corner,
 }
 
 impl SiteValue {
     const fn missing(reason: Reason) -> Self {
-        SiteValue { value: f32::NAN, error: 0.0, reason, turned: false }
+        SiteValue { value: f32::NAN, error: 0.0, reason, opposite: Opposite::Parallel }
     }
 }

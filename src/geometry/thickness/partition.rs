@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::surface::{DROPPED, WeldedSurface};
 use super::{Thickness, ThicknessError};
 use crate::disjoint_sets::DisjointSets;
+use crate::job::{Cancelled, Job};
 use crate::min_cut::CutGraph;
 use crate::portable::PortableMath;
 use crate::thickness::summary::triangle_area;
@@ -125,7 +126,11 @@ impl Thickness {
     ///
     /// # Errors
     /// Returns an error if a setting is out of its range, or if there are no values of triangles.
-    pub fn partition(&self, settings: PartitionSettings) -> Result<WallPartition, ThicknessError> {
+    pub fn partition(
+        &self,
+        settings: PartitionSettings,
+        job: &Job,
+    ) -> Result<WallPartition, ThicknessError> {
         let PartitionSettings { levels, smoothing } = settings;
         let say = |what, got, expected| Err(ThicknessError::Setting { what, got, expected });
         if let Some(n) = levels.filter(|n| !(1..=MOST_LEVELS).contains(n)) {
@@ -137,7 +142,7 @@ impl Thickness {
         if self.face_values.len() != self.surface.triangles.len() {
             return say("the number of values of triangles", 0.0, "one for each triangle");
         }
-        Ok(partition(&self.surface, &self.face_values, levels, f64::from(smoothing)))
+        Ok(partition(&self.surface, &self.face_values, levels, f64::from(smoothing), job)?)
     }
 }
 
@@ -146,7 +151,8 @@ fn partition(
     values: &[f32],
     levels: Option<usize>,
     smoothing: f64,
-) -> WallPartition {
+    job: &Job,
+) -> Result<WallPartition, Cancelled> {
     let area: Vec<f64> = (0..surface.triangles.len())
         .map(|t| surface.corners(t).map_or(0.0, triangle_area))
         .collect();
@@ -163,12 +169,13 @@ fn partition(
         // A disc of the thicker level stays if its area's gain is more than the price of its rim,
         // that is, if its radius exceeds the smoothing times the wall.
         let line = smoothing * half * middle.portable_exp();
-        let thicker = divided(&logs, &area, &edges, &prices, [middle, half], line);
+        let thicker = divided(&logs, &area, &edges, &prices, [middle, half], line).cut(job)?;
+        job.progress((k + 1) as f32 / means.len() as f32);
         for (l, thicker) in level.iter_mut().zip(thicker) {
             *l += u32::from(thicker && *l == k as u32);
         }
     }
-    collect(surface, values, &area, &edges, &level, &means)
+    Ok(collect(surface, values, &area, &edges, &level, &means))
 }
 
 /// For each triangle, whether it is on the thicker side of `middle`.
@@ -179,7 +186,7 @@ fn divided(
     prices: &[f64],
     [middle, half]: [f64; 2],
     line: f64,
-) -> Vec<bool> {
+) -> CutGraph {
     // A rim, whose value is far beyond both levels, counts as no more than a wall of a level.
     let pull: Vec<f64> = logs
         .iter()
@@ -194,7 +201,7 @@ fn divided(
         .zip(prices)
         .map(|(e, p)| (e.triangles[0], e.triangles[1], whole(line * p)))
         .collect();
-    CutGraph::new(pull.into_iter().map(whole).collect(), &weighted).cut()
+    CutGraph::new(pull.into_iter().map(whole).collect(), &weighted)
 }
 
 /// The price of a border along an edge: its length, less where the surface is concave there.
@@ -359,7 +366,6 @@ mod tests {
     use super::super::{MeasuredPlaces, ThicknessSettings, measure};
     use super::*;
     use crate::TriMesh;
-    use crate::job::Job;
     use crate::shapes;
     use glam::DQuat;
 
@@ -368,7 +374,7 @@ mod tests {
     fn divided_part(mesh: &TriMesh, how: PartitionSettings) -> (TriMesh, WallPartition) {
         let settings = ThicknessSettings { at: PAIRS, ..ThicknessSettings::default() };
         let measured = measure(mesh, &settings, &Job::default()).expect("not cancelled");
-        (mesh.clone(), measured.partition(how).expect("valid settings"))
+        (mesh.clone(), measured.partition(how, &Job::default()).expect("valid settings"))
     }
 
     /// A slab 60 x 40 of 2 mm whose second half has 5 mm, in triangles of about a millimetre.
@@ -459,9 +465,23 @@ mod tests {
             PartitionSettings { levels: None, smoothing: -1.0 },
             PartitionSettings { levels: None, smoothing: f32::NAN },
         ] {
-            assert!(measured.partition(how).is_err(), "{how:?}");
+            assert!(measured.partition(how, &Job::default()).is_err(), "{how:?}");
         }
-        let plain = measure(&ball, &ThicknessSettings::default(), &Job::default());
-        assert!(plain.expect("not cancelled").partition(PartitionSettings::default()).is_err());
+        let job = Job::default();
+        let plain = measure(&ball, &ThicknessSettings::default(), &job).expect("not cancelled");
+        assert!(plain.partition(PartitionSettings::default(), &job).is_err());
+    }
+
+    #[test]
+    fn a_partition_and_a_curve_end_when_they_are_cancelled() {
+        let job = Job::default();
+        let settings = ThicknessSettings { at: PAIRS, ..ThicknessSettings::default() };
+        let ball = shapes::torus(20.0, 3.0, 40, 20).triangulate().0;
+        let measured = measure(&ball, &settings, &job).expect("not cancelled");
+        assert!(measured.medial_curve(&job).is_ok());
+        job.cancel();
+        let how = PartitionSettings { levels: Some(2), ..PartitionSettings::default() };
+        assert!(matches!(measured.partition(how, &job), Err(ThicknessError::Cancelled(_))));
+        assert!(matches!(measured.medial_curve(&job), Err(ThicknessError::Cancelled(_))));
     }
 }

@@ -19,8 +19,9 @@
 
 use glam::Vec3;
 
+use super::Opposite;
 use super::cone::{Cone, Folded, Outliers, fold, frame_along};
-use super::sharp_edges::{AcuteEdges, GRAZING};
+use super::sharp_edges::{AcuteEdges, GRAZING, OPPOSED};
 use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
 /// The correction of a ray's length.
@@ -80,7 +81,7 @@ pub struct Caster<'a> {
     pub outliers: Outliers,
     /// The correction of a ray's length.
     pub correction: Correction,
-    /// Places beside these have no wall to a turned side; without them each has one.
+    /// Edges beside which a turned side does not hold the ball of a wall.
     pub acute: Option<&'a AcuteEdges>,
 }
 
@@ -93,8 +94,8 @@ const SAME_WALL: f32 = 0.5;
 pub struct ConeValue {
     /// The mean and its error.
     pub folded: Folded,
-    /// The wall that the axis ray meets is turned by more than 40 degrees from the site's.
-    pub turned: bool,
+    /// The side that the axis ray meets.
+    pub(super) opposite: Opposite,
     /// The triangle that the axis ray meets.
     pub wall: Option<u32>,
 }
@@ -107,9 +108,6 @@ pub struct ConeScratch {
     hits: Vec<Option<TreeHit>>,
     stack: TraversalStack,
 }
-
-/// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
-const TURNED: f32 = 0.766;
 
 impl Caster<'_> {
     /// Returns the nearest wall ahead that faces the site: excludes the site's triangles, and any
@@ -138,7 +136,6 @@ impl Caster<'_> {
         let ConeScratch { values: scratch, rays, hits, stack } = scratch;
         scratch.clear();
         let longest = self.longest(site);
-        let mut turned = false;
         let (x, y) = frame_along(site.away, site.along);
         let mut first = None::<Vec3>;
         // Turned about the axis so that +z of the cone runs into the wall.
@@ -155,9 +152,6 @@ impl Caster<'_> {
                 first = hit.map(|h| match self.correction {
                     Correction::Chord => self.wall(&h),
                     _ => self.face_normals[h.triangle as usize] * -self.sign,
-                });
-                turned = hit.is_some_and(|h| {
-                    -self.sign * self.face_normals[h.triangle as usize].dot(site.away) < TURNED
                 });
             }
             let Some(hit) = hit else { continue };
@@ -207,7 +201,12 @@ impl Caster<'_> {
             if let Some(hit) = axis.filter(|_| rays.len() > 1) {
                 folded.error = folded.error.max((folded.value - hit.t).abs());
             }
-            ConeValue { folded, turned, wall: axis.map(|h| h.triangle) }
+            let turned = |h: &TreeHit| {
+                -self.sign * self.face_normals[h.triangle as usize].dot(site.away) < OPPOSED as f32
+            };
+            let opposite =
+                axis.filter(turned).map_or(Opposite::Parallel, |h| Opposite::Turned(h.triangle));
+            ConeValue { folded, opposite, wall: axis.map(|h| h.triangle) }
         })
     }
 

@@ -95,11 +95,11 @@ details>summary{display:none}.verdict{print-color-adjust:exact}}";
 
 /// Returns the file's name without its folder: the page is for others, and must not reveal local
 /// paths.
-fn name_of(a: &ThicknessAnswer) -> Cow<'_, str> {
+pub(super) fn name_of(a: &ThicknessAnswer) -> Cow<'_, str> {
     Path::new(&a.file).file_name().map_or(a.file.as_str().into(), |n| n.to_string_lossy())
 }
 
-fn verdict(out: &mut String, a: &ThicknessAnswer) {
+pub(super) fn verdict(out: &mut String, a: &ThicknessAnswer) {
     let (class, word) = match a.verdict {
         Verdict::Pass => ("pass", "Pass"),
         Verdict::Warn => ("warn", "Warning"),
@@ -359,8 +359,9 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
         "<h2>Method</h2><p>{how} Faces that touch the place itself are not hit, nor walls that \
          face the same way.</p>\
          <p>An edge is no wall. The least wall is between sides that are within 40 degrees of \
-         parallel, or above the bottom of a groove or pit. In the map, a place beside an acute \
-         edge or tip has no wall if its opposite side is turned by more than that.</p>\
+         parallel, or above the bottom of a groove or pit; areas count what is above its sides \
+         too. In the map, a place within 1.5 of its value from a sharp edge has no wall if its \
+         opposite side is a side of an edge by this rule.</p>\
          <p>Error bound: every value of the map away from edges is within {:.4} mm of the surface \
          that the triangles stand for.</p>\
          <p>Limits: warn below {}, fail below {}, fail above {}; a wall fails when it is \
@@ -379,7 +380,7 @@ fn method(out: &mut String, a: &ThicknessAnswer, origin: ReportOrigin<'_>) {
     );
 }
 
-fn hex([r, g, b]: [u8; 3]) -> String {
+pub(super) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 

@@ -58,11 +58,6 @@ impl Patch {
         self.corners().iter().copied().reduce(|a, b| if b.z < a.z { b } else { a })
     }
 
-    /// The largest depth of a corner.
-    pub fn deepest(&self) -> f64 {
-        self.corners().iter().fold(f64::NEG_INFINITY, |m, c| m.max(c.z))
-    }
-
     /// The mean of the corners.
     pub fn middle(&self) -> DVec3 {
         self.corners().iter().sum::<DVec3>() / self.count.max(1) as f64
@@ -87,8 +82,8 @@ impl Patch {
         self.area() <= around * 0.5 * width
     }
 
-    /// Both halves across the longest extent, and that extent.
-    pub fn halves(&self) -> ([Patch; 2], f64) {
+    /// Both halves across the longest extent.
+    pub fn halves(&self) -> [Patch; 2] {
         let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for c in self.corners() {
             lo = lo.min(c.truncate());
@@ -99,7 +94,7 @@ impl Patch {
         let (mut below, mut above) = (*self, *self);
         below.cut(|c| middle[axis] - c[axis]);
         above.cut(|c| c[axis] - middle[axis]);
-        ([below, above], size.max_element())
+        [below, above]
     }
 }
 

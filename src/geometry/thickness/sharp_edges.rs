@@ -7,7 +7,7 @@ use super::surface::WeldedSurface;
 
 /// An acute edge within this many times a value to a turned side makes the value the edge's. Sides
 /// that meet at 40 degrees need 1.2.
-pub(super) const REACH: f64 = 1.5;
+const REACH: f64 = 1.5;
 /// cos 40 degrees: sides that meet at a larger angle make an edge, not a thin wall.
 pub(super) const OPPOSED: f64 = 0.766_044_443;
 /// Cosine below which rounding may have turned a right angle: 89.99 degrees. A side that is turned
@@ -108,11 +108,6 @@ impl AcuteEdges {
         self.nearest(place, REACH * value * (1.0 + 1e-6)).is_some()
     }
 
-    /// There is none.
-    pub fn is_empty(&self) -> bool {
-        self.segments.is_empty()
-    }
-
     /// The nearest one to `p` within `reach`, and its distance.
     pub(super) fn nearest(&self, p: DVec3, reach: f64) -> Option<([DVec3; 2], f64)> {
         let (mut best, mut found) = (reach * reach, None);
@@ -142,7 +137,7 @@ impl AcuteEdges {
 }
 
 /// The square of the distance of `p` from the segment.
-pub(super) fn distance_squared(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+fn distance_squared(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let way = b - a;
     let along = ((p - a).dot(way) / way.length_squared().max(1e-300)).clamp(0.0, 1.0);
     (p - a - way * along).length_squared()

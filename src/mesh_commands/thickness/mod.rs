@@ -1,33 +1,34 @@
 //! `sculptd thickness`: how thick are a part's walls, and are they thick enough?
 
+mod at;
 mod batch;
+mod compare;
 mod parts;
 mod ply;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use sculptd_devices::Clock;
 use serde::Serialize;
 
 use super::{Fail, Outcome, answer, picture_size};
 use parts::{Structure, write_skeleton};
+use sculptd_geometry::CentredMesh;
 use sculptd_geometry::io::{read_mesh, write_beside};
 use sculptd_geometry::job::Job;
-use sculptd_geometry::picture::{Camera, Picture, draw};
+use sculptd_geometry::picture::{Camera, draw};
 use sculptd_geometry::thickness::check::{CheckedPart, ThicknessAnswer, ThicknessLimits, Verdict};
 use sculptd_geometry::thickness::colour::colour;
 use sculptd_geometry::thickness::partition::SMOOTHING;
 use sculptd_geometry::thickness::preset::Preset;
-use sculptd_geometry::thickness::probe::{Probe, ProbedRay, probe};
 use sculptd_geometry::thickness::ready::ReadyPart;
 use sculptd_geometry::thickness::report;
 use sculptd_geometry::thickness::{
     Correction, EdgePolicy, MeasuredPlaces, MeasuredSide, Outliers, ThicknessMethod,
     ThicknessSettings, Weights,
 };
-use sculptd_geometry::{CentredMesh, TriMesh};
 
 #[derive(Debug, clap::Args)]
 pub struct ThicknessArgs {
@@ -38,8 +39,9 @@ pub struct ThicknessArgs {
     pub how: How,
     #[command(flatten)]
     pub limits: LimitArgs,
-    /// Tell the thickness at the point of the surface nearest to this one, with its rays, instead
-    /// of the whole part's; in the file's coordinates, millimetres. `--png` draws both.
+    /// Tell the thickness at the point of the surface nearest to this one, with its rays and the
+    /// ball that fits, instead of the whole part's; in the file's coordinates, millimetres. `--png`
+    /// draws them.
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<DVec3>,
     /// Divide the surface into parts of equal wall, each with its thickness, area and borders.
@@ -57,6 +59,12 @@ pub struct ThicknessArgs {
     /// and thickness. `--png` draws them.
     #[arg(long, value_name = "FILE")]
     pub skeleton: Option<PathBuf>,
+    /// Compare with this later version of the part, in the same position: where walls became
+    /// thinner or thicker. The limits judge the later version; `--ply` and `--png` have the
+    /// differences.
+    #[arg(long, value_name = "LATER")]
+    #[arg(conflicts_with_all = ["at", "parts", "skeleton", "junit", "out"])]
+    pub compare: Option<PathBuf>,
     /// Write the values as a PLY file: the mesh, a colour and a `thickness` at each vertex, and a
     /// `thickness` of each face, measured at its middle.
     #[arg(long, value_name = "FILE")]
@@ -301,78 +309,6 @@ fn place(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// The answer of `--at`: like [`Probe`], in the file's coordinates.
-#[derive(Debug, Serialize)]
-struct AtAnswer {
-    file: String,
-    position: [f64; 3],
-    normal: [f32; 3],
-    thickness: Option<f32>,
-    error: f32,
-    /// The face that is measured from, and the one that the ray along the normal meets; indices of
-    /// the file's triangles.
-    triangle: u32,
-    opposite: Option<u32>,
-    rays: Vec<ProbedRay>,
-}
-
-fn tell_at(path: &Path, args: &ThicknessArgs, at: DVec3, job: &Job, json: bool) -> Outcome {
-    let loaded = read_mesh(path, job)?;
-    let part = CentredMesh::new(&loaded.mesh, args.how.unit.scale());
-    let found = probe(&part.mesh, &args.how.settings(), at - part.centre, job)
-        .map_err(|e| Fail::Usage(e.to_string()))?;
-    let Some(found) = found else {
-        return Err(Fail::Input(format!("{}: no surface there to measure at", path.display())));
-    };
-    if let Some(out) = &args.png {
-        let png = drawn(&part.mesh, &found, args.size).png();
-        let png = png.map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
-        write_beside(out, |w| w.write_all(&png)).map_err(|e| Fail::io(out, &e))?;
-    }
-    let Probe { position, normal, triangle, opposite, thickness, error, rays } = found;
-    let position = part.to_file(position.into()).to_array();
-    let file = path.display().to_string();
-    let out = AtAnswer { file, position, normal, thickness, error, triangle, opposite, rays };
-    answer(json, &out, |w| {
-        let [x, y, z] = out.position;
-        let value = out.thickness.map_or("none".into(), |v| format!("{v:.4} mm"));
-        writeln!(w, "thickness {value} +- {:.4} at ({x:.4}, {y:.4}, {z:.4})", out.error)?;
-        for r in &out.rays {
-            let length = r.length.map_or("none".into(), |l| format!("{l:.4}"));
-            writeln!(w, "  ray {:?} {length}", r.direction)?;
-        }
-        Ok(())
-    });
-    Ok(())
-}
-
-/// The part seen along the surface at a probed place, a little from above, with the rays through
-/// it and a ring around the place.
-fn drawn(mesh: &TriMesh, found: &Probe, (width, height): (u32, u32)) -> Picture {
-    let (place, normal) = (Vec3::from(found.position), Vec3::from(found.normal));
-    let (side, _) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
-    let aspect = width as f32 / height as f32;
-    let camera = Camera::from_side(mesh, side + normal * 0.4, aspect);
-    let mut picture = draw(mesh, None, &camera, width as usize, height as usize);
-    // The outlines of the face that is measured from, and of the one that is met.
-    let faces = [(Some(found.triangle), [20, 90, 200]), (found.opposite, [230, 120, 0])];
-    for (face, colour) in faces {
-        let Some(face) = face else { continue };
-        let corners = mesh.corners(face as usize).map(|p| picture.place(&camera, p));
-        for k in 0..3 {
-            picture.line(corners[k], corners[(k + 1) % 3], colour);
-        }
-    }
-    let from = picture.place(&camera, place);
-    for ray in &found.rays {
-        let Some(length) = ray.length else { continue };
-        let to = picture.place(&camera, place + Vec3::from(ray.direction) * length);
-        picture.line(from, to, [200, 30, 30]);
-    }
-    picture.ring(from, 8.0);
-    picture
-}
-
 pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     let limits = args.limits.limits(presets)?;
     let job = Job::default();
@@ -386,14 +322,20 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
             ));
         }
         return match &args.meshes[..] {
-            [path] => tell_at(path, args, at, &job, json),
+            [path] => at::tell(path, args, at, &job, json),
             _ => Err(Fail::Usage("--at: expected one mesh".into())),
         };
     }
     let path = match &args.meshes[..] {
         [path] if args.out.is_none() => path,
+        _ if args.compare.is_some() => {
+            return Err(Fail::Usage("--compare: expected one mesh and its later version".into()));
+        }
         _ => return batch::run(args, limits, json),
     };
+    if let Some(later) = &args.compare {
+        return compare::run(path, later, args, limits, json);
+    }
     let (part, checked) = one(path, args, limits, &job)?;
     for w in &checked.answer.warnings {
         eprintln!("sculptd: warning: {}: {w}", path.display());
@@ -467,13 +409,16 @@ fn one(
     Ok((part.mesh, checked))
 }
 
+/// The origin of a report on a file of these bytes.
+fn origin(bytes: &[u8]) -> report::ReportOrigin<'static> {
+    let program = concat!("sculptd ", env!("CARGO_PKG_VERSION"));
+    report::ReportOrigin { hash: report::fnv(bytes), bytes: bytes.len() as u64, program }
+}
+
 /// The report of a checked part to `out`.
 fn write_report(out: &Path, path: &Path, part: &CentredMesh, checked: &CheckedPart) -> Outcome {
     let bytes = std::fs::read(path).map_err(|e| Fail::io(path, &e))?;
-    let program = concat!("sculptd ", env!("CARGO_PKG_VERSION"));
-    let origin =
-        report::ReportOrigin { hash: report::fnv(&bytes), bytes: bytes.len() as u64, program };
-    let page = report::html(part, checked, origin)
+    let page = report::html(part, checked, origin(&bytes))
         .map_err(|e| Fail::Input(format!("{}: {e}", out.display())))?;
     write_beside(out, |w| w.write_all(page.as_bytes())).map_err(|e| Fail::io(out, &e))
 }

@@ -38,7 +38,7 @@ impl Structure {
         let usage = |e: &dyn std::fmt::Display| Fail::Usage(e.to_string());
         let how = PartitionSettings { levels: args.levels, smoothing: args.smoothing };
         let partition =
-            args.parts.then(|| measured.partition(how)).transpose().map_err(|e| usage(&e))?;
+            args.parts.then(|| measured.partition(how, job)).transpose().map_err(|e| usage(&e))?;
         let partition = partition.map(|found| found.moved(part.centre));
         let mut skeleton = None;
         if args.skeleton.is_some() {
@@ -48,7 +48,7 @@ impl Structure {
                 ..args.how.settings()
             };
             let measured = measure(&part.mesh, &balls, job).map_err(|e| usage(&e))?;
-            let found = measured.medial_curve().map_err(|e| usage(&e))?;
+            let found = measured.medial_curve(job).map_err(|e| usage(&e))?;
             skeleton = Some(found.moved(part.centre));
         }
         Ok(Structure { partition, skeleton })

@@ -2,7 +2,7 @@
 
 use super::cut;
 use super::rows;
-use super::state::{Action, ThicknessSummary, UiRequest, UiState, View};
+use super::state::{Action, ThicknessSummary, ThinSpot, UiRequest, UiState, View};
 use super::theme;
 use crate::language::text_of;
 use crate::language::tr;
@@ -17,10 +17,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
 fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
     ui.strong(tr!("walls-heading"));
-    let mut on = ui_state.look.map == Map::Thickness;
+    let mut on = ui_state.look.map.is_of_walls();
     if ui.checkbox(&mut on, tr!("walls-live")).on_hover_text(view.tip(Action::Thickness)).changed()
     {
+        // From the change of walls the map is closed too.
+        ui_state.look.map = if on { ui_state.look.map } else { Map::Thickness };
         super::act::act(Action::Thickness, &ui.ctx().clone(), view, ui_state, out);
+    }
+    if on && changes(ui, ui_state, out) {
+        return;
     }
     let walls = &mut ui_state.walls;
     let own = tr!("walls-own-limit");
@@ -86,7 +91,44 @@ fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     if found.spots.is_empty() {
         ui.colored_label(quiet, tr!("walls-none"));
     }
-    for (i, spot) in found.spots.iter().enumerate() {
+    spots(ui, &found.spots, out);
+}
+
+/// The comparison with an earlier form; returns true if its map is shown.
+fn changes(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>) -> bool {
+    let mut shown = ui_state.look.map == Map::WallChange;
+    let checkbox = ui.checkbox(&mut shown, tr!("walls-change"));
+    if checkbox.on_hover_text(tr!("walls-change.tip")).changed() {
+        ui_state.look.map = if shown { Map::WallChange } else { Map::Thickness };
+    }
+    if !shown {
+        return false;
+    }
+    if ui.button(tr!("distance-now")).on_hover_text(tr!("distance-now.tip")).clicked() {
+        out.push(UiRequest::Reference);
+    }
+    let quiet = theme::quiet(ui);
+    let Some(found) = &ui_state.walls.changes else {
+        ui.colored_label(quiet, tr!("legend-measuring"));
+        return true;
+    };
+    egui::Grid::new("wall-changes").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
+        for (name, value) in [
+            ("walls-thinned", tr!("length-mm", value = format!("{:+.3}", found.thinned))),
+            ("walls-thickened", tr!("length-mm", value = format!("{:+.3}", found.thickened))),
+            ("walls-compared", tr!("percent", value = format!("{:.0}", found.compared * 100.0))),
+        ] {
+            ui.colored_label(quiet, tr!(name));
+            ui.monospace(value);
+            ui.end_row();
+        }
+    });
+    spots(ui, &found.spots, out);
+    true
+}
+
+fn spots(ui: &mut egui::Ui, spots: &[ThinSpot], out: &mut Vec<UiRequest>) {
+    for (i, spot) in spots.iter().enumerate() {
         let value = format!("{:.3}", spot.thickness);
         let name = tr!("walls-spot", number = i + 1, value = value);
         if ui.button(name).on_hover_text(tr!("walls-spot.tip")).clicked() {

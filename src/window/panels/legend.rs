@@ -15,6 +15,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
     let known = match map {
         Map::Thickness => ui_state.walls.found.is_some(),
         Map::Distance => ui_state.sizes.distances.is_some(),
+        Map::WallChange => ui_state.walls.changes.is_some(),
         Map::None | Map::Mask | Map::Overhang | Map::Draft => true,
     };
     let (low, high) = match map {
@@ -45,16 +46,23 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
                 );
                 return;
             }
-            if let Some(here) = ui_state.walls.here.filter(|_| map == Map::Thickness) {
-                mark(ui, bar, (here - low) / (high - low).max(1e-12));
+            if let Some(here) = ui_state.walls.here.filter(|_| map.is_of_walls()) {
+                if map == Map::Thickness {
+                    mark(ui, bar, (here - low) / (high - low).max(1e-12));
+                }
                 ui.label(tr!("walls-here", value = format!("{here:.3}")));
+                if let Some(ball) = ui_state.walls.ball {
+                    ui.label(tr!("walls-ball", value = format!("{ball:.3}")));
+                }
             }
             for i in 0..=2 {
                 let x = i as f32 / 2.0;
                 let value = low + (high - low) * x;
                 let text = match map {
-                    Map::Distance if i == 1 => tr!("length-mm", value = "0"),
-                    Map::Distance => tr!("length-mm", value = format!("{value:+.3}")),
+                    Map::Distance | Map::WallChange if i == 1 => tr!("length-mm", value = "0"),
+                    Map::Distance | Map::WallChange => {
+                        tr!("length-mm", value = format!("{value:+.3}"))
+                    }
                     Map::Mask => format!("{value:.2}"),
                     Map::Overhang | Map::Draft => angle_at(ui_state.look.angles, map, i),
                     _ => tr!("length-mm", value = format!("{value:.2}")),

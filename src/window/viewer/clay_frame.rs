@@ -118,7 +118,7 @@ impl WindowState {
             brush,
             lines: &key.lines,
             look: self.ui_state.look,
-            values: shown(&self.ui_state, &self.values, &self.distances)
+            values: shown(&self.ui_state, [&self.values, &self.distances, &self.wall_changes])
                 .filter(|v| v.pages.len() == pages),
             beside: Beside {
                 preview,
@@ -150,8 +150,11 @@ impl WindowState {
 /// The values of the map that is shown.
 pub(super) fn shown<'a>(
     ui_state: &UiState,
-    thickness: &'a Option<MapValues>,
-    distances: &'a Option<MapValues>,
+    [thickness, distances, wall_changes]: [&'a Option<MapValues>; 3],
 ) -> Option<&'a MapValues> {
-    if ui_state.look.map == Map::Distance { distances.as_ref() } else { thickness.as_ref() }
+    match ui_state.look.map {
+        Map::Distance => distances.as_ref(),
+        Map::WallChange => wall_changes.as_ref(),
+        _ => thickness.as_ref(),
+    }
 }

@@ -6,49 +6,17 @@ use std::sync::Arc;
 use crossbeam_channel as cc;
 use glam::{DVec3, Vec3};
 
+use super::distance_reference::DistanceReference;
 use super::pages::MapValues;
 use super::tasks::TaskReport;
 use crate::panels::state::{DistanceSummary, Measured};
 use sculptd_clay::Snapshot;
-use sculptd_engine::hand::{HeldObject, Similarity};
+use sculptd_engine::hand::Similarity;
 use sculptd_engine::scene::ObjectTransform;
-use sculptd_geometry::TriMesh;
 use sculptd_geometry::distance::{DistanceSolid, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{measures, projected_area};
 use sculptd_geometry::projection::{ProjectionPlane, area, outline};
-
-/// Reference of distance measurements.
-#[derive(Debug, Clone)]
-pub enum DistanceReference {
-    Before(Snapshot),
-    HeldObject(HeldObject),
-    /// The goal of an exhibit, in the world.
-    Goal(Arc<TriMesh>),
-}
-
-impl DistanceReference {
-    /// The same form, wherever it is.
-    fn same(&self, other: &DistanceReference) -> bool {
-        match (self, other) {
-            (DistanceReference::Before(a), DistanceReference::Before(b)) => {
-                (a.object_id(), a.revision()) == (b.object_id(), b.revision())
-            }
-            (DistanceReference::HeldObject(a), DistanceReference::HeldObject(b)) => {
-                Arc::ptr_eq(&a.plain, &b.plain)
-            }
-            (DistanceReference::Goal(a), DistanceReference::Goal(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
-
-    fn place(&self) -> Similarity {
-        match self {
-            DistanceReference::Before(_) | DistanceReference::Goal(_) => Similarity::NONE,
-            DistanceReference::HeldObject(thing) => thing.place,
-        }
-    }
-}
 
 #[derive(Debug, Clone)]
 pub struct DistanceRequest {
@@ -92,11 +60,7 @@ impl DistanceField {
         let DistanceRequest { mesh, transform, to } = request;
         if !self.to.as_ref().is_some_and(|(old, _)| old.same(&to)) {
             self.pages.clear();
-            let plain = match &to {
-                DistanceReference::Before(before) => Arc::new(before.to_tri()),
-                DistanceReference::HeldObject(thing) => thing.plain.clone(),
-                DistanceReference::Goal(plain) => plain.clone(),
-            };
+            let plain = to.plain();
             let solid = DistanceSolid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
         }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::distance_field::DistanceReference;
+use super::distance_reference::DistanceReference;
 use super::state::WindowState;
 use super::wiring::Wiring;
 use crate::look::Map;

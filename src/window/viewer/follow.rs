@@ -37,14 +37,7 @@ impl WindowState {
         }
         let changed = self.follow_preview(state, now);
         if self.ui_state.look.map == Map::Distance {
-            let to = self.goal_reference(wiring).or_else(|| {
-                match (&state.thing, self.ui_state.sizes.against, &self.before) {
-                    (Some(thing), DistanceTarget::HeldObject, _) => {
-                        Some(distance_field::DistanceReference::HeldObject(thing.clone()))
-                    }
-                    (_, _, before) => before.clone().map(distance_field::DistanceReference::Before),
-                }
-            });
+            let to = self.goal_reference(wiring).or_else(|| self.earlier_form(state));
             let place = state
                 .thing
                 .as_ref()

@@ -13,6 +13,7 @@ mod clay_frame;
 mod clay_picture;
 mod coarse_pages;
 pub mod distance_field;
+pub mod distance_reference;
 mod earlier_pictures;
 pub mod environment;
 mod event_times;
@@ -68,6 +69,7 @@ mod thickness_task;
 pub mod timelapse;
 mod turntable;
 mod version_pictures;
+mod wall_follow;
 pub mod wall_probe;
 mod wiring;
 

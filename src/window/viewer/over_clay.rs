@@ -10,7 +10,6 @@ use super::renderer::LineEnd;
 use super::state::WindowState;
 use super::wall_probe::{ProbedWall, wall_on};
 use super::wiring::Wiring;
-use crate::look::Map;
 use sculptd_daemon::Published;
 use sculptd_daemon::kiosk::Stage;
 use sculptd_daemon::people::colour_of;
@@ -84,6 +83,9 @@ impl WindowState {
         self.check_lines(&mut lines, &self.camera);
         if let Some(wall) = self.wall_here(state) {
             overlay::wall(&mut lines, &wall);
+            if let Some(ball) = self.ball.filter(|b| b.is_at(wall.place)) {
+                overlay::ball(&mut lines, &self.camera, &ball);
+            }
         }
         OverClay { lines, brush, led: self.led(state, wiring) }
     }
@@ -122,7 +124,7 @@ impl WindowState {
     pub(super) fn wall_here(&self, state: &Published) -> Option<ProbedWall> {
         let at = self.pointer.at;
         let on_clay = self.pointer.inside && self.is_in_view(at) && !self.over_panel(at);
-        let shown = on_clay && self.ui_state.look.map == Map::Thickness;
+        let shown = on_clay && self.ui_state.look.map.is_of_walls();
         let ray = shown.then(|| self.camera.ray(self.view_point(at)))?;
         let seen = self.ui_state.look.cut.map_or(Some(ray), |cut| cut.seen(ray))?;
         wall_on(state, seen)

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::renderer::LineEnd;
-use super::wall_probe::ProbedWall;
+use super::wall_probe::{ProbedWall, WallBall};
 use crate::look::linear;
 use crate::panels::check_values::RING_SHARE;
 use sculptd_clay::Ray;
@@ -22,6 +22,8 @@ const BONE: [u8; 4] = [190, 225, 255, 200];
 const MARK: [u8; 4] = [255, 190, 20, 255];
 /// The ray of the wall under the pointer.
 const PROBE: [u8; 4] = [255, 255, 255, 255];
+/// The ball in that wall.
+const BALL: [u8; 4] = [120, 220, 255, 255];
 const DARK: [u8; 4] = [4, 2, 2, 255];
 const MARK_THROUGH: f32 = 0.45;
 /// Corners of a ring: smooth to the eye at any size.
@@ -202,6 +204,26 @@ pub fn wall(out: &mut Vec<LineEnd>, wall: &ProbedWall) {
     let lines = [(wall.place, far), (far - u * arm, far + u * arm), (far - v * arm, far + v * arm)];
     for (a, b) in lines {
         out.extend([a, b].map(|p| LineEnd { through: 1.0, ..LineEnd::new(p, PROBE) }));
+    }
+}
+
+/// The largest ball in a wall: its outline and two circles through the places that it touches.
+pub fn ball(out: &mut Vec<LineEnd>, camera: &Camera, ball: &WallBall) {
+    let radius = 0.5 * ball.diameter;
+    let centre = ball.place - ball.normal * radius;
+    let view = (camera.eye() - centre).normalize_or(camera.backward());
+    let (u, v) = ball.normal.any_orthonormal_pair();
+    let (right, up) = view.any_orthonormal_pair();
+    for (x, y) in [(right, up), (ball.normal, u), (ball.normal, v)] {
+        let at = |i: usize| {
+            let (s, c) = (i as f32 / CORNERS as f32 * std::f32::consts::TAU).sin_cos();
+            centre + (x * c + y * s) * radius
+        };
+        for i in 0..CORNERS {
+            out.extend(
+                [at(i), at(i + 1)].map(|p| LineEnd { through: 1.0, ..LineEnd::new(p, BALL) }),
+            );
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::earlier_pictures::EarlierPictures;
 use super::state::WindowState;
 use super::tasks::TaskReport;
+use super::thickness_task::WallReport;
 use super::wiring::Wiring;
 use crate::language::tr;
 use crate::look::Map;
@@ -203,10 +204,15 @@ impl WindowState {
                     self.ui_state.retopology.under_way = None;
                 }
                 TaskReport::Used(path) => self.ui_state.prefs.used(path),
-                TaskReport::Map(values, about) => {
+                TaskReport::Walls(WallReport::Map(values, about)) => {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);
                 }
+                TaskReport::Walls(WallReport::Changes(values, about)) => {
+                    self.wall_changes = Some(values);
+                    self.ui_state.walls.changes = Some(about);
+                }
+                TaskReport::Walls(WallReport::Ball(ball)) => self.ball = ball,
                 TaskReport::Look(found) => self.look_read(*found),
                 TaskReport::KeptPicture(name) => {
                     self.look_again();
@@ -257,8 +263,10 @@ impl WindowState {
         if self.distances.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
             self.distances = None;
         }
-        if self.values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
-            self.values = None;
+        for values in [&mut self.values, &mut self.wall_changes] {
+            if values.as_ref().is_some_and(|v| v.pages.len() != state.mesh.page_count()) {
+                *values = None;
+            }
         }
         let goal_scale =
             self.goal_scale(wiring).filter(|_| self.ui_state.look.map == Map::Distance);
@@ -271,6 +279,14 @@ impl WindowState {
                 (Map::Thickness, Some(found), _) => {
                     self.ui_state.walls.scale.unwrap_or((found.min, found.high))
                 }
+                (Map::WallChange, ..) => {
+                    let found = self.ui_state.walls.changes.as_ref();
+                    let most = found.map_or(0.0, |c| c.thickened.max(-c.thinned));
+                    // As in the report: a rim's change does not press that of the walls together.
+                    let usual = self.ui_state.walls.found.as_ref().map_or(most, |w| w.median);
+                    let most = most.min(usual).max(state.extent * 1e-5);
+                    (-most, most)
+                }
                 // Both ends as far from nothing; an object that did not change is pale all over.
                 (Map::Distance, _, Some(d)) => {
                     let most = d.max.max(-d.min).max(state.extent * 1e-5);
@@ -281,18 +297,6 @@ impl WindowState {
         );
         changed |= self.ui_state.look.scale != scale;
         self.ui_state.look.scale = scale;
-        let here = self.wall_here(state).map(|wall| wall.thickness);
-        changed |= self.ui_state.walls.here != here;
-        self.ui_state.walls.here = here;
-        if self.ui_state.look.map == Map::Thickness {
-            let (limit, transform) = (self.ui_state.walls.limit, state.transform());
-            let clay = (state.mesh.object_id(), state.mesh.revision());
-            let wanted = (clay, limit, transform);
-            if self.asked_map != Some(wanted) || self.values.is_none() && self.asked_map.is_none() {
-                self.asked_map = Some(wanted);
-                self.tasks.thickness((&state.mesh, transform), self.camera.target, limit);
-            }
-        }
-        changed
+        self.follow_walls(state) || changed
     }
 }

@@ -69,7 +69,10 @@ impl WindowState {
             brush: None,
             lines: &[],
             look: self.ui_state.look,
-            values: super::clay_frame::shown(&self.ui_state, &self.values, &self.distances),
+            values: super::clay_frame::shown(
+                &self.ui_state,
+                [&self.values, &self.distances, &self.wall_changes],
+            ),
             beside: Beside { stance: Stance::of(state), others: &others, ..Beside::default() },
         };
         match paint(&self.gpu, &mut self.renderer, &scene, width, height) {

@@ -7,7 +7,7 @@ use super::check_task::CheckWork;
 use super::distance_field::{self, DistanceField, SizesRequest};
 use super::latest_wins::LatestWins;
 use super::preview;
-use super::section_figures::{SectionRequest, section};
+use super::section_figures::{SectionRequest, SectionWork};
 use super::tasks::{TaskReport, Tasks};
 use sculptd_geometry::job::Job;
 
@@ -67,8 +67,10 @@ impl SnapshotWorkers {
     pub fn section(&mut self, wanted: SectionRequest, tasks: &Tasks) {
         let say = tasks.reporter();
         let thread = self.section.get_or_insert_with(|| {
+            let mut work = SectionWork::default();
             LatestWins::start("sculptd-section", move |wanted: SectionRequest, _| {
-                section(&wanted).is_none_or(|found| say.send(TaskReport::Section(found)).is_ok())
+                let found = work.section(&wanted);
+                found.is_none_or(|found| say.send(TaskReport::Section(found)).is_ok())
             })
         });
         thread.request(wanted);

@@ -29,8 +29,10 @@ use super::snapshot_workers::SnapshotWorkers;
 use super::step_pictures::StepPictures;
 use super::tablet_map::Tablets;
 use super::tasks::Tasks;
+use super::thickness_task::AskedWalls;
 use super::turntable::Turntable;
 use super::version_pictures::VersionPictures;
+use super::wall_probe::WallBall;
 use super::wiring::Wiring;
 use crate::language::{set_current, tr};
 use crate::look::{CutPlane, MATERIALS, Material};
@@ -96,8 +98,11 @@ pub(super) struct WindowState {
     pub(super) look_folders: Option<LookFolders>,
     pub(super) look_choice: LookChoice,
     pub(super) values: Option<MapValues>,
-    /// The revision and limit that a thickness map was last asked for.
-    pub(super) asked_map: Option<(ClayState, f32, ObjectTransform)>,
+    pub(super) wall_changes: Option<MapValues>,
+    /// The ball in the wall that was under the pointer last.
+    pub(super) ball: Option<WallBall>,
+    /// The last question to the thread that measures walls.
+    pub(super) asked_map: Option<AskedWalls>,
     pub(super) devices: Vec<String>,
     /// What the camera that watches hands saw last, while its page is open.
     pub(super) camera_preview: Option<Arc<CameraPreview>>,
@@ -313,6 +318,8 @@ impl WindowState {
             rested: (0, 0),
             opened: None,
             distances: None,
+            wall_changes: None,
+            ball: None,
             step_pictures: Default::default(),
             version_pictures: Default::default(),
             earlier_pictures: None,

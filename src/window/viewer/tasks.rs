@@ -9,7 +9,6 @@ use std::time::Duration;
 
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
-use glam::Vec3;
 
 use super::check_task::CheckReport;
 use super::latest_wins::LatestWins;
@@ -17,18 +16,17 @@ use super::look_files::LookFiles;
 use super::pages::MapValues;
 use super::preview::{self, Preview};
 use super::task_texts::{failed, operation_title, saved};
-use super::thickness_task::{ThicknessRequest, follow};
+use super::thickness_task::{ThicknessRequest, WallReport, follow};
 use super::wiring::Wiring;
 use crate::language::{current, set_current, tr};
 use crate::panels::hand_menu;
 use crate::panels::state::Pairing;
 use crate::panels::state::{
     DistanceSummary, FilePurpose, FolderListing, MESH_ENDINGS, Measured, SectionFigures,
-    ThicknessSummary,
 };
 use sculptd_clay::face_sets::{FaceSetPart, Partition};
 use sculptd_clay::measured_mask::MaskMeasure;
-use sculptd_clay::{BuildError, Clay, Snapshot};
+use sculptd_clay::{BuildError, Clay};
 use sculptd_daemon::command_queue::{CommandSender, QueuedCommand};
 use sculptd_daemon::decimate_job::{DecimateMade, DecimateWanted};
 use sculptd_daemon::operations::{self, Computed, Installed, OperationError, Target};
@@ -64,7 +62,7 @@ pub enum TaskReport {
     Message(String, bool),
     /// A file was loaded or written: it goes to the recent ones.
     Used(PathBuf),
-    Map(MapValues, Box<ThicknessSummary>),
+    Walls(WallReport),
     /// A Boolean has ended, well or not.
     Joined,
     /// A large mesh was read; the clay is still made of it.
@@ -548,23 +546,14 @@ impl Tasks {
     }
 
     /// Asks for the thickness map of this clay; the newest request counts.
-    /// `near` is a place of the world, and the limit in its unit.
-    pub fn thickness(
-        &mut self,
-        (mesh, transform): (&Snapshot, ObjectTransform),
-        near: Vec3,
-        limit: f32,
-    ) {
+    pub(super) fn thickness(&mut self, wanted: ThicknessRequest) {
         let reports = &self.say;
         let worker = self.thickness.get_or_insert_with(|| {
             let say = reports.clone();
-            let told = move |map: MapValues, about: ThicknessSummary| {
-                say.send(TaskReport::Map(map, Box::new(about))).is_ok()
-            };
+            let told = move |report| say.send(TaskReport::Walls(report)).is_ok();
             LatestWins::follow("sculptd-thickness", move |requests| follow(requests, &told))
         });
-        let near = transform.inverse().point(near);
-        worker.request(ThicknessRequest { mesh: mesh.clone(), transform, near, limit });
+        worker.request(wanted);
     }
 
     pub fn say(&self, text: impl Into<String>, wrong: bool) {

@@ -23,6 +23,24 @@ pub struct ProbedWall {
     pub opposite: Vec3,
 }
 
+/// The largest ball in the wall at a place, by the definition *sphere*, in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallBall {
+    /// On the surface.
+    pub place: Vec3,
+    /// Outward.
+    pub normal: Vec3,
+    /// Its diameter.
+    pub diameter: f32,
+}
+
+impl WallBall {
+    /// Returns true if it touches the surface near enough to a place to be shown for it.
+    pub fn is_at(&self, place: Vec3) -> bool {
+        self.place.distance(place) <= 0.1 * self.diameter
+    }
+}
+
 /// Returns the wall behind the surface that is seen on a ray, along the normal of the triangle that
 /// is hit; `None` if nothing is hit, if it is hit from inside, or if there is no surface behind.
 pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {

@@ -14,9 +14,8 @@ use sculptd_geometry::projection::svg;
 use sculptd_geometry::{TriMesh, shapes};
 
 use sculptd_window::look::Look;
-use sculptd_window::viewer::distance_field::{
-    DistanceField, DistanceReference, DistanceRequest, measure,
-};
+use sculptd_window::viewer::distance_field::{DistanceField, DistanceRequest, measure};
+use sculptd_window::viewer::distance_reference::DistanceReference;
 use sculptd_window::viewer::overlay_mesh::Triangles;
 use sculptd_window::viewer::picture::Painter;
 use sculptd_window::viewer::preview;

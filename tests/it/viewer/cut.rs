@@ -3,7 +3,8 @@
 
 use egui_kittest::kittest::Queryable;
 use glam::{DQuat, DVec3, Vec3};
-use sculptd_clay::{Clay, Ray};
+use sculptd_clay::brush::GaussianBrush;
+use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::job::Job;
@@ -12,7 +13,7 @@ use sculptd_window::look::{CutPlane, Look};
 use sculptd_window::panels::state::Tab;
 use sculptd_window::viewer::objects::Stance;
 use sculptd_window::viewer::renderer::{Beside, Scene};
-use sculptd_window::viewer::section_figures::section;
+use sculptd_window::viewer::section_figures::SectionWork;
 use sculptd_window::viewer::wall_probe::wall_on;
 
 use super::check::world_of;
@@ -90,9 +91,10 @@ fn a_section_has_the_area_and_the_perimeter_of_its_walls_wherever_the_object_sta
         ObjectTransform::NONE,
         ObjectTransform { shift: DVec3::new(70.0, -20.0, 5.0), turn, scale: 2.5 },
     ];
+    let mut work = SectionWork::default();
     for transform in transforms {
         let at = transform.shift.y as f32;
-        let found = section(&(clay.snapshot(), transform, CutPlane { at, ..MIDDLE }));
+        let found = work.section(&(clay.snapshot(), transform, CutPlane { at, ..MIDDLE }));
         let found = found.expect("a section");
         let scale = transform.scale;
         let (area, perimeter) = (40.0 * 20.0 - 36.0 * 16.0, 2.0 * (60.0 + 52.0));
@@ -101,8 +103,16 @@ fn a_section_has_the_area_and_the_perimeter_of_its_walls_wherever_the_object_sta
         assert_eq!((found.contours, found.open), (2, 0));
     }
     let lid = CutPlane { at: 14.0, ..MIDDLE };
-    let found = section(&(clay.snapshot(), ObjectTransform::NONE, lid)).expect("a section");
+    let found = work.section(&(clay.snapshot(), ObjectTransform::NONE, lid)).expect("a section");
     assert!((found.area - 800.0).abs() < 1e-6 && found.contours == 1, "{found:?}");
+    // The clay changes: what was cut before is not cut again.
+    let (centre, radius) = (Vec3::new(20.0, 15.0, 10.0), 5.0);
+    clay.begin_step();
+    let dab = GaussianBrush::new(centre, radius, Vec3::X, 1.0);
+    clay.dab(&Reach::Sphere { centre, radius }, &dab, &Workers::new(1));
+    clay.end_step();
+    let found = work.section(&(clay.snapshot(), ObjectTransform::NONE, lid)).expect("a section");
+    assert!(found.area > 801.0, "{found:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The page of walls and its map: thin spots, the scale set by hand, steps of colour, the wall
 //! under the pointer.
 
-use egui::{Pos2, pos2};
+use egui::{Pos2, Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DQuat, DVec3, Vec3};
@@ -10,7 +10,9 @@ use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, SceneCommand};
 use sculptd_geometry::shapes;
 use sculptd_window::look::{Look, Map};
-use sculptd_window::panels::state::{Tab, ThicknessSummary, ThinSpot, UiRequest};
+use sculptd_window::panels::state::{
+    Tab, ThicknessSummary, ThinSpot, UiRequest, WallChangeSummary,
+};
 use sculptd_window::viewer::wall_probe::wall_on;
 
 use super::check::world_of;
@@ -53,6 +55,35 @@ fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
         "{:?}",
         h.state().asked
     );
+}
+
+#[test]
+fn the_change_of_walls_is_chosen_and_its_worst_place_flown_to() {
+    let mut h = page();
+    h.get_by_role_and_label(Role::CheckBox, "Change of walls").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.look.map, Map::WallChange);
+    h.state_mut().ui_state.walls.changes = Some(WallChangeSummary {
+        thinned: -1.25,
+        thickened: 0.5,
+        compared: 0.93,
+        spots: vec![ThinSpot { place: SPOT, thickness: -1.25 }],
+    });
+    h.run_steps(2);
+    h.get_by_label("+0.500 mm");
+    h.get_by_label("93 %");
+    h.get_by_label("1: -1.250 mm").click();
+    h.run_steps(2);
+    h.get_by_label("Compare with now").click();
+    h.run_steps(2);
+    assert!(
+        matches!(h.state().asked[..], [UiRequest::FlyTo(p), UiRequest::Reference] if p == SPOT),
+        "{:?}",
+        h.state().asked
+    );
+    h.get_by_role_and_label(Role::CheckBox, "Change of walls").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.look.map, Map::Thickness);
 }
 
 /// Drags within the histogram, from and to shares of its width.

@@ -209,7 +209,7 @@ impl Thickness {
         self.measured_faces("parts")?;
         let how = PartitionSettings { levels, smoothing };
         let (measured, centre) = (self.measured.clone(), self.part.centre);
-        let found = watched(py, &None, move |_| measured.partition(how))?;
+        let found = watched(py, &None, move |job| measured.partition(how, job))?;
         let found = found.map_err(|e| errors::thickness(&e))?.moved(centre);
         let facts = plain(py, &found)?;
         let of = Arc::new(found.of);
@@ -225,7 +225,7 @@ impl Thickness {
         }
         self.measured_faces("medial_curve")?;
         let measured = self.measured.clone();
-        let found = watched(py, &None, move |_| measured.medial_curve())?;
+        let found = watched(py, &None, move |job| measured.medial_curve(job))?;
         plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.centre))
     }
 

@@ -65,7 +65,7 @@ pub use search::SearchBox;
 pub use sizes::{DistanceSummary, DistanceTarget, Measured, SectionFigures, SizesPage};
 pub use tab::Tab;
 pub use tablet_keys::{TabletKeys, TabletKeysPage};
-pub use thickness::{ThicknessSummary, ThinSpot, WallsPage};
+pub use thickness::{ThicknessSummary, ThinSpot, WallChangeSummary, WallsPage};
 pub use ui::UiState;
 pub use view::{FrameFigures, SessionView, View};
 pub use views::{ViewKind, Views};

@@ -38,9 +38,23 @@ impl ThicknessSummary {
     }
 }
 
+/// Summary of the change of walls of the whole object; lengths in the mesh's unit.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct WallChangeSummary {
+    /// The difference by which a wall became thinnest, negative or 0.
+    pub thinned: f32,
+    /// The difference by which a wall became thickest, positive or 0.
+    pub thickened: f32,
+    /// Share of the vertices that could be compared, 0 to 1.
+    pub compared: f32,
+    /// The places with thinner walls, the most thinned first; `thickness` is the difference.
+    pub spots: Vec<ThinSpot>,
+}
+
 #[derive(Debug)]
 pub struct WallsPage {
     pub found: Option<Box<ThicknessSummary>>,
+    pub changes: Option<WallChangeSummary>,
     pub presets: Vec<Preset>,
     /// Index into `presets`; `None`: the person's own limit.
     pub preset: Option<usize>,
@@ -49,17 +63,21 @@ pub struct WallsPage {
     pub scale: Option<(f32, f32)>,
     /// The wall under the pointer, along the normal.
     pub here: Option<f32>,
+    /// The diameter of the largest ball in that wall.
+    pub ball: Option<f32>,
 }
 
 impl Default for WallsPage {
     fn default() -> Self {
         WallsPage {
             found: None,
+            changes: None,
             presets: Vec::new(),
             preset: None,
             limit: 1.0,
             scale: None,
             here: None,
+            ball: None,
         }
     }
 }
