@@ -20,11 +20,11 @@ use sculptd_geometry::io::{MAX_FILE, MorphTarget, ReadError, read_mesh_within};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
-use super::session::CreateError;
 use super::session::format::Settings;
 use super::session::history::{StoreError, keeper::Keeper};
 use super::session::writer::WriterThread;
 use super::session::{self, OpenError, Opened, SessionWriter};
+use super::session::{CreateError, HeldSession};
 use super::tick::Journal;
 use crate::simulated_loop::Feed;
 
@@ -163,6 +163,15 @@ pub fn begin(
     begin_with(&meshes, session, config, job)
 }
 
+/// Holds a session before it is read. Returns `None` for a file that cannot be written: opening it
+/// tells why.
+fn held(path: &Path) -> Result<Option<HeldSession>, BeginError> {
+    match session::hold(path) {
+        Err(e @ CreateError::Busy { .. }) => Err(e.into()),
+        held => Ok(held.ok()),
+    }
+}
+
 /// Begins with meshes, each an object at its true size and place. If `session` names a file, the
 /// run is recorded into it. An existing session is replayed to its end and continued; it contains
 /// its start, so no mesh may be given with it.
@@ -180,6 +189,7 @@ pub fn begin_with(
         let workers = Workers::new(config.r#loop.worker_count());
         let mut warnings = Vec::new();
         let mut path = path.to_path_buf();
+        let mut held = held(&path)?;
         let mut opened = session::open(&path);
         if !matches!(
             &opened,
@@ -193,6 +203,7 @@ pub fn begin_with(
                 Ok(saved) => {
                     warnings.push(saved.to_string());
                     path = saved.path;
+                    held = self::held(&path)?;
                     opened = session::open(&path);
                 }
                 Err(e) => {
@@ -229,7 +240,10 @@ pub fn begin_with(
                 replayed.jumps_missed
             ));
         }
-        let (mut writer, mut thread) = session::resume(&path)?;
+        let (mut writer, mut thread) = match held {
+            Some(held) => session::resume_held(&path, held)?,
+            None => session::resume(&path)?,
+        };
         let world = &mut replayed.world;
         // Open strokes end as if the pen were lifted. From here on the file contains the undo
         // history.

@@ -132,10 +132,17 @@ fn an_installation_comes_back_each_time_its_screen_is_lost() {
         let hash = installation.hash();
         pause(loss * 37 % 500);
         installation.lose_screen();
-        wait(&format!("it is back after loss {loss}: {}", installation.log()), || {
+        let is_back = || {
             let times = installation.log().matches(again).count() as u64;
-            (times == loss && installation.is_shown()).then_some(())
+            times == loss && installation.is_shown()
+        };
+        let came = (0..1200).any(|_| {
+            pause(100);
+            is_back()
         });
+        if !came {
+            panic!("not back after loss {loss}: {}", installation.log());
+        }
         assert_eq!(installation.hash(), hash, "after loss {loss}: {}", installation.log());
     }
     installation.ask("shutdown", &Value::Null).expect("an answer");

@@ -1,6 +1,7 @@
 //! The start of an installation: a visit that the last run did not end is opened to go on.
 
 use std::path::Path;
+use std::time::Duration;
 
 use super::start::{InterruptedVisit, Start, StartForm};
 use super::visit_journal::{VISIT_FILE, VisitRecording, VisitStart, set_aside, start};
@@ -9,7 +10,11 @@ use crate::session::format::Settings;
 use crate::session::{self, CreateError, catalog};
 use crate::startup::{self, BeginError, Begun, session_settings};
 use sculptd_clay::Clay;
+use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
+
+/// Longest that a start waits for the run before it to close the visit's file.
+const CLOSING: Duration = Duration::from_secs(10);
 
 /// Opens the visit in `folder` that the last run did not end, in place of `fresh`, and starts to
 /// record visits. An installation whose visits cannot be recorded runs without; `notices` says so.
@@ -51,6 +56,21 @@ pub fn begin(
     }
 }
 
+/// Opens the file of the last visit. A run before this one that lost its screen may still be closing
+/// it.
+fn opened(file: &Path, config: &Config, job: &Job) -> Result<Begun, BeginError> {
+    let clock = Clock::monotonic();
+    let until = clock.now_us() + CLOSING.as_micros() as u64;
+    loop {
+        match startup::begin(None, Some(file), config, job) {
+            Err(BeginError::Create(CreateError::Busy { .. })) if clock.now_us() < until => {
+                let _ = crossbeam_channel::never::<()>().recv_timeout(Duration::from_millis(50));
+            }
+            done => return done,
+        }
+    }
+}
+
 /// Returns the world of the interrupted visit and its session, or `None` if there is no visit in
 /// which somebody sculpted.
 fn recover(
@@ -70,7 +90,7 @@ fn recover(
         return Ok(None);
     }
     let job = Job::default();
-    let mut begun = match startup::begin(None, Some(&file), config, &job) {
+    let mut begun = match opened(&file, config, &job) {
         Ok(begun) => begun,
         Err(e @ BeginError::Create(CreateError::Busy { .. })) => return Err(e.to_string()),
         Err(e) => {

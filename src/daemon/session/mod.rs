@@ -39,7 +39,7 @@ pub use reader::{Loss, OpenError, Opened, open};
 pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
 pub use start::SessionStart;
-pub use writer::{SessionWriter, create, create_with, resume};
+pub use writer::{HeldSession, SessionWriter, create, create_with, hold, resume, resume_held};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms
 /// that a crash may cost.

@@ -141,12 +141,19 @@ pub fn create_with(
         return Err(CreateError::Exists { path: path.display().to_string() });
     }
     SessionDraft::begin(path, &start.into(), settings)?.publish(path, over)?;
-    resume_with(path, health)
+    resume_with(path, hold(path)?, health)
 }
 
-/// Keeps a second daemon from writing the same session. Given back when the file is closed, also by
-/// a kill.
-fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
+/// Keeps other daemons from writing a session, until it is dropped or the process ends.
+#[derive(Debug)]
+pub struct HeldSession(Arc<File>);
+
+/// Holds a session. Whoever goes on with one holds it before reading it: what is read later is
+/// what its last daemon left.
+///
+/// # Errors
+/// Returns [`CreateError::Busy`] while another daemon writes it, or the system's error.
+pub fn hold(path: &Path) -> Result<HeldSession, CreateError> {
     let name = || path.display().to_string();
     let file = File::options()
         .read(true)
@@ -156,7 +163,7 @@ fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(CreateError::Busy { path: name() }),
         // A file system without locks: as before there were any.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(Arc::new(file)),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(HeldSession(Arc::new(file))),
     }
 }
 
@@ -165,13 +172,27 @@ fn lock(path: &Path) -> Result<Arc<File>, CreateError> {
 /// # Errors
 /// [`CreateError`]
 pub fn resume(path: &Path) -> Result<(SessionWriter, WriterThread), CreateError> {
-    resume_with(path, Health::default())
+    resume_held(path, hold(path)?)
 }
 
-fn resume_with(path: &Path, health: Health) -> Result<(SessionWriter, WriterThread), CreateError> {
+/// As [`resume`], with a session that is held already.
+///
+/// # Errors
+/// [`CreateError`]
+pub fn resume_held(
+    path: &Path,
+    held: HeldSession,
+) -> Result<(SessionWriter, WriterThread), CreateError> {
+    resume_with(path, held, Health::default())
+}
+
+fn resume_with(
+    path: &Path,
+    HeldSession(lock): HeldSession,
+    health: Health,
+) -> Result<(SessionWriter, WriterThread), CreateError> {
     let store = |source| CreateError::Store { path: path.display().to_string(), source };
     let io = |source| CreateError::Io { path: path.display().to_string(), source };
-    let lock = lock(path)?;
     // Before SQLite begins a log: the salts of that one are not known yet.
     if let Some((mut page, known)) = AcknowledgementPage::find(lock.clone()).map_err(io)? {
         page.write(&Acknowledgement { salts: [0, 0], ..known }).map_err(io)?;

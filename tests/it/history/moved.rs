@@ -8,7 +8,9 @@ use glam::Vec2;
 use super::{Studio, both_ways};
 use crate::waiting::{comes, pause};
 use sculptd_clay::Workers;
-use sculptd_daemon::session::{self, replay};
+use sculptd_daemon::config::Config;
+use sculptd_daemon::session::{self, CreateError, replay};
+use sculptd_daemon::startup::{self, BeginError};
 use sculptd_geometry::job::Job;
 
 /// Change of the file by a person or a program.
@@ -117,6 +119,29 @@ fn a_session_that_is_moved_is_followed_and_one_that_is_gone_is_written_anew() {
             assert_eq!(both_ways(&path), (last, last), "{act:?}");
         }
     }
+}
+
+/// A daemon that starts while the one before it still ends goes on from its last stroke.
+#[test]
+fn a_start_while_the_last_run_ends_has_all_of_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut s = Studio::begin(dir.path(), 3000, 1 << 30);
+    let path = s.path.clone();
+    let next = std::thread::spawn(move || {
+        let begun = || startup::begin(None, Some(&path), &Config::default(), &Job::default());
+        loop {
+            match begun() {
+                Err(BeginError::Create(CreateError::Busy { .. })) => {}
+                begun => return begun.expect("opens").world.hash(),
+            }
+        }
+    });
+    let mut live = 0;
+    for k in 0..24 {
+        live = s.stroke(Vec2::new(-0.1 + 0.01 * k as f32, 0.0));
+    }
+    s.end();
+    assert_eq!(next.join().expect("no panic"), live);
 }
 
 #[test]
