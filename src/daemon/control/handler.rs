@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed};
+use super::jobs::JobPlace;
 use super::layers::{self, LayerDone};
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
@@ -122,12 +123,12 @@ fn load(path: &Path, job: &Job) -> Result<startup::Loaded, RpcError> {
     startup::load_within(path, MAX_MESH_FILE, job).map_err(failed)
 }
 
-/// Runs a Boolean.
+/// Runs a Boolean in its place.
 fn boolean(
     host: &Host,
+    place: &JobPlace<'_>,
     work: impl FnOnce(Target<'_>, &Job) -> Result<boolean_jobs::Joined, OperationError>,
 ) -> Result<edit::BooleanReply, RpcError> {
-    let place = host.jobs.begin_operation()?;
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let (layers, sets) = (layers::count(host), face_sets::count(host));
@@ -500,7 +501,8 @@ impl Handler for Host {
 
     fn join(&self, params: edit::JoinParams) -> Result<edit::BooleanReply, RpcError> {
         let operation = operation(params.operation);
-        boolean(self, |to, job| boolean_jobs::join_held(to, operation, job))
+        let place = self.jobs.begin_operation()?;
+        boolean(self, &place, |to, job| boolean_jobs::join_held(to, operation, job))
     }
 
     fn trim(&self, params: edit::TrimParams) -> Result<edit::BooleanReply, RpcError> {
@@ -508,7 +510,8 @@ impl Handler for Host {
             TrimRegion::Box(corners) => Part::Box(corners),
             TrimRegion::Line(ends) => Part::Line(ends),
         };
-        boolean(self, |to, job| trim::carry_out(to, &part, job))
+        let place = self.jobs.begin_operation()?;
+        boolean(self, &place, |to, job| trim::carry_out(to, &part, job))
     }
 
     fn level(&self, params: edit::LevelParams) -> Result<edit::LevelReply, RpcError> {
@@ -539,13 +542,13 @@ impl Handler for Host {
 
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {
         safe(&params.path)?;
-        let place = self.jobs.begin();
+        let place = self.jobs.begin_operation()?;
         let read = read_mesh_within(&params.path, MAX_MESH_FILE, &place.job);
         let mut tool = read.map_err(failed)?.mesh;
         repair::weld(&mut tool, 0.0);
         tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(params.at));
         let (given, operation) = (|_: &Published| Ok(tool.clone()), operation(params.operation));
-        boolean(self, |to, job| boolean_jobs::carry_out(to, given, false, operation, job))
+        boolean(self, &place, |to, job| boolean_jobs::carry_out(to, given, false, operation, job))
     }
 
     fn progress(&self, _: NoParams) -> Result<edit::ProgressReply, RpcError> {
