@@ -290,8 +290,7 @@ impl Handler for Host {
     }
 
     fn load(&self, params: asked::PathParams) -> Result<edit::LoadReply, RpcError> {
-        let place = self.jobs.begin();
-        scene::load(self, load(&params.path, &place.job)?)
+        scene::load(self, load(&params.path, &self.jobs.begin().job)?)
     }
 
     fn export(&self, params: asked_scene::ExportParams) -> Result<edit::ExportReply, RpcError> {
@@ -487,8 +486,7 @@ impl Handler for Host {
     }
 
     fn take_up(&self, params: asked::PathParams) -> Result<edit::TakeUpReply, RpcError> {
-        let place = self.jobs.begin();
-        let loaded = load(&params.path, &place.job)?;
+        let loaded = load(&params.path, &self.jobs.begin().job)?;
         let triangles = loaded.plain.triangles.len() as u64;
         self.carry_out(Command::TakeUp(Arc::new(loaded.plain)))?;
         Ok(edit::TakeUpReply { triangles, warnings: loaded.warnings })

@@ -56,8 +56,8 @@ pub fn begin(
     }
 }
 
-/// Opens the file of the last visit. A run before this one that lost its screen may still be closing
-/// it.
+/// Opens the file of the last visit. A run before this one that lost its screen may still be
+/// closing it.
 fn opened(file: &Path, config: &Config, job: &Job) -> Result<Begun, BeginError> {
     let clock = Clock::monotonic();
     let until = clock.now_us() + CLOSING.as_micros() as u64;

@@ -20,6 +20,7 @@ pub mod film;
 pub mod format;
 mod health;
 pub mod history;
+mod hold;
 mod input_end;
 pub mod place;
 pub mod reader;
@@ -35,11 +36,12 @@ pub mod writer;
 pub use connection::in_use;
 pub use create::{CreateError, is_half_made};
 pub use health::{Fault, Health};
+pub use hold::{HeldSession, hold};
 pub use reader::{Loss, OpenError, Opened, open};
 pub use reopen::{Reopened, reopen};
 pub use salvage::{Saved, salvage};
 pub use start::SessionStart;
-pub use writer::{HeldSession, SessionWriter, create, create_with, hold, resume, resume_held};
+pub use writer::{SessionWriter, create, create_with, resume, resume_held};
 
 /// Longest time that input waits for its group to be written, milliseconds. Well under the 250 ms
 /// that a crash may cost.

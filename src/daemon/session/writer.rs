@@ -4,7 +4,7 @@
 //! A full disk does not stop the sculpting. Groups are kept in memory up to `KEPT_BYTES`, the fault
 //! is shown, and the groups are written once there is room.
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
@@ -21,6 +21,7 @@ use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
 use super::health::Health;
 use super::history::{Handle, keeper::Keeper};
+use super::hold::{HeldSession, hold};
 use super::input_end::{InputEnd, begin_log, upgrade};
 use super::place::{SessionPath, SessionPlace, Standing};
 use super::shared_memory_log::LogName;
@@ -142,29 +143,6 @@ pub fn create_with(
     }
     SessionDraft::begin(path, &start.into(), settings)?.publish(path, over)?;
     resume_with(path, hold(path)?, health)
-}
-
-/// Keeps other daemons from writing a session, until it is dropped or the process ends.
-#[derive(Debug)]
-pub struct HeldSession(Arc<File>);
-
-/// Holds a session. Whoever goes on with one holds it before reading it: what is read later is
-/// what its last daemon left.
-///
-/// # Errors
-/// Returns [`CreateError::Busy`] while another daemon writes it, or the system's error.
-pub fn hold(path: &Path) -> Result<HeldSession, CreateError> {
-    let name = || path.display().to_string();
-    let file = File::options()
-        .read(true)
-        .write(true)
-        .open(path)
-        .map_err(|source| CreateError::Io { path: name(), source })?;
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => Err(CreateError::Busy { path: name() }),
-        // A file system without locks: as before there were any.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(HeldSession(Arc::new(file))),
-    }
 }
 
 /// Goes on writing a session that was opened. One of an older layout is brought to this one.
