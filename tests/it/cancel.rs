@@ -130,7 +130,7 @@ fn what_takes_long_is_cancelled_at_once() {
     waits.sort_unstable();
     let at = |share: usize| waits[(waits.len() - 1) * share / 100].0 as f64 * 1e-3;
     println!("{}: p50 {:.1} ms, p99 {:.1} ms, all {:.1} ms", waits.len(), at(50), at(99), at(100));
-    assert!(waits.len() > rounds * 8, "{} were cancelled", waits.len());
+    assert!(waits.len() > rounds * 4, "{} were cancelled", waits.len());
     if long {
         assert!(at(100) <= 100.0, "{:?}", waits.last());
     }

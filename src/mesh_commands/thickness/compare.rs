@@ -97,12 +97,12 @@ fn text(w: &mut dyn Write, answer: &ComparedAnswer<'_>) -> std::io::Result<()> {
             writeln!(w, "  below      {share:.3} +- {error:.3} % of the area is below {limit} mm")?;
         }
     }
-    let signed = |v: Option<f32>| v.map_or("none".into(), |v| format!("{v:+.4}"));
+    let most = |v: Option<f32>| v.map_or(String::new(), |v| format!(", by up to {v:+.4} mm"));
     let c = changes;
     writeln!(w, "changes")?;
-    let (thinned, thickened) = (signed(c.most_thinned), signed(c.most_thickened));
-    writeln!(w, "  thinner    {:.3} mm2, by up to {thinned} mm", c.thinner_area)?;
-    writeln!(w, "  thicker    {:.3} mm2, by up to {thickened} mm", c.thicker_area)?;
+    let (thinned, thickened) = (most(c.most_thinned), most(c.most_thickened));
+    writeln!(w, "  thinner    {:.3} mm2{thinned}", c.thinner_area)?;
+    writeln!(w, "  thicker    {:.3} mm2{thickened}", c.thicker_area)?;
     writeln!(w, "  compared   {:.3} mm2; {:.3} mm2 is new", c.compared_area, c.new_area)?;
     if let Some(area) = c.newly_below_area {
         writeln!(w, "  came below {area:.3} mm2")?;
