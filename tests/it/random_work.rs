@@ -19,7 +19,7 @@ use sculptd_daemon::control::client::call;
 const LEFT_OUT: [&str; 3] = ["subscribe", "window", "shutdown"];
 
 /// What `sculptd --json` says; `Err` with the message of an error.
-fn told(args: &[&str], file: &Path) -> Result<Value, String> {
+fn reported(args: &[&str], file: &Path) -> Result<Value, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     let out = command.arg("--json").args(args).arg(file).output().expect("runs");
     serde_json::from_slice(&out.stdout).map_err(|_| String::from_utf8_lossy(&out.stderr).into())
@@ -27,13 +27,14 @@ fn told(args: &[&str], file: &Path) -> Result<Value, String> {
 
 /// The hash of a copy; `None` for one that was torn, whose readable part opens all the same.
 fn of_copy(copy: &Path) -> Option<Value> {
-    match told(&["replay"], copy) {
+    match reported(&["replay"], copy) {
         Ok(replayed) => Some(replayed["hash"].clone()),
         Err(why) => {
-            let saved = told(&["session", "save"], copy).unwrap_or_else(|e| panic!("{why}: {e}"));
+            let saved =
+                reported(&["session", "save"], copy).unwrap_or_else(|e| panic!("{why}: {e}"));
             println!("a torn copy: {why}: {saved}");
             let path = saved["path"].as_str().expect("a path");
-            let replayed = told(&["replay", "--from-checkpoint"], path.as_ref());
+            let replayed = reported(&["replay", "--from-checkpoint"], path.as_ref());
             assert!(replayed.is_ok(), "{saved}: {replayed:?}");
             std::fs::remove_file(path).expect("removed");
             None
@@ -110,7 +111,7 @@ fn sequence(seed: u64, requests: u64) -> u64 {
     let live = hash(&daemon);
     let _home = ended(daemon, Signal::TERM);
     for way in [&["replay"][..], &["replay", "--from-checkpoint"]] {
-        let replayed = told(way, &session).map(|r| r["hash"].clone());
+        let replayed = reported(way, &session).map(|r| r["hash"].clone());
         assert_eq!(replayed.ok(), live, "seed {seed}: {way:?}");
     }
     done

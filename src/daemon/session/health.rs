@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use sculptd_devices::Clock;
+
 /// The journal's current fault, for people; `None` if there is none.
 pub type Fault = Arc<Mutex<Option<String>>>;
 
@@ -32,18 +34,15 @@ impl Health {
     /// Waits until all input that was handed over so far outlives a kill of the process. Returns
     /// false if it does not within a short time, or if input was lost.
     pub fn wait_until_safe(&self) -> bool {
-        let handed = self.handed.load(SeqCst);
-        let looks = SAFE_PATIENCE.as_micros() / SAFE_LOOK.as_micros();
-        for _ in 0..looks {
-            if self.safe.load(SeqCst) >= handed {
-                return true;
-            }
-            if self.lost.load(SeqCst) > 0 {
+        let (handed, clock) = (self.handed.load(SeqCst), Clock::monotonic());
+        let until = clock.now_us() + SAFE_PATIENCE.as_micros() as u64;
+        while self.safe.load(SeqCst) < handed {
+            if self.lost.load(SeqCst) > 0 || clock.now_us() >= until {
                 return false;
             }
             let _ = crossbeam_channel::never::<()>().recv_timeout(SAFE_LOOK);
         }
-        false
+        true
     }
 
     /// Returns the current fault, if any.
