@@ -9,7 +9,7 @@ use super::{Fail, Outcome, answer};
 use sculptd_daemon::kiosk::exhibit::create::{NewExhibit, create, goal_of};
 use sculptd_daemon::kiosk::exhibit::score::Score;
 use sculptd_daemon::kiosk::exhibit::{self, Exhibit, pack};
-use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::io::{MAX_FILE, read_in_millimetres};
 use sculptd_geometry::job::Job;
 
 #[derive(Debug, clap::Subcommand)]
@@ -100,7 +100,7 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
     match command {
         KioskCommand::NewExhibit(args) => {
             let settings = settings(args)?;
-            let loaded = read_mesh(&args.goal, &job)?;
+            let loaded = read_in_millimetres(&args.goal, MAX_FILE, &job)?;
             let made = create(&loaded.mesh, &settings, &job);
             let at_goal = |e: String| Fail::Input(format!("{}: {e}", args.goal.display()));
             let (exhibit, notes) = made.map_err(at_goal)?;
@@ -125,7 +125,7 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
         KioskCommand::Score { exhibit, work, step } => {
             let exhibit = open(exhibit, &job)?;
             let goal = goal_of(&exhibit, *step).map_err(Fail::Usage)?;
-            let mesh = read_mesh(work, &job)?.mesh.triangulate().0;
+            let mesh = read_in_millimetres(work, MAX_FILE, &job)?.mesh.triangulate().0;
             let score = goal.score(&mesh, &job).map_err(|e| Fail::Input(e.to_string()))?;
             answer(json, &score, |out| {
                 let (percent, much, little) = (score.percent(), score.too_much, score.too_little);

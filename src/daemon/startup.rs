@@ -16,7 +16,7 @@ use sculptd_engine::scene::{
     MAX_NAME, NewObject, ObjectSource, ObjectTransform, SceneCommand, clean_name,
 };
 use sculptd_engine::world::{World, WorldOptions};
-use sculptd_geometry::io::{MAX_FILE, MorphTarget, ReadError, read_mesh_within};
+use sculptd_geometry::io::{MAX_FILE, MorphTarget, ReadError, read_in_millimetres};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::{TriMesh, shapes};
 
@@ -75,7 +75,7 @@ pub fn load(path: Option<&Path>, job: &Job) -> Result<Loaded, StartupError> {
 
 /// Reads a mesh from a regular file of at most `limit` bytes.
 pub fn load_within(path: &Path, limit: u64, job: &Job) -> Result<Loaded, StartupError> {
-    let loaded = read_mesh_within(path, limit, job)?;
+    let loaded = read_in_millimetres(path, limit, job)?;
     let (plain, _) = loaded.mesh.triangulate();
     polygons::remember(loaded.mesh, &plain);
     let built = build(plain, loaded.warnings, path.display().to_string(), job)?;

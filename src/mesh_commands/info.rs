@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::check::{MeshReport, report};
-use sculptd_geometry::io::read_mesh;
+use sculptd_geometry::io::{FileContents, read_mesh};
 use sculptd_geometry::job::{Cancelled, Job};
 
 #[derive(Debug, Clone, clap::Args)]
@@ -25,6 +25,8 @@ struct Facts {
     format: &'static str,
     #[serde(flatten)]
     report: MeshReport,
+    #[serde(flatten)]
+    contents: FileContents,
     warnings: Vec<String>,
 }
 
@@ -45,11 +47,12 @@ pub fn run(args: &InfoArgs, json: bool) -> Outcome {
     for path in &args.meshes {
         let loaded = read_mesh(path, &job)?;
         let report = report(&loaded.mesh, !args.quick, &job).map_err(interrupted)?;
-        let file = path.display().to_string();
+        let (file, contents) = (path.display().to_string(), loaded.contents());
         meshes.push(Facts {
             file,
             format: loaded.format.name(),
             report,
+            contents,
             warnings: loaded.warnings,
         });
     }
@@ -105,6 +108,21 @@ fn text(out: &mut dyn Write, facts: &Facts) -> std::io::Result<()> {
     }
     if r.volume.is_some_and(|v| v < 0.0) {
         writeln!(out, "  inside out")?;
+    }
+    let has = &facts.contents;
+    for (names, what) in [(&has.names, "objects"), (&has.materials, "materials")] {
+        if !names.is_empty() {
+            writeln!(out, "  {what}: {}", names.join(", "))?;
+        }
+    }
+    let parts = [
+        (has.colours, "colours of vertices"),
+        (has.texture_coordinates, "texture coordinates"),
+        (has.morph_targets > 0, "morph targets"),
+    ];
+    let parts: Vec<&str> = parts.iter().filter(|p| p.0).map(|p| p.1).collect();
+    if !parts.is_empty() {
+        writeln!(out, "  with {}", parts.join(", "))?;
     }
     facts.warnings.iter().try_for_each(|w| writeln!(out, "  warning: {w}"))
 }

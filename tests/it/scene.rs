@@ -140,14 +140,19 @@ fn objects_are_added_moved_combined_and_written_by_request() {
     assert_eq!(split["objects"], 2);
     assert_eq!(names(&run.objects()), ["slot", "object 1", "object 2"]);
 
-    // glTF keeps the nodes.
+    // glTF keeps the nodes, below one that turns millimetres into the format's metres.
     let glb = dir.path().join("scene.gltf");
     run.ask("export", json!({ "path": glb, "objects": "all" }));
     #[allow(clippy::disallowed_methods)] // Nobody reads half of it.
     let text = std::fs::read(&glb).expect("there");
     let json: Value = serde_json::from_slice(&text).expect("JSON");
     let nodes: Vec<&Value> = json["nodes"].as_array().expect("nodes").iter().collect();
-    assert_eq!(nodes.len(), 3);
+    assert_eq!(nodes.len(), 4);
+    assert_eq!(json["scenes"][0]["nodes"], json!([3]));
+    assert_eq!(
+        (&nodes[3]["scale"], &nodes[3]["children"]),
+        (&json!([0.001, 0.001, 0.001]), &json!([0, 1, 2]))
+    );
     assert_eq!(
         (&nodes[0]["name"], &nodes[0]["translation"]),
         (&json!("slot"), &json!([1.0, 0.0, 0.0]))

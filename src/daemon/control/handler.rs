@@ -46,7 +46,7 @@ use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
 use sculptd_engine::stroke::CurveAction;
-use sculptd_geometry::io::{read_mesh_within, read_regular};
+use sculptd_geometry::io::{read_in_millimetres, read_regular};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::repair;
 
@@ -541,7 +541,7 @@ impl Handler for Host {
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {
         safe(&params.path)?;
         let place = self.jobs.begin_operation()?;
-        let read = read_mesh_within(&params.path, MAX_MESH_FILE, &place.job);
+        let read = read_in_millimetres(&params.path, MAX_MESH_FILE, &place.job);
         let mut tool = read.map_err(failed)?.mesh;
         repair::weld(&mut tool, 0.0);
         tool.positions.iter_mut().for_each(|x| *x += glam::DVec3::from(params.at));

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 pub use super::names::works;
 use super::names::{number, sent};
-use sculptd_geometry::io::{write_beside, write_mesh};
+use sculptd_geometry::io::{SceneMesh, write_beside, write_scene};
 use sculptd_geometry::picture::{self, Camera, Picture};
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -46,7 +46,9 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
-    write_mesh(&path, mesh).map_err(std::io::Error::other)?;
+    let work =
+        SceneMesh { mesh: mesh.clone(), name: format!("work {next}"), ..SceneMesh::default() };
+    write_scene(&path, &[work]).map_err(std::io::Error::other)?;
     if let Err(e) = draw(&path.with_extension("png"), mesh) {
         tracing::error!("{}: no picture of it is written: {e}", path.display());
     }

@@ -7,6 +7,7 @@
 //! the line or byte where the format has one, the expected and the found content.
 
 pub mod beside;
+mod contents;
 mod format;
 #[cfg(test)]
 mod formats;
@@ -24,22 +25,25 @@ mod threemf;
 #[cfg(test)]
 mod variants;
 mod write;
-mod write_packed;
+mod write_gltf;
 mod write_scene;
+mod write_threemf;
 
 use std::borrow::Cow;
 use std::path::Path;
 
 pub use beside::write_beside;
+pub use contents::FileContents;
 pub use format::MeshFormat;
 pub use morph::{MorphTarget, MorphedMesh};
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
-pub use write::{encode, left_out, lost, rounding, writable_format, write_mesh};
+pub use write::{encode, left_out, lost, rounding, states_unit, writable_format, write_mesh};
 pub use write_scene::{SceneMesh, merged, write_scene};
 
 use super::PolyMesh;
 use crate::job::Job;
+use gltf::GltfUnit;
 
 /// Longest file that is read: what needs more memory than a workstation has is refused before it is
 /// taken.
@@ -48,7 +52,7 @@ pub const MAX_FILE: u64 = 16 << 30;
 /// A mesh from a file.
 #[derive(Debug, Clone)]
 pub struct LoadedMesh {
-    /// The mesh, with the file's coordinates as they stand.
+    /// The mesh, with the file's coordinates as they stand; in millimetres from 3MF.
     pub mesh: PolyMesh,
     /// The format detected in the file.
     pub format: MeshFormat,
@@ -62,11 +66,20 @@ pub struct LoadedMesh {
 /// in single precision too, every face has at least three corners, every index is in range; nothing
 /// else is promised: it may be open, crossed or inside out ([`super::check::report`] tells).
 pub fn read_mesh(path: &Path, job: &Job) -> Result<LoadedMesh, ReadError> {
-    read_mesh_within(path, MAX_FILE, job)
+    read_within(path, MAX_FILE, (GltfUnit::AsTheyStand, job))
 }
 
-/// As [`read_mesh`], of at most `limit` bytes.
-pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh, ReadError> {
+/// As [`read_mesh`], of at most `limit` bytes and in millimetres: glTF has metres. A glTF file that
+/// this program wrote has its numbers in millimetres, with or without a node that converts them.
+pub fn read_in_millimetres(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh, ReadError> {
+    read_within(path, limit, (GltfUnit::Millimetres, job))
+}
+
+fn read_within(
+    path: &Path,
+    limit: u64,
+    (unit, job): (GltfUnit, &Job),
+) -> Result<LoadedMesh, ReadError> {
     let bytes = read_regular(path, limit).map_err(|source| match source.kind() {
         std::io::ErrorKind::FileTooLarge => {
             let problem = FileProblem::new(
@@ -79,11 +92,28 @@ pub fn read_mesh_within(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh
         _ => ReadError::Io { path: path.into(), source },
     })?;
     job.progress(0.1);
-    parse(&bytes, path, job).map_err(|stop| stop.of_file(path))
+    parse_in(&bytes, path, (unit, job)).map_err(|stop| stop.of_file(path))
 }
 
 /// The mesh in `bytes`; `name` gives the extension.
 pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseError> {
+    parse_in(bytes, name, (GltfUnit::AsTheyStand, job))
+}
+
+/// As [`parse`], in millimetres ([`read_in_millimetres`]).
+pub fn parse_in_millimetres(
+    bytes: &[u8],
+    name: &Path,
+    job: &Job,
+) -> Result<LoadedMesh, ParseError> {
+    parse_in(bytes, name, (GltfUnit::Millimetres, job))
+}
+
+fn parse_in(
+    bytes: &[u8],
+    name: &Path,
+    (unit, job): (GltfUnit, &Job),
+) -> Result<LoadedMesh, ParseError> {
     let extension = extension(name);
     if bytes.is_empty() {
         return Err(FileProblem::new(FilePlace::Byte(0), "a mesh", "an empty file").into());
@@ -105,9 +135,9 @@ pub fn parse(bytes: &[u8], name: &Path, job: &Job) -> Result<LoadedMesh, ParseEr
                 FileProblem::new(FilePlace::Byte(0), "\"glTF\"", problem::excerpt(bytes)).into()
             );
         }
-        (gltf::parse(bytes, name, &mut warnings, &mut targets, job)?, MeshFormat::Glb)
+        (gltf::parse(bytes, name, &mut warnings, &mut targets, (unit, job))?, MeshFormat::Glb)
     } else if text.trim_ascii_start().starts_with(b"{") || is("gltf") {
-        (gltf::parse(text, name, &mut warnings, &mut targets, job)?, MeshFormat::Gltf)
+        (gltf::parse(text, name, &mut warnings, &mut targets, (unit, job))?, MeshFormat::Gltf)
     } else if bytes.starts_with(b"PK\x03\x04") || is("3mf") {
         (threemf::parse(bytes, &mut warnings, job)?, MeshFormat::ThreeMf)
     } else if off::header(text).is_some() || is("off") {

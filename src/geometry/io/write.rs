@@ -1,14 +1,15 @@
 //! Meshes to files. What a format cannot hold is lost there and stays here: STL holds triangles in
-//! single precision and no colours; OBJ alone holds groups, texture coordinates and the names of
-//! materials; [`left_out`] says which.
+//! single precision and no colours; OBJ and glTF alone hold groups and the names of materials;
+//! [`left_out`] says which.
 
 use std::io::{self, Write};
 use std::path::Path;
 
 use glam::DVec3;
 
-use super::write_packed::GltfMesh;
-use super::{WriteError, extension, write_beside, write_packed};
+use super::gltf::GltfUnit::AsTheyStand;
+use super::write_gltf::{self, GltfMesh};
+use super::{WriteError, extension, write_beside, write_threemf};
 use crate::face_attributes::NO_UV;
 use crate::{GroupName, PolyMesh};
 
@@ -22,6 +23,11 @@ pub fn writable_format(path: &Path) -> Result<&'static str, WriteError> {
         .into_iter()
         .find(|e| *e == kind)
         .ok_or_else(|| WriteError::Extension { path: path.into() })
+}
+
+/// Returns true if the format that the extension of `path` names states its unit.
+pub fn states_unit(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "glb" | "gltf" | "3mf")
 }
 
 /// Writes `mesh` in the format that the extension of `path` names, whole or not at all
@@ -40,9 +46,9 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "stl" => stl(mesh, out),
         "ply" => ply(mesh, out),
         "off" => off(mesh, out),
-        "glb" => write_packed::glb(&[GltfMesh::bare(mesh)], out),
-        "gltf" => write_packed::gltf(&[GltfMesh::bare(mesh)], out),
-        "3mf" => write_packed::threemf(mesh, out),
+        "glb" => write_gltf::glb(&[GltfMesh::bare(mesh)], AsTheyStand, out),
+        "gltf" => write_gltf::gltf(&[GltfMesh::bare(mesh)], AsTheyStand, out),
+        "3mf" => write_threemf::threemf(mesh, out),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("no mesh format is called \"{kind}\""),
@@ -83,14 +89,18 @@ pub fn lost(kind: &str, mesh: &PolyMesh) -> Vec<String> {
     if mesh.colours.is_some() && kind == "stl" {
         out.push(format!("the vertices' colours are left out: .{kind} is written without"));
     }
-    if mesh.groups.is_some() && kind != "obj" {
+    let named = matches!(kind, "obj" | "glb" | "gltf");
+    if mesh.groups.is_some() && !named {
         out.push(format!("the groups of faces are left out: .{kind} is written without"));
     }
-    if mesh.has_materials() && kind != "obj" {
+    if mesh.has_materials() && !named {
         out.push(format!("the names of materials are left out: .{kind} is written without"));
     }
-    if mesh.uvs().is_some() && kind != "obj" {
+    if mesh.uvs().is_some() && !named && kind != "ply" {
         out.push(format!("the texture coordinates are left out: .{kind} is written without"));
+    }
+    if mesh.attributes.as_ref().is_some_and(|a| !a.libraries.is_empty()) && kind != "obj" {
+        out.push(format!("the names of material files are left out: .{kind} is written without"));
     }
     out
 }
@@ -206,7 +216,8 @@ fn stl(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Little-endian; coordinates in single precision where that loses nothing.
+/// Little-endian; coordinates in single precision where that loses nothing. Texture coordinates
+/// stand with the faces, two for each corner, as MeshLab writes them.
 fn ply(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     let single = mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
     let kind = if single { "float" } else { "double" };
@@ -219,13 +230,15 @@ fn ply(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
             writeln!(out, "property uchar {c}")?;
         }
     }
-    let long = mesh.faces().any(|f| f.len() > 255);
+    let most = if mesh.uvs().is_some() { 127 } else { 255 };
+    let long = mesh.faces().any(|f| f.len() > most);
     let count = if long { "uint" } else { "uchar" };
-    writeln!(
-        out,
-        "element face {}\nproperty list {count} int vertex_indices\nend_header",
-        mesh.face_count()
-    )?;
+    writeln!(out, "element face {}\nproperty list {count} int vertex_indices", mesh.face_count())?;
+    let uvs = mesh.uvs();
+    if uvs.is_some() {
+        writeln!(out, "property list {count} double texcoord")?;
+    }
+    writeln!(out, "end_header")?;
     let mut row = Vec::with_capacity(64);
     for (v, p) in mesh.positions.iter().enumerate() {
         row.clear();
@@ -241,15 +254,24 @@ fn ply(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         }
         out.write_all(&row)?;
     }
-    for corners in mesh.faces() {
+    let length = |row: &mut Vec<u8>, n: usize| match long {
+        true => row.extend_from_slice(&(n as u32).to_le_bytes()),
+        false => row.push(n as u8),
+    };
+    for (f, corners) in mesh.faces().enumerate() {
         row.clear();
-        if long {
-            row.extend_from_slice(&(corners.len() as u32).to_le_bytes());
-        } else {
-            row.push(corners.len() as u8);
-        }
+        length(&mut row, corners.len());
         for &c in corners {
             row.extend_from_slice(&c.to_le_bytes());
+        }
+        if let Some((values, of)) = uvs {
+            let own = &of[mesh.face_starts[f] as usize..][..corners.len()];
+            // A face without has an empty list.
+            let own = if own.contains(&NO_UV) { &[][..] } else { own };
+            length(&mut row, own.len() * 2);
+            for value in own.iter().flat_map(|n| values[*n as usize]) {
+                row.extend_from_slice(&value.to_le_bytes());
+            }
         }
         out.write_all(&row)?;
     }

@@ -6,8 +6,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::gltf::GltfUnit::Millimetres;
 use super::write::{encode, left_out, writable_format};
-use super::write_packed::{self, GltfMesh, ThreeMfPart};
+use super::write_gltf::{self, GltfMesh};
+use super::write_threemf::{self, ThreeMfPart};
 use super::{MorphedMesh, WriteError, write_beside};
 use crate::face_attributes::NO_UV;
 use crate::{FaceAttributes, GroupName, PolyMesh};
@@ -29,6 +31,19 @@ pub struct SceneMesh {
     pub morphed: Option<MorphedMesh>,
 }
 
+impl Default for SceneMesh {
+    fn default() -> Self {
+        SceneMesh {
+            name: String::new(),
+            mesh: PolyMesh::new(),
+            shift: DVec3::ZERO,
+            turn: DQuat::IDENTITY,
+            scale: 1.0,
+            morphed: None,
+        }
+    }
+}
+
 impl SceneMesh {
     /// Makes it and its distance from the world's origin larger by this factor.
     pub fn enlarge(&mut self, factor: f64) {
@@ -46,9 +61,11 @@ impl SceneMesh {
     }
 }
 
-/// Writes several meshes in the format that the extension of `path` names, whole or not at all.
+/// Writes several meshes, in millimetres, in the format that the extension of `path` names, whole or
+/// not at all.
 /// Returns the parts that the file does not hold, one sentence each. glTF keeps each mesh as a node
-/// with its name and its transform, 3MF as a component of one object. Every other format gets one
+/// with its name and its transform, in metres by one node above them, 3MF as a component of one
+/// object. Every other format gets one
 /// mesh with the transforms applied, the meshes one after the other; in OBJ each has its name.
 ///
 /// # Errors
@@ -68,6 +85,9 @@ fn scene_left_out(kind: &str, meshes: &[SceneMesh]) -> Vec<String> {
         }
     }
     let gltf = matches!(kind, "glb" | "gltf");
+    if gltf && meshes.iter().any(|m| m.morphed.is_some() && m.mesh.uvs().is_some()) {
+        out.push(format!("the texture coordinates are left out beside layers in .{kind}"));
+    }
     if !gltf && meshes.iter().any(|m| m.morphed.is_some()) {
         out.push(format!("the layers are part of the surface: .{kind} is written without"));
     }
@@ -85,14 +105,14 @@ fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), Wri
                 .iter()
                 .map(|m| GltfMesh {
                     mesh: &m.mesh,
-                    name: Some(&m.name),
+                    name: Some(&*m.name).filter(|name| !name.is_empty()),
                     morphed: m.morphed.as_ref(),
                     place: (!m.stands_still()).then_some((m.shift, m.turn, m.scale)),
                 })
                 .collect();
             write_beside(path, |out| match kind {
-                "glb" => write_packed::glb(&parts, out),
-                _ => write_packed::gltf(&parts, out),
+                "glb" => write_gltf::glb(&parts, Millimetres, out),
+                _ => write_gltf::gltf(&parts, Millimetres, out),
             })
             .map_err(failed)
         }
@@ -106,7 +126,7 @@ fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), Wri
                     shift: m.shift,
                 })
                 .collect();
-            write_beside(path, |out| write_packed::threemf_parts(&parts, out)).map_err(failed)
+            write_beside(path, |out| write_threemf::threemf_parts(&parts, out)).map_err(failed)
         }
         _ => {
             let mesh = merged(meshes);
@@ -194,7 +214,7 @@ fn take_uvs(all: &mut FaceAttributes, mesh: &PolyMesh, first: usize) {
 mod tests {
     use super::*;
     use crate::io::MorphTarget;
-    use crate::io::parse;
+    use crate::io::parse_in_millimetres;
     use crate::job::Job;
     use crate::shapes;
     use glam::Vec3;
@@ -248,7 +268,7 @@ mod tests {
             let path = dir.path().join(format!("layers.{ending}"));
             write_scene(&path, &all[..1]).expect("written");
             let bytes = std::fs::read(&path).expect("there");
-            let read = parse(&bytes, &path, &Job::default()).expect("readable");
+            let read = parse_in_millimetres(&bytes, &path, &Job::default()).expect("readable");
             assert_eq!(read.mesh.positions, base);
             assert_eq!(read.targets, targets);
             if ending == "gltf" {
@@ -270,7 +290,7 @@ mod tests {
             let path = dir.path().join(format!("scene.{ending}"));
             write_scene(&path, &scene()).expect("written");
             let bytes = std::fs::read(&path).expect("there");
-            let read = parse(&bytes, &path, &Job::default()).expect("readable").mesh;
+            let read = parse_in_millimetres(&bytes, &path, &Job::default()).expect("readable").mesh;
             let bounds = |mesh: &PolyMesh| {
                 let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
                 mesh.positions.iter().fold(none, |(lo, hi), p| (lo.min(*p), hi.max(*p)))
@@ -283,7 +303,11 @@ mod tests {
                 assert_eq!(json["nodes"][0].get("translation"), None);
                 assert_eq!(json["nodes"][1]["translation"][0], 10.0);
                 assert_eq!(json["nodes"][1]["scale"], serde_json::json!([0.5, 0.5, 0.5]));
-                assert_eq!(json["scenes"][0]["nodes"], serde_json::json!([0, 1]));
+                assert_eq!(json["scenes"][0]["nodes"], serde_json::json!([2]));
+                // Other programs see metres.
+                let metres =
+                    crate::io::parse(&bytes, &path, &Job::default()).expect("readable").mesh;
+                assert!((bounds(&metres).1 * 1e3 - bounds(&read).1).length() < 1e-5);
             }
         }
     }

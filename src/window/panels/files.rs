@@ -1,11 +1,12 @@
 //! Opening, saving, pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::rows;
 use super::state::{Action, UNITS, UiRequest, UiState, View};
 use super::theme;
 use crate::language::tr;
+use sculptd_geometry::io::states_unit;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
@@ -49,15 +50,21 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         let label = ui.label(tr!("files-scale"));
         ui.add(egui::DragValue::new(&mut files.scale).range(1e-6..=1e6).speed(0.01))
             .labelled_by(label.id);
-        let unit = egui::ComboBox::from_label(tr!("files-unit")).width(60.0);
-        unit.selected_text(tr!(files.factor().1)).show_ui(ui, |ui| {
-            for (i, (name, _)) in UNITS.iter().enumerate() {
-                ui.selectable_value(&mut files.unit, i, tr!(name));
-            }
+        let choice = !states_unit(Path::new(files.export.trim()));
+        ui.add_enabled_ui(choice, |ui| {
+            let unit = egui::ComboBox::from_label(tr!("files-unit")).width(60.0);
+            unit.selected_text(tr!(files.factor(Path::new(files.export.trim())).1)).show_ui(
+                ui,
+                |ui| {
+                    for (i, (name, _)) in UNITS.iter().enumerate() {
+                        ui.selectable_value(&mut files.unit, i, tr!(name));
+                    }
+                },
+            );
         });
     });
     let (lo, hi) = view.state.mesh.bounds();
-    let (factor, unit) = files.factor();
+    let (factor, unit) = files.factor(Path::new(files.export.trim()));
     let size = (hi - lo).max(glam::Vec3::ZERO).as_dvec3() * factor;
     let [x, y, z] = size.to_array().map(|n| format!("{n:.3}"));
     ui.colored_label(quiet, tr!("scene-size", x = x, y = y, z = z, unit = tr!(unit)));

@@ -51,7 +51,7 @@ impl WindowState {
             }
             UiRequest::ListFolder(folder) => self.tasks.list(folder),
             UiRequest::Export(path) => {
-                let (factor, unit) = self.ui_state.files.factor();
+                let (factor, unit) = self.ui_state.files.factor(&path);
                 self.tasks.export(path, state, factor, unit);
             }
             UiRequest::Join(choice) => {

@@ -50,7 +50,7 @@ use sculptd_engine::scene::{
     FaceAlignment, NewObject, ObjectId, ObjectSource, ObjectTransform, Primitive, SceneCommand,
     SceneError,
 };
-use sculptd_geometry::io::{MAX_FILE, read_mesh_within, write_beside, write_scene};
+use sculptd_geometry::io::{MAX_FILE, read_in_millimetres, write_beside, write_scene};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::projection;
 use sculptd_geometry::projection::PlaneRegion;
@@ -106,7 +106,7 @@ fn read_and_build(
     say: &cc::Sender<TaskReport>,
     tell: &dyn Fn(&str),
 ) -> Result<startup::Loaded, startup::StartupError> {
-    let loaded = read_mesh_within(path, MAX_FILE, &load.read)?;
+    let loaded = read_in_millimetres(path, MAX_FILE, &load.read)?;
     let (plain, _) = loaded.mesh.triangulate();
     polygons::remember(loaded.mesh, &plain);
     load.read.progress(1.0);

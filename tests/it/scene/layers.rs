@@ -1,7 +1,9 @@
 //! Layers by the control protocol of a running loop, in files and in sessions.
 
 use glam::{DVec3, Vec3};
-use sculptd_geometry::io::{MorphTarget, MorphedMesh, SceneMesh, write_scene};
+use sculptd_geometry::io::{
+    MAX_FILE, MorphTarget, MorphedMesh, SceneMesh, read_in_millimetres, write_scene,
+};
 
 use super::*;
 
@@ -70,7 +72,7 @@ fn layers_come_from_a_file_are_edited_by_request_and_leave_again() {
     // The export equals the import.
     let out = dir.path().join("out.gltf");
     run.ask("export", json!({ "path": out, "objects": "active" }));
-    let read = read_mesh(&out, &Job::default()).expect("readable");
+    let read = read_in_millimetres(&out, MAX_FILE, &Job::default()).expect("readable");
     assert_eq!(read.targets, wanted.targets);
     let near = |a: &DVec3, b: &DVec3| (*a - *b).length() < 1e-6;
     assert!(read.mesh.positions.iter().zip(&wanted.base).all(|(a, b)| near(a, b)));

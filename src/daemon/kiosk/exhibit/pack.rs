@@ -9,7 +9,7 @@ use super::score::Goal;
 use super::{Exhibit, ExhibitStep, MANIFEST, Manifest, PICTURE};
 use crate::kiosk::gallery::portrait;
 use sculptd_geometry::TriMesh;
-use sculptd_geometry::io::{encode, parse, write_beside};
+use sculptd_geometry::io::{encode, parse_in_millimetres, write_beside};
 use sculptd_geometry::job::Job;
 
 /// Most bytes of one file of a pack, unpacked.
@@ -47,7 +47,7 @@ fn assemble(
     for file in goals.chain([&manifest.start]) {
         if !meshes.contains_key(file) {
             let path = Path::new(file);
-            let loaded = parse(&read(file)?, path, job);
+            let loaded = parse_in_millimetres(&read(file)?, path, job);
             let loaded = loaded.map_err(|e| e.of_file(path).to_string())?;
             let mesh = loaded.mesh.triangulate().0;
             let found = mesh.triangles.len();

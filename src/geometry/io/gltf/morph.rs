@@ -26,9 +26,12 @@ impl GltfFile<'_> {
         let source = &root.meshes[mesh];
         let counts = source.primitives.iter().filter_map(|p| p.targets.as_ref()).map(Vec::len);
         let count = counts.max().unwrap_or(0).min(MAX_TARGETS);
+        let extras = source.extras.as_ref().filter(|_| count > 0);
+        let extras: serde_json::Value =
+            extras.and_then(|e| serde_json::from_str(e.get()).ok()).unwrap_or_default();
         for k in 0..count {
             let Some(mut offsets) = self.target(mesh, k, starts, of) else {
-                self.unread_targets += 1;
+                self.left_out.targets += 1;
                 continue;
             };
             offsets.sort_by_key(|o| o.0);
@@ -39,7 +42,6 @@ impl GltfFile<'_> {
             };
             let offsets = offsets.into_iter().filter_map(placed).collect();
             let weight = source.weights.as_ref().and_then(|w| w.get(k).copied()).unwrap_or(0.0);
-            let extras = &self.extras["meshes"][mesh]["extras"];
             let (name, own) = (extras["targetNames"][k].as_str(), &extras["sculptdLayers"][k]);
             let target = MorphTarget {
                 name: name.map_or_else(|| format!("target {}", k + 1), str::to_owned),
@@ -116,7 +118,7 @@ mod tests {
     use glam::Vec3;
 
     use crate::io::parse;
-    use crate::io::write_packed::base64;
+    use crate::io::write_gltf::base64;
     use crate::job::Job;
 
     /// A triangle with one target whose only offset is sparse, and one that lies past the buffer.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::super::problem::{FilePlace, FileProblem, ParseError};
 use super::builder::{PlyBuilder, colour, index_problem, place, too_many};
-use super::header::{PlyElement, PlyHeader, PlyRole, PlyScalar};
+use super::header::{self, PlyElement, PlyHeader, PlyRole, PlyScalar, ROLES};
 use crate::job::Job;
 
 /// A byte order. The two are compiled apart, so that neither asks a question a value.
@@ -117,7 +117,7 @@ fn vertices<O: ByteOrder>(
     const BLOCK: usize = 1 << 14;
     let end = fixed_end(bytes, at, element)?;
     let stride = element.least();
-    let mut plan = [None; 7];
+    let mut plan = [None; ROLES.len()];
     let mut offset = 0;
     for (p, role) in element.properties.iter().zip(element.roles()) {
         if let Some(role) = role {
@@ -135,21 +135,30 @@ fn vertices<O: ByteOrder>(
     } else {
         none.chunks_mut(1).collect()
     };
+    let textured = header.textured() && !header.textures_faces();
+    made.uvs.resize(if textured { element.count } else { 0 }, [0.0; 2]);
+    let mut no_uvs = vec![[0.0; 2]; if textured { 0 } else { element.count.div_ceil(BLOCK) }];
+    let uvs: Vec<&mut [[f64; 2]]> = if textured {
+        made.uvs.chunks_mut(BLOCK).collect()
+    } else {
+        no_uvs.chunks_mut(1).collect()
+    };
     let bad = made
         .mesh
         .positions
         .par_chunks_mut(BLOCK)
         .zip(bytes[at..end].par_chunks(BLOCK * stride))
         .zip(colours)
+        .zip(uvs)
         .enumerate()
-        .filter_map(|(block, ((positions, rows), colours))| {
+        .filter_map(|(block, (((positions, rows), colours), uvs))| {
             if job.cancelled() {
                 return Some(None);
             }
             for (n, (position, row)) in
                 positions.iter_mut().zip(rows.chunks_exact(stride)).enumerate()
             {
-                let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+                let mut values = header::values(scale);
                 for (value, step) in values.iter_mut().zip(&plan) {
                     if let Some((offset, kind)) = *step
                         && let Some(v) = number::<O>(row, offset, kind)
@@ -163,6 +172,9 @@ fn vertices<O: ByteOrder>(
                 *position = glam::DVec3::new(values[0], values[1], values[2]);
                 if coloured {
                     colours[n] = colour(&values, scale);
+                }
+                if textured {
+                    uvs[n] = [values[7], values[8]];
                 }
             }
             None
@@ -187,7 +199,8 @@ fn rows<O: ByteOrder>(
     made: &mut PlyBuilder,
     job: &Job,
 ) -> Result<usize, ParseError> {
-    let corners = element.corners();
+    let (corners, textures) = (element.corners(), element.texture_coordinates());
+    let textured = header.textured() && !header.textures_faces();
     let roles = element.roles();
     let (coloured, scale) = (header.coloured(), header.colour_scale());
     let plain =
@@ -201,7 +214,7 @@ fn rows<O: ByteOrder>(
         made.mesh.corners.reserve(element.count.saturating_mul(3).min(bytes.len()));
     }
     let count = made.mesh.positions.len();
-    let mut list: Vec<i64> = Vec::new();
+    let (mut list, mut uvs): (Vec<i64>, Vec<f64>) = (Vec::new(), Vec::new());
     for row in 0..element.count {
         if row.is_multiple_of(1 << 16) {
             job.check()?;
@@ -215,7 +228,7 @@ fn rows<O: ByteOrder>(
             made.mesh.corners.extend(indices.as_chunks::<4>().0.iter().map(|&b| O::u32(b)));
             at += 1 + n * 4;
         } else {
-            let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+            let mut values = header::values(scale);
             for (p, property) in element.properties.iter().enumerate() {
                 let wanted = corners == Some(p);
                 let Some(count_kind) = property.list else {
@@ -245,6 +258,11 @@ fn rows<O: ByteOrder>(
                     return Err(row_ended(bytes, element, row));
                 };
                 at += items.len();
+                if textures == Some(p) {
+                    uvs.clear();
+                    let value = |i: usize| number::<O>(items, i * size, property.kind);
+                    uvs.extend((0..n as usize).filter_map(value));
+                }
                 if !wanted {
                     continue;
                 }
@@ -268,7 +286,7 @@ fn rows<O: ByteOrder>(
                     )
                     .into());
                 }
-                made.vertex(&values, coloured, scale);
+                made.vertex(&values, (coloured, scale), textured);
             }
         }
         if made.mesh.corners.len() >= u32::MAX as usize {
@@ -279,6 +297,9 @@ fn rows<O: ByteOrder>(
             PlyRole::Face if corners.is_some() => {
                 made.face(first, count)
                     .map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
+                if textures.is_some() {
+                    made.textures(first, &uvs);
+                }
             }
             PlyRole::Strips if corners.is_some() => {
                 made.strip(&list, count).map_err(|bad| index_problem(here, bad, count))?;

@@ -4,14 +4,18 @@ use glam::DVec3;
 
 use super::super::problem::{FilePlace, FileProblem};
 use super::super::text::refuse;
-use super::header::PlyHeader;
-use crate::PolyMesh;
+use super::header::{PlyHeader, PlyValues};
+use crate::face_attributes::NO_UV;
+use crate::{FaceAttributes, PolyMesh};
 
 /// The mesh as it grows, whatever the encoding.
 #[derive(Default)]
 pub(super) struct PlyBuilder {
     pub(super) mesh: PolyMesh,
     pub(super) colours: Vec<[u8; 4]>,
+    /// Texture coordinates: of the vertices, or of the corners by `uv_corners`.
+    pub(super) uvs: Vec<[f64; 2]>,
+    pub(super) uv_corners: Vec<u32>,
     pub(super) short: u64,
 }
 
@@ -19,11 +23,51 @@ impl PlyBuilder {
     /// One vertex of the values of [`super::header::ROLES`]. `scale`: 1 where colours are bytes,
     /// 255 where they are 0 to 1, and so on.
     #[inline]
-    pub(super) fn vertex(&mut self, values: &[f64; 7], coloured: bool, scale: f64) {
+    pub(super) fn vertex(
+        &mut self,
+        values: &PlyValues,
+        (coloured, scale): (bool, f64),
+        textured: bool,
+    ) {
         self.mesh.positions.push(DVec3::new(values[0], values[1], values[2]));
         if coloured {
             self.colours.push(colour(values, scale));
         }
+        if textured {
+            self.uvs.push([values[7], values[8]]);
+        }
+    }
+
+    /// Gives the corners of a face, pushed from `first` on and closed, two values each; none where
+    /// there are not as many.
+    pub(super) fn textures(&mut self, first: usize, values: &[f64]) {
+        let count = self.mesh.corners.len() - first;
+        self.uv_corners.resize(first, NO_UV);
+        let (pairs, _) = values.as_chunks::<2>();
+        if pairs.len() == count && values.iter().all(|v| v.is_finite()) {
+            let from = self.uvs.len() as u32;
+            self.uv_corners.extend(from..from + count as u32);
+            self.uvs.extend_from_slice(pairs);
+        }
+    }
+
+    /// Returns the texture coordinates that were read.
+    pub(super) fn attributes(&mut self) -> Option<FaceAttributes> {
+        if self.uvs.is_empty() {
+            return None;
+        }
+        if self.uv_corners.is_empty() {
+            let uv = |c: &u32| {
+                let known =
+                    self.uvs.get(*c as usize).is_some_and(|uv| uv.iter().all(|v| v.is_finite()));
+                if known { *c } else { NO_UV }
+            };
+            self.uv_corners = self.mesh.corners.iter().map(uv).collect();
+        }
+        self.uv_corners.resize(self.mesh.corners.len(), NO_UV);
+        let (uvs, uv_corners) =
+            (std::mem::take(&mut self.uvs), std::mem::take(&mut self.uv_corners));
+        Some(FaceAttributes { uvs, uv_corners, ..FaceAttributes::default() })
     }
 
     /// Closes the face whose corners were pushed from `first` on. `Err` with an index that is out
@@ -61,14 +105,14 @@ impl PlyBuilder {
 }
 
 #[inline]
-pub(super) fn colour(values: &[f64; 7], scale: f64) -> [u8; 4] {
+pub(super) fn colour(values: &PlyValues, scale: f64) -> [u8; 4] {
     let byte = |v: f64| (v * scale).round().clamp(0.0, 255.0) as u8;
     [byte(values[3]), byte(values[4]), byte(values[5]), byte(values[6])]
 }
 
 /// Refuses a position that is no place.
 #[inline]
-pub(super) fn place(values: &[f64; 7]) -> Option<&'static str> {
+pub(super) fn place(values: &PlyValues) -> Option<&'static str> {
     values[..3].iter().find_map(|&v| refuse(v))
 }
 

@@ -4,7 +4,15 @@ use super::super::problem::{FilePlace, FileProblem, excerpt};
 
 /// The roles that a vertex's properties play, in the order of the values that
 /// a vertex is built from.
-pub(super) const ROLES: [&str; 7] = ["x", "y", "z", "red", "green", "blue", "alpha"];
+pub(super) const ROLES: [&str; 9] = ["x", "y", "z", "red", "green", "blue", "alpha", "u", "v"];
+
+/// The values of a vertex, by [`ROLES`].
+pub(super) type PlyValues = [f64; ROLES.len()];
+
+/// What a vertex has that its row does not say. `scale`: of its colours to bytes.
+pub(super) fn values(scale: f64) -> PlyValues {
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale, 0.0, 0.0]
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PlyEncoding {
@@ -103,6 +111,12 @@ impl PlyElement {
         named("vertex_indices").or_else(|| named("vertex_index"))
     }
 
+    /// Returns the index of the property that holds two texture coordinates for each corner.
+    pub(super) fn texture_coordinates(&self) -> Option<usize> {
+        let own = |p: &PlyProperty| p.name == "texcoord" && p.list.is_some();
+        (self.role == PlyRole::Face).then(|| self.properties.iter().position(own)).flatten()
+    }
+
     /// For each property the place among [`ROLES`] that it fills.
     pub(super) fn roles(&self) -> Vec<Option<usize>> {
         self.properties
@@ -114,6 +128,8 @@ impl PlyElement {
                     "g" => "green",
                     "b" => "blue",
                     "a" => "alpha",
+                    "s" | "s0" | "texture_u" | "texture_s" => "u",
+                    "t" | "t0" | "texture_v" | "texture_t" => "v",
                     n => n,
                 };
                 ROLES.iter().position(|r| *r == name).filter(|_| p.list.is_none())
@@ -144,16 +160,34 @@ impl PlyHeader {
         })
     }
 
+    /// Whether the vertices have texture coordinates.
+    pub(super) fn textured(&self) -> bool {
+        self.vertices().is_some_and(|e| {
+            let roles = e.roles();
+            (7..9).all(|r| roles.contains(&Some(r)))
+        })
+    }
+
+    /// Whether the corners of faces have texture coordinates.
+    pub(super) fn textures_faces(&self) -> bool {
+        let faces = self.elements.iter().find(|e| e.role == PlyRole::Face);
+        faces.is_some_and(|e| e.texture_coordinates().is_some())
+    }
+
     /// Names the data of the file that is not read, one sentence an element. Normals are not named:
     /// they follow from the surface.
     pub(super) fn unread(&self) -> Vec<String> {
         let mut out = Vec::new();
         for e in self.elements.iter().filter(|e| e.count > 0) {
             let (roles, corners) = (e.roles(), e.corners());
+            let uvs = e.texture_coordinates();
             let read = |i: usize, name: &str| match e.role {
+                PlyRole::Vertex if roles[i].is_some_and(|r| r >= 7) => {
+                    self.textured() && !self.textures_faces()
+                }
                 PlyRole::Vertex if roles[i].is_some_and(|r| r >= 3) => self.coloured(),
                 PlyRole::Vertex => roles[i].is_some() || matches!(name, "nx" | "ny" | "nz"),
-                PlyRole::Face | PlyRole::Strips => corners == Some(i),
+                PlyRole::Face | PlyRole::Strips => corners == Some(i) || uvs == Some(i),
                 PlyRole::Other => false,
             };
             let names = e.properties.iter().enumerate().filter(|(i, p)| !read(*i, &p.name));

@@ -1,5 +1,5 @@
 //! PLY: text, little-endian and big-endian; any elements and properties in any order; lists;
-//! colours.
+//! colours; texture coordinates of vertices or of corners.
 //!
 //! Own code, so that errors name their byte or line, counts are checked before memory is taken, and
 //! double precision and polygons are kept. The header becomes a plan (offset and type of the few
@@ -9,6 +9,8 @@ mod binary;
 mod builder;
 mod header;
 mod text;
+
+use std::sync::Arc;
 
 use super::format::MeshFormat;
 use super::problem::ParseError;
@@ -43,7 +45,9 @@ pub(super) fn parse(
         warnings.push(format!("{} faces of fewer than three corners left out", made.short));
     }
     warnings.extend(header.unread());
+    let attributes = made.attributes();
     let mut mesh = made.mesh;
+    mesh.attributes = attributes.map(Arc::new);
     if header.coloured() {
         mesh.colours = Some(made.colours);
     }

@@ -3,7 +3,7 @@
 use super::super::problem::{FilePlace, FileProblem, ParseError};
 use super::super::text::{TextCursor, float, unexpected};
 use super::builder::{PlyBuilder, index_problem, place, too_many};
-use super::header::{PlyHeader, PlyRole};
+use super::header::{self, PlyHeader, PlyRole};
 use crate::job::Job;
 
 pub(super) fn read(
@@ -21,7 +21,8 @@ pub(super) fn read(
     };
     let mut cursor = TextCursor::new(text);
     let (coloured, scale) = (header.coloured(), header.colour_scale());
-    let mut list: Vec<i64> = Vec::new();
+    let textured = header.textured() && !header.textures_faces();
+    let (mut list, mut uvs): (Vec<i64>, Vec<f64>) = (Vec::new(), Vec::new());
     let rows: usize = header.elements.iter().map(|e| e.count).sum();
     let filled = |line: &&[u8]| !line.trim_ascii().is_empty();
     // Where there are as many lines as rows, a row is a line, and a number that is missing is not
@@ -29,7 +30,7 @@ pub(super) fn read(
     let by_line = text.split(|b| *b == b'\n').filter(filled).count() == rows;
     for element in &header.elements {
         let roles = element.roles();
-        let corners = element.corners();
+        let (corners, textures) = (element.corners(), element.texture_coordinates());
         match element.role {
             PlyRole::Vertex => {
                 made.mesh.positions.reserve_exact(element.count);
@@ -48,7 +49,8 @@ pub(super) fn read(
                 job.check()?;
                 job.progress(cursor.at as f32 / text.len() as f32);
             }
-            let mut values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale];
+            let mut values = header::values(scale);
+            uvs.clear();
             let first = made.mesh.corners.len();
             if by_line {
                 cursor.skip_blanks();
@@ -95,6 +97,8 @@ pub(super) fn read(
                         made.mesh.corners.push(if whole { v as u32 } else { u32::MAX });
                     } else if wanted {
                         list.push(v as i64);
+                    } else if textures == Some(p) {
+                        uvs.push(v);
                     }
                 }
                 if made.mesh.corners.len() >= u32::MAX as usize {
@@ -119,11 +123,14 @@ pub(super) fn read(
                     if let Some(found) = place(&values) {
                         return Err(shift(FileProblem::new(line(), "a finite coordinate", found)));
                     }
-                    made.vertex(&values, coloured, scale);
+                    made.vertex(&values, (coloured, scale), textured);
                 }
                 PlyRole::Face if corners.is_some() => {
                     made.face(first, vertices)
                         .map_err(|bad| shift(index_problem(line(), bad as i64, vertices)))?;
+                    if textures.is_some() {
+                        made.textures(first, &uvs);
+                    }
                 }
                 PlyRole::Strips if corners.is_some() => {
                     made.strip(&list, vertices)

@@ -1,4 +1,7 @@
-//! The objects of the build list as one mesh.
+//! The objects of the build list as one mesh. Each mesh that is placed is a group, named by its
+//! object, or by the object around it.
+
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
@@ -7,7 +10,7 @@ use crate::io::gltf::MAX_INSTANCED;
 use crate::io::problem::FilePlace;
 use crate::io::text::refuse;
 use crate::job::Job;
-use crate::{PolyMesh, repair};
+use crate::{FaceAttributes, GroupName, PolyMesh, repair};
 
 /// Colour of vertices without one in a mesh where others have one.
 const WHITE: [u8; 4] = [255; 4];
@@ -66,19 +69,13 @@ pub(super) fn assemble(
     job: &Job,
 ) -> Result<PolyMesh, ParseError> {
     let mut out = PolyMesh::new();
-    let mut groups = Vec::new();
-    let mut todo: Vec<(&PartName, DMat4, usize, u32)> = package
-        .build
-        .iter()
-        .enumerate()
-        .rev()
-        .map(|(n, (name, t))| {
-            (name, DMat4::from_scale(DVec3::splat(package.unit)) * *t, 0, n as u32)
-        })
-        .collect();
-    let mut visits = 0usize;
+    let (mut groups, mut names) = (Vec::new(), Vec::new());
+    let unit = DMat4::from_scale(DVec3::splat(package.unit));
+    let mut todo: Vec<(&PartName, DMat4, usize, &str)> =
+        package.build.iter().rev().map(|(name, t)| (name, unit * *t, 0, "")).collect();
+    let (mut visits, mut supports) = (0usize, 0usize);
     let mut colours = VertexColours::default();
-    while let Some((name, place, depth, group)) = todo.pop() {
+    while let Some((name, place, depth, around)) = todo.pop() {
         job.check()?;
         visits += 1;
         let Some(object) = package.objects.get(name) else {
@@ -102,6 +99,10 @@ pub(super) fn assemble(
                 "more",
             ));
         }
+        if object.support {
+            supports += 1;
+            continue;
+        }
         let base = out.positions.len() as u32;
         for p in &object.mesh.positions {
             let q = place.transform_point3(*p);
@@ -117,17 +118,29 @@ pub(super) fn assemble(
             repair::flip(&mut part);
         }
         part.faces().for_each(|f| out.push_face(f));
-        groups.resize(out.face_count(), group);
-        todo.extend(object.components.iter().rev().map(|(n, t)| (n, place * *t, depth + 1, group)));
+        let called = if object.name.is_empty() { around } else { object.name.as_str() };
+        if out.face_count() > groups.len() {
+            groups.resize(out.face_count(), names.len() as u32);
+            names.push(GroupName { object: called.to_owned(), ..GroupName::default() });
+        }
+        let components = object.components.iter().rev();
+        todo.extend(components.map(|(n, t)| (n, place * *t, depth + 1, called)));
     }
     if out.face_count() == 0 {
-        let found = match package.beams {
-            0 => "none".to_owned(),
-            beams => format!("none, but {beams} beams of a beam lattice, which are not read"),
+        let found = match (package.beams, supports) {
+            (0, 0) => "none".to_owned(),
+            (0, _) => format!("none, but {supports} supports, which are no part"),
+            (beams, _) => format!("none, but {beams} beams of a beam lattice, which are not read"),
         };
         return Err(bad(FilePlace::File, "an object with triangles in the build list", found));
     }
+    if supports > 0 {
+        warnings.push(format!("{supports} supports left out"));
+    }
     out.colours = colours.of(out.positions.len(), warnings);
-    out.groups = groups.windows(2).any(|w| w[0] != w[1]).then_some(groups);
+    let named = names.iter().any(|n| *n != GroupName::default());
+    out.groups = (named || names.len() > 1).then_some(groups);
+    out.attributes =
+        named.then(|| Arc::new(FaceAttributes { groups: names, ..FaceAttributes::default() }));
     Ok(out)
 }

@@ -37,6 +37,10 @@ struct ThreemfObject {
     colours: Vec<[Option<[u8; 4]>; 3]>,
     /// An object of the type `other` is never built.
     other: bool,
+    /// Material that carries the part while it is printed, and is no part of it.
+    support: bool,
+    /// For people; may be empty.
+    name: String,
 }
 
 #[derive(Default)]
@@ -48,6 +52,8 @@ struct ThreemfPackage {
     /// Groups of composite materials, multiproperties and texture coordinates.
     properties: usize,
     beams: usize,
+    /// Stacks of slices, which stand beside the mesh of an object.
+    slices: usize,
 }
 
 fn bad(at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> ParseError {
@@ -133,6 +139,9 @@ pub(super) fn parse(
     if package.beams > 0 {
         warnings.push(format!("{} beams of beam lattices left out", package.beams));
     }
+    if package.slices > 0 {
+        warnings.push(format!("{} stacks of slices left out", package.slices));
+    }
     assemble(&package, warnings, job)
 }
 
@@ -142,6 +151,12 @@ fn get(e: &BytesStart, name: &str) -> Option<String> {
         .filter_map(Result::ok)
         .find(|a| a.key.local_name().as_ref() == name)
         .map(|a| a.value.to_string())
+}
+
+/// An attribute for people, its entities resolved; empty where there is none.
+fn text_for_people(e: &BytesStart, name: &str) -> String {
+    let text = get(e, name).unwrap_or_default();
+    quick_xml::escape::unescape(&text).map_or_else(|_| text.clone(), |t| t.into_owned())
 }
 
 #[cfg(test)]

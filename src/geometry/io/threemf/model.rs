@@ -7,7 +7,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::resources::{Breach, ResourceKind, Resources, colour};
-use super::{ParseError, PartName, ThreemfObject, ThreemfPackage, bad, get};
+use super::{ParseError, PartName, ThreemfObject, ThreemfPackage, bad, get, text_for_people};
 use crate::PolyMesh;
 use crate::io::problem::FilePlace;
 use crate::io::text::{float, integer, refuse};
@@ -225,6 +225,7 @@ impl ModelPart<'_> {
             }
             "triangle" => self.triangle(e)?,
             "beam" | "ball" => self.package.beams += 1,
+            "slicestack" => self.package.slices += 1,
             "component" => {
                 let target = self.target(e)?;
                 if let Some(now) = &mut self.object {
@@ -294,6 +295,8 @@ impl ModelPart<'_> {
         let object = ThreemfObject {
             mesh: PolyMesh::new(),
             other: kind == "other",
+            support: matches!(&*kind, "support" | "solidsupport"),
+            name: text_for_people(e, "name"),
             ..ThreemfObject::default()
         };
         self.object = Some(OpenObject { id, object, property });

@@ -1,6 +1,8 @@
 //! What the files page holds: names, the scale and unit of an export, the frames of a turntable.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use sculptd_geometry::io::states_unit;
 
 /// Units of a number in a file, each with the message of its name: the object itself is in
 /// millimetres.
@@ -36,7 +38,10 @@ impl Default for FilesPage {
 
 impl FilesPage {
     /// Returns the factor of the coordinates, and the message of the unit's name.
-    pub fn factor(&self) -> (f64, &'static str) {
+    pub fn factor(&self, file: &Path) -> (f64, &'static str) {
+        if states_unit(file) {
+            return (self.scale, UNITS[0].0);
+        }
         let (name, factor) = UNITS[self.unit.min(UNITS.len() - 1)];
         (self.scale * factor, name)
     }
