@@ -273,7 +273,6 @@ impl LiveMap {
             cone: &self.axis,
             outliers: Outliers::Keep,
             correction: Correction::None,
-            acute: None,
         }
     }
 

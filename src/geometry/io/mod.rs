@@ -8,6 +8,7 @@
 
 pub mod beside;
 mod contents;
+mod face_colours;
 mod format;
 #[cfg(test)]
 mod formats;

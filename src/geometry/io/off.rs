@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::face_colours::FaceColours;
 use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
 use super::text::{TextCursor, float, integer, line_of, refuse, unexpected};
 use crate::PolyMesh;
@@ -112,12 +113,13 @@ pub(super) fn parse(
                     cursor.word();
                 }
             }
-            colours.push(colour(&mut cursor, if textured { 2 } else { 0 }));
+            colours.push(colour(&mut cursor, if textured { 2 } else { 0 }).0);
         }
         cursor.skip_line();
     }
     job.progress(0.5);
     let (mut short, mut painted) = (0u64, 0u64);
+    let mut of_faces = FaceColours::default();
     for f in 0..faces {
         if f.is_multiple_of(1 << 14) {
             job.check()?;
@@ -160,7 +162,12 @@ pub(super) fn parse(
             short += 1;
         } else {
             mesh.face_starts.push(mesh.corners.len() as u32);
-            painted += u64::from(cursor.word().is_some_and(|w| w[0] != b'#'));
+            let (own, words) = colour(&mut cursor, 0);
+            // A single number is a place in a list of colours that no file has.
+            painted += u64::from(words > 0 && (words < 3 || coloured));
+            if words >= 3 && !coloured {
+                mesh.corners[first..].iter().for_each(|v| of_faces.add(*v, Some(own)));
+            }
         }
         cursor.skip_line();
     }
@@ -170,7 +177,8 @@ pub(super) fn parse(
     if painted > 0 {
         warnings.push(format!("the colours of {painted} faces left out"));
     }
-    mesh.colours = coloured.then_some(colours);
+    mesh.colours =
+        if coloured { Some(colours) } else { of_faces.of(mesh.positions.len(), warnings) };
     Ok(mesh)
 }
 
@@ -190,8 +198,9 @@ fn start_of_row(cursor: &mut TextCursor) -> usize {
     }
 }
 
-/// Three or four numbers, bytes or 0 to 1: floats have a point in them.
-fn colour(cursor: &mut TextCursor, after: usize) -> [u8; 4] {
+/// Three or four numbers, bytes or 0 to 1: floats have a point in them. Returns how many there are,
+/// too.
+fn colour(cursor: &mut TextCursor, after: usize) -> ([u8; 4], usize) {
     let mut words = Vec::with_capacity(6);
     while words.len() < 6 {
         match cursor.word() {
@@ -206,5 +215,5 @@ fn colour(cursor: &mut TextCursor, after: usize) -> [u8; 4] {
         let value = float(w).unwrap_or(1.0);
         *o = (if floats { value * 255.0 } else { value }).round().clamp(0.0, 255.0) as u8;
     }
-    out
+    (out, words.len())
 }

@@ -8,6 +8,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::face_colours::FaceColours;
 use super::problem::{FilePlace, FileProblem, ParseError, excerpt};
 use super::text::{TextCursor, float, refuse, unexpected};
 use crate::PolyMesh;
@@ -122,16 +123,49 @@ pub(super) fn parse_binary(
             );
         }
     }
-    let painted = records.par_chunks_exact(RECORD).filter(|r| r[48..] != [0, 0]).count();
-    if painted > 0 || memchr::memmem::find(&bytes[..80], b"COLOR=").is_some() {
-        warnings.push(format!("colours left out: {painted} triangles have attribute bytes"));
-    }
+    let whole = memchr::memmem::find(&bytes[..80], b"COLOR=");
+    let whole = whole.and_then(|at| bytes[..80].get(at + 6..at + 10)?.try_into().ok());
     job.progress(0.3);
     let (positions, corners) =
         weld_keys(corners.len(), job, |i| corners[i].map(|b| if b == 1 << 31 { 0 } else { b }))?;
     let positions =
         positions.into_iter().map(|p| glam::Vec3::from(p.map(f32::from_bits)).as_dvec3()).collect();
-    Ok(triangles(positions, corners))
+    let mut mesh = triangles(positions, corners);
+    mesh.colours = colours(records, whole, &mesh, warnings);
+    Ok(mesh)
+}
+
+/// The colours that attribute bytes state: five bits each, red lowest where the header has the
+/// colour of the whole (Materialise Magics), blue lowest elsewhere (VisCAM). The highest bit says
+/// that there is none in the first, and that there is one in the second.
+fn colours(
+    records: &[u8],
+    whole: Option<[u8; 4]>,
+    mesh: &PolyMesh,
+    warnings: &mut Vec<String>,
+) -> Option<Vec<[u8; 4]>> {
+    let mut found = FaceColours::default();
+    let mut unread = 0u64;
+    for (record, corners) in records.chunks_exact(RECORD).zip(mesh.faces()) {
+        let bits = u16::from_le_bytes([record[48], record[49]]);
+        let part = |shift: u32| ((f32::from(bits >> shift & 31) * 255.0 / 31.0).round()) as u8;
+        let (low, middle, high) = (part(0), part(5), part(10));
+        let own = match (whole, bits >> 15) {
+            (Some(whole), 1) => Some(whole),
+            (Some(_), _) => Some([low, middle, high, 255]),
+            (None, 1) => Some([high, middle, low, 255]),
+            (None, _) => {
+                unread += u64::from(bits != 0);
+                None
+            }
+        };
+        corners.iter().for_each(|v| found.add(*v, own));
+    }
+    if unread > 0 {
+        warnings
+            .push(format!("attribute bytes of {unread} triangles left out: they are no colours"));
+    }
+    found.of(mesh.positions.len(), warnings)
 }
 
 pub(super) fn parse_ascii(

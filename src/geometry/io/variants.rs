@@ -128,7 +128,7 @@ fn what_a_file_holds_and_is_not_read_is_named() {
     for part in ["\"face\" left out: red", "1 rows of \"edge\""] {
         assert!(told.contains(part), "{told}");
     }
-    let off = OFF.replace("3 0 1 2\n", "3 0 1 2 255 0 0\n");
+    let off = OFF.replace("3 0 1 2\n", "3 0 1 2 7\n");
     assert_eq!(read("a.off", off.as_bytes()).warnings, ["the colours of 1 faces left out"]);
     let mut stl = vec![0u8; 84 + 50];
     stl[80] = 1;
@@ -138,10 +138,47 @@ fn what_a_file_holds_and_is_not_read_is_named() {
     }
     assert!(read("a.stl", &stl).warnings.is_empty());
     stl[84 + 48] = 31;
-    assert!(read("a.stl", &stl).warnings[0].starts_with("colours left out: 1 triangles"));
+    assert!(read("a.stl", &stl).warnings[0].starts_with("attribute bytes of 1 triangles left out"));
     for (name, text) in [("a.ply", PLY), ("a.off", OFF), ("a.stl", STL), ("a.obj", OBJ)] {
         assert!(read(name, text.as_bytes()).warnings.is_empty(), "{name}");
     }
+}
+
+#[test]
+fn colours_of_faces_become_colours_of_vertices() {
+    let reds = |name: &str, bytes: &[u8]| {
+        let loaded = read(name, bytes);
+        assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
+        loaded.mesh.colours.unwrap_or_else(|| panic!("{name}: no colours"))
+    };
+    let off = OFF.replace("3 0 1 2\n", "3 0 1 2 1.0 0.0 0.2\n");
+    assert_eq!(reds("a.off", off.as_bytes()), [[255, 0, 51, 255]; 3]);
+    let ply = PLY
+        .replace(
+            "indices\n",
+            "indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n",
+        )
+        .replace("3 0 1 2\n", "3 0 1 2 255 0 51\n");
+    assert_eq!(reds("a.ply", ply.as_bytes()), [[255, 0, 51, 255]; 3]);
+    let mut stl = vec![0u8; 84 + 50];
+    stl[80] = 1;
+    for (corner, axis) in [(1, 0), (2, 1)] {
+        let at = 84 + 12 + corner * 12 + axis * 4;
+        stl[at..at + 4].copy_from_slice(&1f32.to_le_bytes());
+    }
+    // Blue in the lowest bits, and the bit that says so.
+    stl[84 + 48..84 + 50].copy_from_slice(&(1u16 << 15 | 31 << 10 | 6).to_le_bytes());
+    assert_eq!(reds("a.stl", &stl), [[255, 0, 49, 255]; 3]);
+    stl[..10].copy_from_slice(b"COLOR=\xff\x00\x33\xff");
+    assert_eq!(reds("a.stl", &stl), [[255, 0, 51, 255]; 3], "the colour of the whole");
+    stl[84 + 48..84 + 50].copy_from_slice(&31u16.to_le_bytes());
+    assert_eq!(reds("a.stl", &stl), [[255, 0, 0, 255]; 3], "red in the lowest bits");
+    let two = OFF
+        .replace("3 1 0", "4 2 0")
+        .replace("3 0 1 2\n", "1 1 0\n3 0 1 2 255 0 0\n3 1 3 2 0 255 0\n");
+    let loaded = read("a.off", two.as_bytes());
+    assert_eq!(loaded.mesh.colours.expect("colours")[3], [0, 255, 0, 255]);
+    assert!(loaded.warnings[0].starts_with("2 vertices lie between"), "{:?}", loaded.warnings);
 }
 
 #[test]

@@ -21,6 +21,9 @@ pub mod check;
 pub mod colour;
 pub mod cone;
 mod edges;
+mod facing;
+#[cfg(test)]
+mod known_balls;
 #[cfg(test)]
 mod known_walls;
 pub mod least;
@@ -35,9 +38,9 @@ pub mod ray;
 pub mod ready;
 pub mod refine;
 pub mod report;
+mod rolled;
 pub mod samples;
 mod shaft;
-pub mod sharp_edges;
 pub mod summary;
 pub mod surface;
 mod valley;

@@ -203,6 +203,7 @@ fn rows<O: ByteOrder>(
     let textured = header.textured() && !header.textures_faces();
     let roles = element.roles();
     let (coloured, scale) = (header.coloured(), header.colour_scale());
+    let painted = header.face_colour_scale().filter(|_| element.role == PlyRole::Face);
     let plain =
         element.role == PlyRole::Face && corners == Some(0) && element.properties.len() == 1;
     let fast = plain.then(|| &element.properties[0]).filter(|p| {
@@ -221,6 +222,7 @@ fn rows<O: ByteOrder>(
         }
         let start = at;
         let first = made.mesh.corners.len();
+        let mut values = header::values(painted.unwrap_or(scale));
         if fast.is_some() {
             let n = *bytes.get(at).ok_or_else(|| row_ended(bytes, element, row))? as usize;
             let indices =
@@ -228,7 +230,6 @@ fn rows<O: ByteOrder>(
             made.mesh.corners.extend(indices.as_chunks::<4>().0.iter().map(|&b| O::u32(b)));
             at += 1 + n * 4;
         } else {
-            let mut values = header::values(scale);
             for (p, property) in element.properties.iter().enumerate() {
                 let wanted = corners == Some(p);
                 let Some(count_kind) = property.list else {
@@ -297,6 +298,9 @@ fn rows<O: ByteOrder>(
             PlyRole::Face if corners.is_some() => {
                 made.face(first, count)
                     .map_err(|bad| index_problem(here, bad as i32 as i64, count))?;
+                if let Some(scale) = painted {
+                    made.paint(first, &values, scale);
+                }
                 if textures.is_some() {
                     made.textures(first, &uvs);
                 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::super::face_colours::FaceColours;
 use super::super::problem::{FilePlace, FileProblem};
 use super::super::text::refuse;
 use super::header::{PlyHeader, PlyValues};
@@ -17,6 +18,7 @@ pub(super) struct PlyBuilder {
     pub(super) uvs: Vec<[f64; 2]>,
     pub(super) uv_corners: Vec<u32>,
     pub(super) short: u64,
+    pub(super) of_faces: FaceColours,
 }
 
 impl PlyBuilder {
@@ -49,6 +51,12 @@ impl PlyBuilder {
             self.uv_corners.extend(from..from + count as u32);
             self.uvs.extend_from_slice(pairs);
         }
+    }
+
+    /// Gives the corners of a face, pushed from `first` on and closed, its colour.
+    pub(super) fn paint(&mut self, first: usize, values: &PlyValues, scale: f64) {
+        let own = colour(values, scale);
+        self.mesh.corners[first..].iter().for_each(|v| self.of_faces.add(*v, Some(own)));
     }
 
     /// Returns the texture coordinates that were read.

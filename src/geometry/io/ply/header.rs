@@ -174,6 +174,15 @@ impl PlyHeader {
         faces.is_some_and(|e| e.texture_coordinates().is_some())
     }
 
+    /// The factor that scales the faces' colours to bytes, if faces alone have colours.
+    pub(super) fn face_colour_scale(&self) -> Option<f64> {
+        let faces = self.elements.iter().find(|e| e.role == PlyRole::Face)?;
+        let roles = faces.roles();
+        let whole = !self.coloured() && (3..6).all(|r| roles.contains(&Some(r)));
+        let red = roles.iter().position(|r| *r == Some(3)).filter(|_| whole)?;
+        Some(faces.properties[red].kind.colour_scale())
+    }
+
     /// Names the data of the file that is not read, one sentence an element. Normals are not named:
     /// they follow from the surface.
     pub(super) fn unread(&self) -> Vec<String> {
@@ -187,6 +196,9 @@ impl PlyHeader {
                 }
                 PlyRole::Vertex if roles[i].is_some_and(|r| r >= 3) => self.coloured(),
                 PlyRole::Vertex => roles[i].is_some() || matches!(name, "nx" | "ny" | "nz"),
+                PlyRole::Face if roles[i].is_some_and(|r| (3..7).contains(&r)) => {
+                    self.face_colour_scale().is_some()
+                }
                 PlyRole::Face | PlyRole::Strips => corners == Some(i) || uvs == Some(i),
                 PlyRole::Other => false,
             };

@@ -48,9 +48,10 @@ pub(super) fn parse(
     let attributes = made.attributes();
     let mut mesh = made.mesh;
     mesh.attributes = attributes.map(Arc::new);
-    if header.coloured() {
-        mesh.colours = Some(made.colours);
-    }
+    mesh.colours = match header.coloured() {
+        true => Some(made.colours),
+        false => made.of_faces.of(mesh.positions.len(), warnings),
+    };
     if mesh.face_starts.is_empty() {
         mesh.face_starts.push(0);
     }

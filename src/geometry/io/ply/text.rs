@@ -21,6 +21,7 @@ pub(super) fn read(
     };
     let mut cursor = TextCursor::new(text);
     let (coloured, scale) = (header.coloured(), header.colour_scale());
+    let painted = header.face_colour_scale();
     let textured = header.textured() && !header.textures_faces();
     let (mut list, mut uvs): (Vec<i64>, Vec<f64>) = (Vec::new(), Vec::new());
     let rows: usize = header.elements.iter().map(|e| e.count).sum();
@@ -49,7 +50,8 @@ pub(super) fn read(
                 job.check()?;
                 job.progress(cursor.at as f32 / text.len() as f32);
             }
-            let mut values = header::values(scale);
+            let own_scale = painted.filter(|_| element.role == PlyRole::Face);
+            let mut values = header::values(own_scale.unwrap_or(scale));
             uvs.clear();
             let first = made.mesh.corners.len();
             if by_line {
@@ -128,6 +130,9 @@ pub(super) fn read(
                 PlyRole::Face if corners.is_some() => {
                     made.face(first, vertices)
                         .map_err(|bad| shift(index_problem(line(), bad as i64, vertices)))?;
+                    if let Some(scale) = own_scale {
+                        made.paint(first, &values, scale);
+                    }
                     if textures.is_some() {
                         made.textures(first, &uvs);
                     }

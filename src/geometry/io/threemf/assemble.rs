@@ -5,60 +5,13 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::{ParseError, PartName, ThreemfObject, ThreemfPackage, bad};
+use super::{ParseError, PartName, ThreemfPackage, bad};
+use crate::io::face_colours::FaceColours;
 use crate::io::gltf::MAX_INSTANCED;
 use crate::io::problem::FilePlace;
 use crate::io::text::refuse;
 use crate::job::Job;
 use crate::{FaceAttributes, GroupName, PolyMesh, repair};
-
-/// Colour of vertices without one in a mesh where others have one.
-const WHITE: [u8; 4] = [255; 4];
-
-/// The colours of the vertices: those of the faces around them.
-#[derive(Debug, Default)]
-struct VertexColours {
-    colours: Vec<Option<[u8; 4]>>,
-    /// Vertices whose faces have several colours.
-    several: usize,
-}
-
-impl VertexColours {
-    /// Adds an object whose vertices begin at `base`.
-    fn add(&mut self, object: &ThreemfObject, base: u32) {
-        if object.colours.is_empty() {
-            return;
-        }
-        self.colours.resize(base as usize + object.mesh.positions.len(), None);
-        let mut differs = vec![false; object.mesh.positions.len()];
-        for (corners, colours) in object.mesh.faces().zip(&object.colours) {
-            for (&v, colour) in corners.iter().zip(colours) {
-                let (known, differs) =
-                    (&mut self.colours[(base + v) as usize], &mut differs[v as usize]);
-                *differs |= known.is_some() && colour.is_some() && *known != *colour;
-                *known = known.or(*colour);
-            }
-        }
-        self.several += differs.iter().filter(|differs| **differs).count();
-    }
-
-    /// Returns one colour for each of `count` vertices; `None`: no vertex has one.
-    fn of(self, count: usize, warnings: &mut Vec<String>) -> Option<Vec<[u8; 4]>> {
-        if self.several > 0 {
-            warnings.push(format!(
-                "{} vertices lie between faces of several colours: each has the colour of the \
-                 first",
-                self.several
-            ));
-        }
-        let mut colours = self.colours;
-        if colours.iter().all(Option::is_none) {
-            return None;
-        }
-        colours.resize(count, None);
-        Some(colours.into_iter().map(|colour| colour.unwrap_or(WHITE)).collect())
-    }
-}
 
 /// Objects may hold objects; deeper than this is a circle.
 const DEPTH: usize = 32;
@@ -74,7 +27,7 @@ pub(super) fn assemble(
     let mut todo: Vec<(&PartName, DMat4, usize, &str)> =
         package.build.iter().rev().map(|(name, t)| (name, unit * *t, 0, "")).collect();
     let (mut visits, mut supports) = (0usize, 0usize);
-    let mut colours = VertexColours::default();
+    let mut colours = FaceColours::default();
     while let Some((name, place, depth, around)) = todo.pop() {
         job.check()?;
         visits += 1;
@@ -111,7 +64,9 @@ pub(super) fn assemble(
             }
             out.positions.push(q);
         }
-        colours.add(object, base);
+        for (corners, of) in object.mesh.faces().zip(&object.colours) {
+            corners.iter().zip(of).for_each(|(v, colour)| colours.add(base + v, *colour));
+        }
         let mut part = PolyMesh::new();
         object.mesh.faces().for_each(|f| part.push_face(&[f[0] + base, f[1] + base, f[2] + base]));
         if place.determinant() < 0.0 {

@@ -1,0 +1,196 @@
+//! Thickness by the definition *sphere*: the largest ball that the wall holds at a place.
+//!
+//! Between two sides of a wall this is the inscribed ball that touches the place. Beside an edge that
+//! ball sits in the corner and would say that the wall thins to zero. So it rolls out of the corner,
+//! always inside the solid and always the way in which it grows fastest, until it is held: until it
+//! touches points at least 140 degrees apart, seen from its centre, or touches all around. This is
+//! the flow of the distance function (Chazal and Lieutier, "The lambda-medial axis", 2005); at a
+//! centre it grows by the length of the point nearest to zero in the convex hull of the directions
+//! from the touches, which is cos 70 degrees for two of them 140 degrees apart.
+
+use glam::Vec3;
+
+use super::ball::{CORNER, InscribedBall, SLACK, nearest_on};
+use super::ray::{Caster, Site};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, push_children};
+use crate::simd::wide::{self, Wide, WideWork};
+
+/// Growth below which a ball is held: cos 70 degrees.
+const HELD: f32 = 0.342_02;
+/// A point counts as a touch up to this share of the radius outside the ball.
+const NEAR: f32 = 0.04;
+/// Touches that differ by less than 8 degrees are one.
+const SAME: f32 = 0.99;
+/// Touches that are kept.
+const TOUCHES: usize = 32;
+/// Steps of a ball on its way; each makes it a tenth larger or more, or ends the way.
+const ROLLS: usize = 60;
+/// The longest step, and the shortest, in radii.
+const STEP: f32 = 0.5;
+const LEAST_STEP: f32 = 0.01;
+
+impl Caster<'_> {
+    /// The largest ball that the wall holds at a site. `None` where nothing holds one.
+    pub fn wall_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
+        let first = self.ball(site)?;
+        if !first.in_corner {
+            return Some(first);
+        }
+        self.roll(site.point - site.away * (first.diameter * 0.5), first.diameter * 0.5)
+    }
+
+    /// Rolls an inscribed ball out of its corner.
+    fn roll(&self, mut centre: Vec3, mut r: f32) -> Option<InscribedBall> {
+        let (lo, hi) = self.tree.bounds();
+        let largest = (hi - lo).length();
+        for _ in 0..ROLLS {
+            if r > largest {
+                return None;
+            }
+            let touches = self.touches(centre, r);
+            let way = steepest(&touches);
+            let growth = way.length();
+            if growth <= HELD {
+                return Some(InscribedBall {
+                    diameter: self.settled(&touches, r),
+                    in_corner: false,
+                });
+            }
+            let way = way / growth;
+            let mut step = STEP * r;
+            (centre, r) = loop {
+                let next = centre + way * step;
+                let found = self.tree.nearest(next.as_dvec3(), f64::INFINITY)?.distance() as f32;
+                if found >= r + 0.4 * growth * step {
+                    break (next, found);
+                }
+                step *= 0.5;
+                if step < LEAST_STEP * r {
+                    let diameter = self.settled(&touches, r);
+                    return Some(InscribedBall { diameter, in_corner: false });
+                }
+            };
+        }
+        None
+    }
+
+    /// Returns the diameter of the largest ball tangent where a held ball touches: it knows the
+    /// facets' planes, so it is exact where the way to it was not.
+    fn settled(&self, touches: &[BallTouch], r: f32) -> f32 {
+        let at = |touch: &BallTouch| {
+            let own = [touch.triangle];
+            let away = self.face_normals[touch.triangle as usize] * self.sign;
+            let site = Site {
+                point: touch.foot,
+                away,
+                along: Vec3::ZERO,
+                own: &own,
+                clear: f32::INFINITY,
+            };
+            let flat = away.dot(touch.towards) < -0.99;
+            flat.then(|| self.ball(&site)).flatten().map(|ball| ball.diameter)
+        };
+        let touching = touches.iter().filter(|t| t.distance <= r * 1.001);
+        touching.filter_map(at).fold(2.0 * r, f32::max)
+    }
+
+    /// The points of the surface that a ball touches, about; a few where all face one another.
+    fn touches(&self, centre: Vec3, r: f32) -> Vec<BallTouch> {
+        let search = TouchSearch { tree: self.tree, centre, within: r * (1.0 + NEAR) };
+        wide::dispatch(self.tree.scalar(), search)
+    }
+}
+
+/// A touch of a ball.
+#[derive(Debug, Clone, Copy)]
+struct BallTouch {
+    triangle: u32,
+    foot: Vec3,
+    /// The unit direction from the foot to the centre.
+    towards: Vec3,
+    distance: f32,
+}
+
+/// The point nearest to zero in the convex hull of the directions (Gilbert's algorithm).
+fn steepest(touches: &[BallTouch]) -> Vec3 {
+    let Some(first) = touches.first() else { return Vec3::ZERO };
+    let mut p = first.towards;
+    for _ in 0..64 {
+        let least = touches.iter().map(|t| t.towards).min_by(|a, b| a.dot(p).total_cmp(&b.dot(p)));
+        let Some(u) = least else { break };
+        let way = u - p;
+        if p.length_squared() - u.dot(p) < 1e-4 {
+            break;
+        }
+        let t = (-p.dot(way) / way.length_squared()).clamp(0.0, 1.0);
+        p += way * t;
+    }
+    p
+}
+
+/// The points of the surface within a distance of a place, one for each direction.
+struct TouchSearch<'a> {
+    tree: &'a Bvh8,
+    centre: Vec3,
+    within: f32,
+}
+
+impl WideWork for TouchSearch<'_> {
+    type Output = Vec<BallTouch>;
+
+    #[inline(always)]
+    fn run<W: Wide>(self, wide: W) -> Vec<BallTouch> {
+        let (nodes, packs) = (self.tree.nodes(), self.tree.packs());
+        let mut found: Vec<BallTouch> = Vec::new();
+        if nodes.is_empty() {
+            return found;
+        }
+        let (centre, bound) = (self.centre.to_array(), self.within * self.within);
+        let mut stack = vec![(0f32, 0u32); self.tree.stack_need().max(1)];
+        let mut top = 1;
+        while top > 0 {
+            top -= 1;
+            let at = stack[top].1;
+            if at & LEAF == 0 {
+                let node = &nodes[at as usize];
+                let mut near = [0.0f32; 8];
+                let inside = wide.near_boxes(centre, node, bound, &mut near);
+                top = push_children(&mut stack, top, inside, &near, &node.child);
+                continue;
+            }
+            let pack = &packs[(at & !LEAF) as usize];
+            let (mut low, mut high) = ([0.0f32; 4], [0.0f32; 4]);
+            wide.near_triangles(centre, pack, SLACK, &mut low, &mut high);
+            for lane in 0..4 {
+                let triangle = pack.id[lane];
+                if triangle == NO_TRIANGLE {
+                    break;
+                }
+                if low[lane] > self.within {
+                    continue;
+                }
+                let foot = nearest_on(pack, lane, self.centre);
+                let (way, distance) = (self.centre - foot, (self.centre - foot).length());
+                if distance > self.within || distance == 0.0 {
+                    continue;
+                }
+                let new = BallTouch { triangle, foot, towards: way / distance, distance };
+                let same = found.iter_mut().find(|t| t.towards.dot(new.towards) > SAME);
+                match same {
+                    Some(known) if known.distance > distance => *known = new,
+                    Some(_) => {}
+                    None if found.len() < TOUCHES => {
+                        // Two that face each other hold the ball: nothing else matters.
+                        let facing = found.iter().any(|t| t.towards.dot(new.towards) < CORNER);
+                        found.push(new);
+                        if facing {
+                            return found;
+                        }
+                    }
+                    None => {}
+                }
+            }
+        }
+        found
+    }
+}
