@@ -239,7 +239,6 @@ impl LeftOut {
     /// One sentence for each kind. Normals and tangents are not named: they follow from the surface.
     fn sentences(&self, root: &Root) -> Vec<String> {
         let (materials, textures) = (root.materials.len(), root.textures.len());
-        let [skins, animations] = [root.skins.len(), root.animations.len()];
         let mut out = Vec::new();
         let mut say = |count: usize, text: String| {
             if count > 0 {
@@ -252,10 +251,10 @@ impl LeftOut {
         say(self.flat, of(self.flat, "triangles with two corners in one place"));
         say(self.sets, of(self.sets, "further sets of texture coordinates"));
         say(self.bad_uvs, of(self.bad_uvs, "damaged sets of texture coordinates"));
-        let looks = format!("the looks of {materials} materials and {textures} textures left out");
-        say(materials + textures, looks);
-        let moves = format!("{skins} skins and {animations} animations left out");
-        say(skins + animations, moves);
+        say(materials, of(materials, "looks of materials"));
+        say(textures, of(textures, "textures"));
+        say(root.skins.len(), of(root.skins.len(), "skins"));
+        say(root.animations.len(), of(root.animations.len(), "animations"));
         out
     }
 }

@@ -84,7 +84,7 @@ fn names_and_texture_coordinates_are_read_and_what_is_not_read_is_named() {
     let first: Vec<[f64; 2]> = corners[..3].iter().map(|c| values[*c as usize]).collect();
     assert_eq!(first, [[0.0, 0.0], [1.0, 0.0], [1.0, 0.75]], "v goes up here, down in glTF");
     assert!(corners[3..].iter().all(|c| *c == crate::face_attributes::NO_UV));
-    for what in ["1 further sets", "1 triangles with two corners", "2 materials"] {
+    for what in ["1 further sets", "1 triangles with two corners", "2 looks of materials"] {
         assert!(loaded.warnings.iter().any(|w| w.contains(what)), "{what}: {:?}", loaded.warnings);
     }
 }
