@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use sculptd_daemon::session;
+use sculptd_geometry::io::{SceneMesh, write_scene};
 use serde_json::Value;
 
 /// Builds the library; `None` where there is no C compiler.
@@ -263,7 +264,8 @@ fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
     let expected: Vec<Vec<u8>> = (1..=3)
         .map(|n| {
             let path = home.path().join(format!("{n}.glb"));
-            sculptd_geometry::io::write_mesh(&path, &visitor(n)).expect("written");
+            let work = SceneMesh { mesh: visitor(n), ..SceneMesh::default() };
+            write_scene(&path, &[work]).expect("written");
             std::fs::read(path).expect("read")
         })
         .collect();

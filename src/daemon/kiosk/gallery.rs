@@ -46,8 +46,7 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
-    let work =
-        SceneMesh { mesh: mesh.clone(), name: format!("work {next}"), ..SceneMesh::default() };
+    let work = SceneMesh { mesh: mesh.clone(), ..SceneMesh::default() };
     write_scene(&path, &[work]).map_err(std::io::Error::other)?;
     if let Err(e) = draw(&path.with_extension("png"), mesh) {
         tracing::error!("{}: no picture of it is written: {e}", path.display());

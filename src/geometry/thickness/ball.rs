@@ -15,7 +15,7 @@ use glam::Vec3;
 
 use super::facing::OPPOSED;
 use super::ray::{Caster, Site};
-use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, push_children};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the

@@ -174,7 +174,7 @@ pub fn measure_prepared(
         sign: f64::from(caster.sign),
         grain,
         tilts: &tilts,
-        opposed_only: sphere,
+        opposed_only: settings.method == ThicknessMethod::Sphere,
     };
     edges::apply(&caster, &solid, &surface, &own, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());

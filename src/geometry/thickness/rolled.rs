@@ -12,7 +12,7 @@ use glam::Vec3;
 
 use super::ball::{CORNER, InscribedBall, SLACK, nearest_on};
 use super::ray::{Caster, Site};
-use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, push_children};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Ray, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// Growth below which a ball is held: cos 70 degrees.
@@ -21,13 +21,16 @@ const HELD: f32 = 0.342_02;
 const NEAR: f32 = 0.04;
 /// Touches that differ by less than 8 degrees are one.
 const SAME: f32 = 0.99;
-/// Touches that are kept.
+/// Touches that are kept, and leaves that are searched for them.
 const TOUCHES: usize = 32;
-/// Steps of a ball on its way; each makes it a tenth larger or more, or ends the way.
-const ROLLS: usize = 60;
-/// The longest step, and the shortest, in radii.
+const LEAVES: usize = 512;
+/// Steps of a ball on its way. Each makes it an eighth larger, but for the last few.
+const ROLLS: usize = 160;
+/// The longest step and the shortest, in radii.
 const STEP: f32 = 0.5;
 const LEAST_STEP: f32 = 0.01;
+/// How far a settled ball is moved on, in radii: out of the reach of what is beside it.
+const ON: f32 = 0.2;
 
 impl Caster<'_> {
     /// The largest ball that the wall holds at a site. `None` where nothing holds one.
@@ -43,61 +46,84 @@ impl Caster<'_> {
     fn roll(&self, mut centre: Vec3, mut r: f32) -> Option<InscribedBall> {
         let (lo, hi) = self.tree.bounds();
         let largest = (hi - lo).length();
+        let mut last = Vec3::ZERO;
         for _ in 0..ROLLS {
             if r > largest {
                 return None;
             }
             let touches = self.touches(centre, r);
             let way = steepest(&touches);
-            let growth = way.length();
-            if growth <= HELD {
-                return Some(InscribedBall {
-                    diameter: self.settled(&touches, r),
-                    in_corner: false,
-                });
-            }
-            let way = way / growth;
-            let mut step = STEP * r;
-            (centre, r) = loop {
-                let next = centre + way * step;
-                let found = self.tree.nearest(next.as_dvec3(), f64::INFINITY)?.distance() as f32;
-                if found >= r + 0.4 * growth * step {
-                    break (next, found);
-                }
-                step *= 0.5;
-                if step < LEAST_STEP * r {
-                    let diameter = self.settled(&touches, r);
-                    return Some(InscribedBall { diameter, in_corner: false });
-                }
+            let next = if way.length() <= HELD { None } else { self.step(centre, r, way) };
+            let Some(next) = next else {
+                let diameter = self.settled(&touches, r, last);
+                return Some(InscribedBall { diameter, in_corner: false });
             };
+            (centre, r) = next;
+            last = way;
         }
         None
     }
 
-    /// Returns the diameter of the largest ball tangent where a held ball touches: it knows the
-    /// facets' planes, so it is exact where the way to it was not.
-    fn settled(&self, touches: &[BallTouch], r: f32) -> f32 {
-        let at = |touch: &BallTouch| {
-            let own = [touch.triangle];
-            let away = self.face_normals[touch.triangle as usize] * self.sign;
-            let site = Site {
-                point: touch.foot,
-                away,
-                along: Vec3::ZERO,
-                own: &own,
-                clear: f32::INFINITY,
-            };
-            let flat = away.dot(touch.towards) < -0.99;
-            flat.then(|| self.ball(&site)).flatten().map(|ball| ball.diameter)
-        };
-        let touching = touches.iter().filter(|t| t.distance <= r * 1.001);
-        touching.filter_map(at).fold(2.0 * r, f32::max)
+    /// Returns a larger ball on the way, and its radius; `None` where there is none.
+    fn step(&self, centre: Vec3, r: f32, way: Vec3) -> Option<(Vec3, f32)> {
+        let growth = way.length();
+        let way = way / growth;
+        let mut step = STEP * r;
+        while step > LEAST_STEP * r {
+            let next = centre + way * step;
+            let found = self.tree.nearest(next.as_dvec3(), f64::INFINITY)?.distance() as f32;
+            if found >= r + 0.4 * growth * step {
+                return Some((next, found));
+            }
+            step *= 0.5;
+        }
+        None
     }
 
-    /// The points of the surface that a ball touches, about; a few where all face one another.
+    /// Returns the diameter of a held ball of radius `r`, or of one tangent where it touches, or a
+    /// little farther on its way: those know the facets' planes, so they are exact where the way to
+    /// this place was not.
+    fn settled(&self, touches: &[BallTouch], r: f32, way: Vec3) -> f32 {
+        let tangent = |triangle: u32, point: Vec3| {
+            let own = [triangle];
+            let away = self.face_normals[triangle as usize] * self.sign;
+            let site = Site { point, away, along: Vec3::ZERO, own: &own, clear: f32::INFINITY };
+            self.ball(&site).map_or(0.0, |ball| ball.diameter)
+        };
+        let mut best = 2.0 * r;
+        for touch in touches.iter().filter(|t| t.distance <= r * 1.001) {
+            let away = self.face_normals[touch.triangle as usize] * self.sign;
+            if away.dot(touch.towards) > -0.99 {
+                continue;
+            }
+            best = best.max(tangent(touch.triangle, touch.foot));
+            let along = (way - away * way.dot(away)).normalize_or_zero() * (ON * r);
+            let on = self.tree.nearest((touch.foot + along).as_dvec3(), f64::from(r));
+            if let Some(on) = on.filter(|_| along != Vec3::ZERO) {
+                let flat = self.face_normals[on.triangle as usize] * self.sign;
+                if flat.dot(away) > 0.99 {
+                    best = best.max(tangent(on.triangle, on.point.as_vec3()));
+                }
+            }
+        }
+        best
+    }
+
+    /// The points of the surface that a ball touches, about; two where these face each other.
     fn touches(&self, centre: Vec3, r: f32) -> Vec<BallTouch> {
-        let search = TouchSearch { tree: self.tree, centre, within: r * (1.0 + NEAR) };
-        wide::dispatch(self.tree.scalar(), search)
+        let within = r * (1.0 + NEAR);
+        let touch = |triangle: u32, foot: Vec3| {
+            let distance = (centre - foot).length();
+            BallTouch { triangle, foot, towards: (centre - foot) / distance, distance }
+        };
+        let first = self.tree.nearest(centre.as_dvec3(), f64::INFINITY);
+        if let Some(first) = first.map(|n| touch(n.triangle, n.point.as_vec3()))
+            && let Some(hit) = self.tree.closest_hit(Ray::new(centre, first.towards), |_| true)
+            && hit.t <= within
+        {
+            return vec![first, touch(hit.triangle, centre + first.towards * hit.t)];
+        }
+        wide::dispatch(self.tree.scalar(), TouchSearch { tree: self.tree, centre, within })
     }
 }
 
@@ -147,7 +173,7 @@ impl WideWork for TouchSearch<'_> {
         }
         let (centre, bound) = (self.centre.to_array(), self.within * self.within);
         let mut stack = vec![(0f32, 0u32); self.tree.stack_need().max(1)];
-        let mut top = 1;
+        let (mut top, mut leaves) = (1, 0);
         while top > 0 {
             top -= 1;
             let at = stack[top].1;
@@ -157,6 +183,10 @@ impl WideWork for TouchSearch<'_> {
                 let inside = wide.near_boxes(centre, node, bound, &mut near);
                 top = push_children(&mut stack, top, inside, &near, &node.child);
                 continue;
+            }
+            leaves += 1;
+            if leaves > LEAVES {
+                return found;
             }
             let pack = &packs[(at & !LEAF) as usize];
             let (mut low, mut high) = ([0.0f32; 4], [0.0f32; 4]);
@@ -175,9 +205,9 @@ impl WideWork for TouchSearch<'_> {
                     continue;
                 }
                 let new = BallTouch { triangle, foot, towards: way / distance, distance };
-                let same = found.iter_mut().find(|t| t.towards.dot(new.towards) > SAME);
+                let same = found.iter().position(|t| t.towards.dot(new.towards) > SAME);
                 match same {
-                    Some(known) if known.distance > distance => *known = new,
+                    Some(known) if found[known].distance > distance => found[known] = new,
                     Some(_) => {}
                     None if found.len() < TOUCHES => {
                         // Two that face each other hold the ball: nothing else matters.

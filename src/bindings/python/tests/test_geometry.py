@@ -1,10 +1,12 @@
 """The module over meshes whose answers are known."""
 
 import gc
+import json
 import math
 import os
 import pathlib
 import signal
+import subprocess
 import tempfile
 import threading
 import time
@@ -13,6 +15,8 @@ import unittest
 import numpy as np
 import sculptd
 from sculptd import Mesh
+
+BINARY = os.environ.get("SCULPTD_BINARY")
 
 
 def address(array):
@@ -219,6 +223,39 @@ class Questions(unittest.TestCase):
         self.assertGreater(faces.face_values.size, len(plate.vertices))
         with self.assertRaisesRegex(ValueError, "rays"):
             sculptd.thickness(plate, rays=0)
+
+    @unittest.skipUnless(BINARY, "SCULPTD_BINARY is not set")
+    def test_the_command_and_the_module_measure_the_same_walls(self):
+        ball, rod = Mesh.sphere(10.0, 24), Mesh.cylinder(3.0, 40.0)
+        box = Mesh.box((0, 0, 0), (20, 12, 4))
+        solids = [ball, box, rod, ball - rod, box - Mesh.box((5, 3, 2), (15, 9, 9))]
+        parts = []
+        for n, solid in enumerate(solids * 4):
+            # A turn by a quarter and a third of one, a scale, a shift.
+            turns = ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+                     [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]], [[1, 0, 0], [0, 0.28, -0.96], [0, 0.96, 0.28]])
+            turn = np.array(turns[n // 5]) * (1 + n % 3)
+            vertices = solid.vertices @ turn.T + [0.1 * n, 0, 0]
+            parts.append(Mesh(vertices, solid.triangulated().faces))
+        compared = 0
+        with tempfile.TemporaryDirectory() as folder:
+            for n, part in enumerate(parts):
+                file = pathlib.Path(folder) / f"part-{n}.off"
+                part.write(file)
+                for method in ("ray", "cone", "sphere"):
+                    limit = 2.5
+                    told = subprocess.run(
+                        [BINARY, "thickness", file, "--method", method, "--warn-below", str(limit), "--json"],
+                        capture_output=True, text=True, check=True,
+                    )
+                    told = json.loads(told.stdout)
+                    walls = sculptd.thickness(Mesh.read(file), method=method)
+                    summary = walls.summary()
+                    for name in ("min", "max", "mean", "median", "valid", "histogram", "error_bound"):
+                        self.assertEqual(told[name], summary[name], (n, method, name))
+                    self.assertEqual(told["below"]["area_percent"], 100 * walls.below(limit)[1], (n, method))
+                    compared += 1
+        self.assertEqual(compared, 60)
 
     def test_distance_inside_and_outside(self):
         solid = sculptd.Solid(Mesh.box((0, 0, 0), (2, 2, 2)))
