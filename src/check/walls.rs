@@ -184,6 +184,7 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
         cone: &cone,
         outliers: Outliers::Keep,
         correction: Correction::None,
+        acute: None,
     };
     let ball = |p: DVec3, t: u32| {
         let corners = part.corners(t)?;

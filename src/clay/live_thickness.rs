@@ -273,6 +273,7 @@ impl LiveMap {
             cone: &self.axis,
             outliers: Outliers::Keep,
             correction: Correction::None,
+            acute: None,
         }
     }
 

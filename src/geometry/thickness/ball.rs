@@ -7,15 +7,17 @@
 //! radius is `|pq|^2 / (2 away . pq)`. Each ball is inside the last, so no earlier constraint
 //! returns.
 //!
-//! The inscribed ball ([`Caster::ball`]) is limited by all facets but the site's own, and those that
-//! turn from the site's normal by less than `SAME_SIDE`: a tessellated wall would otherwise dent
-//! every ball that rests on it.
+//! The ball between two sides ([`Caster::opposed_ball`]) is limited by the opposite side alone: facets turned by less than 40 degrees from parallel, touched within 20 degrees of
+//! the normal. Facets beside the ball, such as the sides of a plate along its edges, do not limit
+//! it, so the value does not go to zero there. The inscribed ball ([`Caster::ball`]) is limited by
+//! all facets. Both ignore the site's triangles, and triangles that turn from the site's normal by
+//! less than `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests on it.
 
 use glam::Vec3;
 
-use super::facing::OPPOSED;
 use super::ray::{Caster, Site};
-use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, push_children};
+use super::sharp_edges::{AcuteEdges, OPPOSED};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
@@ -24,6 +26,10 @@ const SAME_SIDE: f32 = 0.94;
 /// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
 /// a wall.
 pub(super) const CORNER: f32 = -(OPPOSED as f32);
+/// cos 60 degrees: a side turned by more than this is beside the wall.
+const FLANK: f32 = 0.5;
+/// cos 20 degrees: a touch farther from the normal, seen from the site, is beside the wall.
+const BESIDE: f32 = 0.939_692_6;
 /// The ball has settled when no point is deeper inside it than this share of its radius.
 const SETTLED: f32 = 1e-5;
 /// The error of the test that leaves triangles out, in units of the largest distance of a corner.
@@ -44,8 +50,25 @@ pub struct InscribedBall {
 impl Caster<'_> {
     /// The inscribed ball at a site. `None` where no wall is ahead and so nothing bounds it.
     pub fn ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
+        self.held_ball(site, false)
+    }
+
+    /// The ball between a site and the opposite side of its wall. `None` where no wall is ahead.
+    pub(super) fn opposed_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
+        self.held_ball(site, true)
+    }
+
+    fn held_ball(&self, site: &Site<'_>, opposed: bool) -> Option<InscribedBall> {
         let mut touch = None;
         let first = self.hit(site, -site.away);
+        let first = first.filter(|hit| {
+            let n = self.face_normals[hit.triangle as usize];
+            let facing = -n.dot(site.away) * self.sign;
+            let turned = facing < OPPOSED as f32;
+            let place = site.point.as_dvec3();
+            let edge = |acute: &AcuteEdges| acute.own(place, f64::from(hit.t));
+            !(opposed && turned && (facing < FLANK || self.acute.is_some_and(edge)))
+        });
         let mut r = match first {
             Some(hit) => {
                 touch = Some(site.point - site.away * hit.t);
@@ -60,19 +83,27 @@ impl Caster<'_> {
         };
         // From how far on a triangle counts; none: it does not.
         let from = |t: u32| {
-            let other = self.face_normals[t as usize].dot(site.away) * self.sign < SAME_SIDE;
+            let most = if opposed { -(OPPOSED as f32) } else { SAME_SIDE };
+            let other = self.face_normals[t as usize].dot(site.away) * self.sign < most;
             let from = if site.owns(t) { site.clear } else { 0.0 };
             (other && from < f32::INFINITY).then_some(from)
         };
-        let search =
-            BallSearch { tree: self.tree, point: site.point, away: site.away, r, touch, from };
+        let search = BallSearch {
+            tree: self.tree,
+            point: site.point,
+            away: site.away,
+            r,
+            touch,
+            from,
+            opposed,
+        };
         (r, touch) = wide::dispatch(self.tree.scalar(), search);
         let q = touch?;
         let centre = site.point - site.away * r;
         let cos = (q - centre).normalize_or_zero().dot(site.away);
         // On an open mesh nothing else bounds the ball.
         let diameter = (2.0 * r).min(self.longest(site));
-        Some(InscribedBall { diameter, in_corner: cos > CORNER })
+        Some(InscribedBall { diameter, in_corner: !opposed && cos > CORNER })
     }
 }
 
@@ -87,6 +118,8 @@ struct BallSearch<'a, F> {
     /// The point, besides `point`, where the ball of radius `r` touches.
     touch: Option<Vec3>,
     from: F,
+    /// True to ignore touches beside the wall.
+    opposed: bool,
 }
 
 impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
@@ -127,7 +160,8 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
                         continue;
                     }
                     if let Some(from) = (self.from)(id) {
-                        ball.shrink(|centre| {
+                        let before = ball;
+                        let settled = ball.shrink(self.opposed, |centre| {
                             let q = nearest_on(pack, lane, centre);
                             let way = q - self.point;
                             let length = way.length();
@@ -137,17 +171,47 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
                                 q
                             }
                         });
+                        if !settled {
+                            ball = before;
+                        }
                     }
                 }
                 continue;
             }
             let node = &nodes[at as usize];
             let mut near = [0.0f32; 8];
-            let inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
+            let mut inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
+            if self.opposed {
+                inside &= boxes_ahead(node, self.point, self.away);
+            }
             top = push_children(stack, top, inside, &near, &node.child);
         }
         (ball.r, ball.touch)
     }
+}
+
+/// Of the eight boxes those of which the sphere around them reaches to within 20 degrees of the
+/// direction opposite to `away`.
+#[inline(always)]
+fn boxes_ahead(node: &WideNode, point: Vec3, away: Vec3) -> u32 {
+    /// sin 20 degrees, a little more.
+    const ASIDE: f32 = 0.342_03;
+    let mut mask = 0;
+    for i in 0..8 {
+        let (mut square, mut depth, mut size) = (0.0f32, 0.0f32, 0.0f32);
+        for axis in 0..3 {
+            let (lo, hi) = (node.planes[axis][i], node.planes[3 + axis][i]);
+            let (to, half) = ((lo + hi) * 0.5 - point[axis], (hi - lo) * 0.5);
+            square += to * to;
+            size += half * half;
+            depth -= to * away[axis];
+        }
+        let lateral = (square - depth * depth).max(0.0).sqrt();
+        // An unused box is no number, and near_boxes left it out.
+        let behind = lateral * BESIDE - depth * ASIDE > size.sqrt() + square.sqrt() * 1e-5;
+        mask |= u32::from(!behind) << i;
+    }
+    mask
 }
 
 /// A ball that touches the surface at a site.
@@ -178,33 +242,45 @@ impl Shrinking {
         (self.r, self.centre) = (r, self.point - self.away * r);
     }
 
+    /// A point lies more than 20 degrees beside the normal, seen from the site.
+    #[inline(always)]
+    fn is_beside(&self, q: Vec3) -> bool {
+        let way = self.point - q;
+        way.dot(self.away) < BESIDE * way.length()
+    }
+
     #[inline(always)]
     fn holds(&self, q: Vec3) -> bool {
         (q - self.centre).length_squared() < self.bound
     }
 
     /// Shrinks until no point of a triangle, whose nearest point to a place is asked of `nearest`,
-    /// is inside.
+    /// is inside. With `opposed` it gives up, and returns `false`, where the touch would lie
+    /// beside the wall: while the ball shrinks, a touch only moves away from the normal.
     #[inline(always)]
-    fn shrink(&mut self, nearest: impl Fn(Vec3) -> Vec3) {
+    fn shrink(&mut self, opposed: bool, nearest: impl Fn(Vec3) -> Vec3) -> bool {
         for _ in 0..STEPS {
             let q = nearest(self.centre);
             if !self.holds(q) {
-                return;
+                return true;
+            }
+            if opposed && self.is_beside(q) {
+                return false;
             }
             let to = self.point.as_dvec3() - q.as_dvec3();
             let along = self.away.as_dvec3().dot(to);
             if along <= 0.0 {
                 // Rounding only: a point above the tangent plane cannot be inside the ball.
-                return;
+                return true;
             }
             let next = (to.length_squared() / (2.0 * along)) as f32;
             self.touch = Some(q);
             if next >= self.r {
-                return;
+                return true;
             }
             self.resize(next);
         }
+        true
     }
 }
 

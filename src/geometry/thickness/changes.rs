@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::check::{CheckedPart, SPOTS};
-use super::facing::OPPOSED;
 use super::probe::{FoundPlace, WallProber};
 use super::ready::ReadyPart;
+use super::sharp_edges::OPPOSED;
 use super::{ThicknessError, ThicknessSettings};
 use crate::TriMesh;
 use crate::disjoint_sets::DisjointSets;

@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::Opposite;
-use super::facing::{OPPOSED, grazing};
 use super::shaft::{FacetShaft, Patch};
+use super::sharp_edges::{OPPOSED, grazing};
 use super::surface::WeldedSurface;
 use super::valley::Valley;
 use crate::bvh::{Bvh8, Ray};

@@ -9,6 +9,7 @@ use super::cone::Cone;
 use super::least::{LeastWall, Solid};
 use super::ray::{Caster, ConeScratch, Correction, Site};
 use super::samples::{self, AreaSample};
+use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
 use super::walls::{OwnWalls, Walls, flatten_what_was_cut};
 use super::{
@@ -137,6 +138,8 @@ pub fn measure_prepared(
     let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
     let grain = query.grain + single(tree);
     let tilts = whole.tilts(grain);
+    let sphere = settings.method == ThicknessMethod::Sphere;
+    let acute = sphere.then(|| AcuteEdges::new(whole, &tilts, f64::from(sign)));
     let caster = Caster {
         tree,
         face_normals: &whole.face_normals,
@@ -147,6 +150,7 @@ pub fn measure_prepared(
         // A single ray is the axis: exact along it whatever the correction, and needs no smooth
         // normals.
         correction: if rays == 1 { Correction::None } else { settings.correction },
+        acute: acute.as_ref(),
     };
     let own = OwnWalls::new(&surface, walls.map(|w| w.1));
     let faces = own.in_order(tree);
@@ -174,7 +178,7 @@ pub fn measure_prepared(
         sign: f64::from(caster.sign),
         grain,
         tilts: &tilts,
-        opposed_only: settings.method == ThicknessMethod::Sphere,
+        opposed_only: sphere,
     };
     edges::apply(&caster, &solid, &surface, &own, settings, &mut welded);
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());

@@ -21,7 +21,6 @@ pub mod check;
 pub mod colour;
 pub mod cone;
 mod edges;
-mod facing;
 #[cfg(test)]
 mod known_balls;
 #[cfg(test)]
@@ -41,6 +40,7 @@ pub mod report;
 mod rolled;
 pub mod samples;
 mod shaft;
+pub mod sharp_edges;
 pub mod summary;
 pub mod surface;
 mod valley;

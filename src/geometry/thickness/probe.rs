@@ -7,6 +7,7 @@ use super::cone::{Cone, frame_along};
 use super::least::Solid;
 use super::measuring::single;
 use super::ray::{Caster, ConeScratch, Correction, Site};
+use super::sharp_edges::AcuteEdges;
 use super::surface::{DROPPED, WeldedSurface};
 use super::{MeasuredSide, ThicknessError, ThicknessMethod, ThicknessSettings};
 use crate::TriMesh;
@@ -80,6 +81,7 @@ pub struct WallProber {
     surface: WeldedSurface,
     corner_normals: Vec<[Vec3; 3]>,
     tilts: Vec<f32>,
+    acute: AcuteEdges,
     cone: Cone,
     settings: ThicknessSettings,
     sign: f32,
@@ -102,6 +104,7 @@ impl WallProber {
         let inside_out = if surface.faults.inside_out { -1.0 } else { 1.0 };
         let sign = if settings.side == MeasuredSide::Wall { inside_out } else { -inside_out };
         let tilts = surface.tilts(single(&tree));
+        let acute = AcuteEdges::new(&surface, &tilts, f64::from(sign));
         let opening = settings.opening.to_radians();
         Ok(WallProber {
             corner_normals: surface.corner_normals(crease),
@@ -110,6 +113,7 @@ impl WallProber {
             tree,
             surface,
             tilts,
+            acute,
             sign,
         })
     }
@@ -196,6 +200,7 @@ impl WallProber {
             cone: &self.cone,
             outliers: self.settings.outliers,
             correction: if single_ray { Correction::None } else { self.settings.correction },
+            acute: Some(&self.acute),
         }
     }
 

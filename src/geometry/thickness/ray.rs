@@ -21,7 +21,7 @@ use glam::Vec3;
 
 use super::Opposite;
 use super::cone::{Cone, Folded, Outliers, fold, frame_along};
-use super::facing::{GRAZING, OPPOSED};
+use super::sharp_edges::{AcuteEdges, GRAZING, OPPOSED};
 use crate::bvh::{Bvh8, Ray, TraversalStack, TreeHit};
 
 /// The correction of a ray's length.
@@ -81,6 +81,8 @@ pub struct Caster<'a> {
     pub outliers: Outliers,
     /// The correction of a ray's length.
     pub correction: Correction,
+    /// Edges beside which a turned side does not hold the ball of a wall.
+    pub acute: Option<&'a AcuteEdges>,
 }
 
 /// A hit on a wall turned by more than this from the axis ray's wall is another wall's: cos 60

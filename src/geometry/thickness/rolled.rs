@@ -1,12 +1,16 @@
 //! Thickness by the definition *sphere*: the largest ball that the wall holds at a place.
 //!
-//! Between two sides of a wall this is the inscribed ball that touches the place. Beside an edge that
-//! ball sits in the corner and would say that the wall thins to zero. So it rolls out of the corner,
-//! always inside the solid and always the way in which it grows fastest, until it is held: until it
-//! touches points at least 140 degrees apart, seen from its centre, or touches all around. This is
-//! the flow of the distance function (Chazal and Lieutier, "The lambda-medial axis", 2005); at a
-//! centre it grows by the length of the point nearest to zero in the convex hull of the directions
-//! from the touches, which is cos 70 degrees for two of them 140 degrees apart.
+//! Between two sides of a wall this is the ball that touches both. That ball may stick out beside
+//! them: along an edge of the wall, where the wall is nevertheless as thick as it is farther in; and
+//! where a thinner wall meets the place edge on, such as the top of a rib or the side of a pocket.
+//! So a ball that sticks out shrinks about its centre until it fits, and then rolls, always inside
+//! the solid and always the way in which it grows fastest, until it is held: until it touches points
+//! at least 140 degrees apart, seen from its centre, or touches all around. If it is then about as
+//! large as before, the place is at an edge of its wall; if not, the smaller ball is the wall's.
+//!
+//! This is the flow of the distance function (Chazal and Lieutier, "The lambda-medial axis", 2005):
+//! at a centre it grows by the length of the point nearest to zero in the convex hull of the
+//! directions from the touches, which is cos 70 degrees for two of them 140 degrees apart.
 
 use glam::Vec3;
 
@@ -29,23 +33,39 @@ const ROLLS: usize = 160;
 /// The longest step and the shortest, in radii.
 const STEP: f32 = 0.5;
 const LEAST_STEP: f32 = 0.01;
+/// Below this share of the mesh's size nothing is known of a ball: single precision.
+const LEAST: f32 = 1e-5;
 /// How far a settled ball is moved on, in radii: out of the reach of what is beside it.
 const ON: f32 = 0.2;
+
+/// A ball that reaches less than this share of its radius out of the solid fits: so much do the
+/// facets of a bent wall dent it.
+const FITS: f32 = 0.93;
+/// A ball that grows back to this share of its size is held by the same wall.
+const SAME_WALL: f32 = 0.9;
 
 impl Caster<'_> {
     /// The largest ball that the wall holds at a site. `None` where nothing holds one.
     pub fn wall_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
-        let first = self.ball(site)?;
-        if !first.in_corner {
-            return Some(first);
+        let ball = self.opposed_ball(site)?;
+        let half = ball.diameter * 0.5;
+        let centre = site.point - site.away * half;
+        let fits = self.tree.nearest(centre.as_dvec3(), f64::from(half * FITS)).is_none();
+        if fits || self.sign < 0.0 {
+            return Some(ball);
         }
-        self.roll(site.point - site.away * (first.diameter * 0.5), first.diameter * 0.5)
+        let rolled = self.roll(centre).filter(|d| *d < SAME_WALL * ball.diameter);
+        Some(rolled.map_or(ball, |diameter| InscribedBall { diameter, in_corner: false }))
     }
 
-    /// Rolls an inscribed ball out of its corner.
-    fn roll(&self, mut centre: Vec3, mut r: f32) -> Option<InscribedBall> {
+    /// Returns the diameter of the ball that rolls from a place inside the solid until it is held.
+    fn roll(&self, mut centre: Vec3) -> Option<f32> {
+        let mut r = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.distance() as f32;
         let (lo, hi) = self.tree.bounds();
         let largest = (hi - lo).length();
+        if r < largest * LEAST {
+            return None;
+        }
         let mut last = Vec3::ZERO;
         for _ in 0..ROLLS {
             if r > largest {
@@ -55,8 +75,14 @@ impl Caster<'_> {
             let way = steepest(&touches);
             let next = if way.length() <= HELD { None } else { self.step(centre, r, way) };
             let Some(next) = next else {
-                let diameter = self.settled(&touches, r, last);
-                return Some(InscribedBall { diameter, in_corner: false });
+                let touching: Vec<BallTouch> =
+                    touches.iter().filter(|t| t.distance <= r * 1.001).copied().collect();
+                let on = steepest(&touching);
+                return Some(self.settled(
+                    &touching,
+                    r,
+                    if on.length() > HELD { on } else { last },
+                ));
             };
             (centre, r) = next;
             last = way;
@@ -91,7 +117,7 @@ impl Caster<'_> {
             self.ball(&site).map_or(0.0, |ball| ball.diameter)
         };
         let mut best = 2.0 * r;
-        for touch in touches.iter().filter(|t| t.distance <= r * 1.001) {
+        for touch in touches {
             let away = self.face_normals[touch.triangle as usize] * self.sign;
             if away.dot(touch.towards) > -0.99 {
                 continue;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::facing::{GRAZING, OPPOSED};
+use super::sharp_edges::{GRAZING, OPPOSED};
 use super::surface::WeldedSurface;
 
 /// A surface seen along a direction.
