@@ -27,6 +27,11 @@ fn methods(dir: &Path, other: &Value) -> Vec<(&'static str, Value)> {
         ("scene.add", json!({ "path": file })),
         ("boolean", json!({ "operation": "difference", "path": file, "at": [0.3, 0.2, 0.1] })),
         ("trim", json!({ "part": { "box": [0.0, 0.0, 0.45, 1.0] } })),
+        ("repair", json!({ "repair": { "base": 0.4 } })),
+        (
+            "repair",
+            json!({ "repair": { "split": { "point": [0, 0, 0.1], "normal": [0, 0, 1], "radius": 0.1 } } }),
+        ),
         ("scene.boolean", both("union")),
         ("scene.merge", json!({ "ids": [0, other] })),
         ("scene.mirror", json!({ "id": 0, "axis": "x" })),

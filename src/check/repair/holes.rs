@@ -16,7 +16,7 @@ use super::{RepairError, rounding_volume, standing};
 use crate::layers::plate::PlateContact;
 use crate::layers::sweep::{SealedVoid, sweep};
 
-/// Which voids get a hole.
+/// The kind of void that gets a hole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SealedKind {
     /// Cavities that never open.
@@ -38,7 +38,7 @@ impl SealedKind {
 /// The holes to be planned. Lengths are in the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoleSettings {
-    /// Which voids get a hole.
+    /// The kind of void that gets a hole.
     pub kind: SealedKind,
     /// Of a hole.
     pub diameter: f64,
@@ -52,16 +52,16 @@ pub struct HoleSettings {
     pub up: DVec3,
     /// The height of a layer.
     pub layer: f64,
-    /// True if the part stands on a plate that seals what it encloses.
+    /// True for a part on a plate, which seals a hole that leads down to it.
     pub plate: bool,
 }
 
 /// A hole, in the mesh's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannedHole {
-    /// Where it leaves the void.
+    /// The point at which it leaves the void.
     pub from: DVec3,
-    /// Where it leaves the part.
+    /// The point at which it leaves the part.
     pub to: DVec3,
     /// True for an air inlet.
     pub inlet: bool,
@@ -78,6 +78,8 @@ pub struct HolePlan {
     pub holes: Vec<PlannedHole>,
     /// The voids that get a hole.
     pub voids: usize,
+    /// The voids of the part that are findings, with and without a hole.
+    pub found: usize,
     /// Sentences on voids without a hole, and on holes that the plate seals.
     pub notes: Vec<String>,
 }
@@ -102,6 +104,7 @@ pub fn plan_holes(
     };
     let least = settings.least + rounding_volume(&part);
     let mut voids: Vec<SealedVoid> = all.into_iter().filter(|v| v.volume > least).collect();
+    let count = voids.len();
     if let Some(near) = settings.near {
         let far = |v: &SealedVoid| part.to_file(v.position).distance(near);
         let nearest = voids.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b)));
@@ -151,5 +154,6 @@ pub fn plan_holes(
     if holes.is_empty() {
         return Err(RepairError::NoWayOut(name));
     }
-    Ok(HolePlan { tool: united(&cylinders, job)?, holes, voids: drained, notes })
+    let tool = united(&cylinders, job)?;
+    Ok(HolePlan { tool, holes, voids: drained, found: count, notes })
 }

@@ -80,7 +80,7 @@ impl RepairError {
     }
 }
 
-/// What a check of the repaired part finds. Lengths and places are in the mesh's unit and frame.
+/// Result of the check of a repaired part. Lengths and places are in the mesh's unit and frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remaining {
     /// True if every edge has two faces.
@@ -99,8 +99,8 @@ pub struct Remaining {
     pub cups: Vec<SealedVoid>,
 }
 
-/// Checks a part after its repair, built along `up` in layers of `layer`. `plate` says whether it
-/// stands on a plate that seals what it encloses.
+/// Checks a part after its repair, built along `up` in layers of `layer`. `plate` is
+/// true for a part on a plate, which seals voids that open downwards.
 ///
 /// # Errors
 /// [`RepairError::NotSolid`] if the result is no solid, and if the job was cancelled.

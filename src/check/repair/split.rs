@@ -24,7 +24,7 @@ pub const MOST_PEGS: usize = 16;
 pub struct PegSettings {
     /// The radius of a peg.
     pub radius: f64,
-    /// How far a peg reaches beyond the plane.
+    /// The length of a peg beyond the plane.
     pub length: f64,
     /// The least distance between a peg and its socket, at the side and at the end.
     pub clearance: f64,
@@ -146,8 +146,8 @@ fn check(pegs: &PegSettings) -> Result<(), RepairError> {
     Ok(())
 }
 
-/// Where the pegs go: in the section, away from its boundary, with matter before and behind them,
-/// and far from each other.
+/// The places of the pegs: in the section, away from its boundary, with matter on both sides of
+/// the plane, and far from each other.
 fn places(
     mesh: &PolyMesh,
     normal: DVec3,

@@ -42,7 +42,7 @@ pub(super) struct WaySearch<'a> {
 /// A hole: a cylinder around the line from `start` along `along`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WayOut {
-    /// Where the wall begins.
+    /// The point at which the wall begins.
     pub start: DVec3,
     /// Of unit length.
     pub along: DVec3,
@@ -72,7 +72,7 @@ impl WaySearch<'_> {
             .copied()
             .filter(|&t| self.part.corners(t).is_some_and(|c| c.iter().all(low)))
             .collect();
-        // The plate is the floor of what stands on it.
+        // A void that is open to the plate has the plate as its floor.
         let plated = self.plate && -deepest <= self.stand.plate + self.stand.slack;
         let foot = self.foot(&faces, &floor, low);
         let mut ways: Vec<RatedWay> = Vec::new();
@@ -160,7 +160,7 @@ impl WaySearch<'_> {
         out
     }
 
-    /// Level ways from the walls that stand on the floor, at whose foot the hole begins.
+    /// Level ways through the walls around the floor; the hole begins at the foot of the wall.
     fn level(&self, faces: &[u32], deepest: f64) -> Vec<RatedWay> {
         let height = deepest - 0.1 * self.radius;
         let axis = deepest - (1.0 - SUNK) * self.radius;
@@ -203,7 +203,7 @@ impl WaySearch<'_> {
         let outer = |t: u32| self.void_of.get(t as usize).is_none_or(|n| *n == NO_VOID);
         let least = part.tolerance;
         let (exit, out) = part.exit_along(from, along, least, outer)?;
-        // Where the line starts in the void, the wall begins further on.
+        // A line that starts in the void enters the wall further on.
         let own = |t: u32| self.void_of.get(t as usize) == Some(&self.number);
         let entry = part.distance_along(from, along, least);
         let entry = entry.filter(|(d, t)| own(*t) && *d < exit).map_or(0.0, |(d, _)| d);

@@ -119,7 +119,7 @@ fn a_round_cavity_drains_at_its_lowest_point() {
             let asked = settings(SealedKind::Trapped, up, plate);
             let (plan, made, left) = drilled(&part, &asked);
             assert!(left.trapped.is_empty(), "plate {plate}: {left:?}");
-            // What the hole's lip keeps in the cavity is less than a drop.
+            // Less than a drop stays behind the lip of the hole.
             let kept: f64 = left.cups.iter().map(|c| c.volume).sum();
             assert!(kept < 1.0, "plate {plate}: {:?}", left.cups);
             let removed = volume(&part) - volume(&made);
