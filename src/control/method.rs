@@ -258,7 +258,7 @@ methods! {
     /// New crossings are undone where they can be and counted, and the border of the mask stays.
     "decimate" Decimate decimate(DecimateParams) -> DecimateReply;
     /// Repairs the object for printing or moulding, then checks it again: a flat base, a split with
-    /// pegs and sockets, drain holes, or vents. One step of undo.
+    /// pegs and sockets, drain holes, vents, or draft. One step of undo.
     "repair" Repair repair(RepairParams) -> RepairReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;

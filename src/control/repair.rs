@@ -42,6 +42,8 @@ pub enum RepairKind {
     Drain(HoleRepair),
     /// Drills holes into suction cups.
     Vent(HoleRepair),
+    /// Gives upright walls this draft, in degrees; `up` is the direction in which a mould opens.
+    Draft(#[cfg_attr(test, schemars(range(min = 1e-3, max = 45.0)))] f64),
 }
 
 /// The plane and the pegs of a split.
@@ -100,10 +102,11 @@ pub struct HoleRepair {
     /// A second hole at the highest point, through which air comes in.
     #[serde(default)]
     pub inlet: bool,
-    /// Only cavities and cups that hold more than this, in cubic units.
-    #[serde(default)]
+    /// Only cavities and cups that hold more than this, in cubic units. Without it 0 for cavities
+    /// and 100 for cups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(test, schemars(range(min = 0.0, max = 1e18)))]
-    pub least: f64,
+    pub least: Option<f64>,
     /// Only the cavity or cup whose centre is nearest to this place; without it all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 3]>,

@@ -1,26 +1,28 @@
 //! Repairs of the active object, computed in the caller's thread: a flat base, a split with pegs
-//! and sockets, drain holes and vents. Each is one step of undo. After it the result is checked
-//! again, and the answer says what is left.
+//! and sockets, drain holes, vents, and draft. Each is one step of undo. After it the result is
+//! checked again, and the answer says what is left.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::boolean_jobs;
-use crate::operations::{self, Computed, OperationError, Target};
+use crate::operations::basis::{Basis, Placing};
+use crate::operations::{self, Computed, OperationError, Target, in_place};
 use crate::published::Published;
 use crate::scene_jobs::{Combined, built, operand};
 use sculptd_check::repair::flat_base::base_tool;
 use sculptd_check::repair::holes::{HoleSettings, PlannedHole, SealedKind, plan_holes};
 use sculptd_check::repair::split::{PegSettings, SplitPlane, split_part};
-use sculptd_check::repair::{Remaining, remaining, solid_of};
+use sculptd_check::repair::wall_draft::{add_draft, walls_below};
+use sculptd_check::repair::{Remaining, RepairError, remaining, solid_of};
 use sculptd_clay::Snapshot;
 use sculptd_engine::scene::{
     Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, SceneEvent,
 };
-use sculptd_geometry::PolyMesh;
 use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
+use sculptd_geometry::{PolyMesh, TriMesh};
 
 /// The height of a layer that the check of a result takes, mm: that of fine resin prints.
 const LAYER: f64 = 0.05;
@@ -45,6 +47,8 @@ pub enum WantedRepair {
         /// Only the one that is nearest to this place.
         near: Option<DVec3>,
     },
+    /// Draft for the walls that have less than this many degrees.
+    Draft(f64),
 }
 
 /// A repair, and how the object is built.
@@ -77,7 +81,7 @@ struct RepairPlan {
     holes: Vec<PlannedHole>,
     pegs: Vec<DVec3>,
     notes: Vec<String>,
-    /// Number of cavities or cups that got no hole.
+    /// Number of cavities or cups that got no hole, or of walls without draft that stayed.
     most_left: usize,
 }
 
@@ -93,6 +97,7 @@ pub fn carry_out(
     let before: Vec<ObjectId> = ids(&to.published.load());
     let done = operations::carry_out(to, job, |now| match request.repair {
         WantedRepair::Split(plane, pegs) => split(now, plane, pegs, job),
+        WantedRepair::Draft(angle) => drafted(now, request.up, angle, job),
         _ => cut(now, request, job),
     })?;
     let note = done.note();
@@ -105,43 +110,51 @@ pub fn carry_out(
         true => !before.contains(id),
         false => Some(*id) == active,
     };
-    let mut objects = Vec::new();
+    let (mut objects, mut left) = (Vec::new(), Vec::new());
     // It is in place: what is cancelled now is only its check.
     let unseen = Job::default();
     for (object, clay) in now.scene.each(&now.mesh).filter(|(o, _)| made(&o.id)) {
         let mesh = in_world(clay, &object.settings.transform);
+        if let WantedRepair::Draft(angle) = request.repair {
+            let count = walls_below(&mesh, request.up, angle, &unseen).unwrap_or(usize::MAX);
+            let text = format!("walls have less draft than {angle} degrees");
+            left.extend((count > most_left).then_some(text));
+        }
         match remaining(&mesh, request.up, LAYER, request.plate, &unseen) {
-            Ok(left) => objects.push((object.id, left)),
+            Ok(found) => objects.push((object.id, found)),
             Err(e) => notes.push(format!("the result was not checked: {e}")),
         }
     }
-    let mut repaired = objects.len() == if is_split { 2 } else { 1 };
-    for (id, left) in &objects {
-        if !(left.closed && left.manifold && left.crossings == 0) {
-            repaired = false;
-            notes.push(format!("object {id} is not one solid"));
-        }
-        let least = match request.repair {
-            WantedRepair::Base(_) if left.base_area <= 0.0 => {
-                repaired = false;
-                notes.push("the object does not stand flat".into());
-                continue;
-            }
-            WantedRepair::Holes { least, .. } => least,
-            _ => continue,
-        };
-        let kind = match request.repair {
-            WantedRepair::Holes { kind, .. } => kind,
-            _ => continue,
-        };
-        let all = if kind == SealedKind::Trapped { &left.trapped } else { &left.cups };
-        let count = all.iter().filter(|v| v.volume > least).count();
-        if count > most_left {
-            repaired = false;
-            notes.push(format!("{count} of kind {} are left", kind.name()));
+    for (id, found) in &objects {
+        left.extend(
+            failing(&request.repair, most_left, found).map(|why| format!("object {id} {why}")),
+        );
+    }
+    let repaired = left.is_empty() && objects.len() == if is_split { 2 } else { 1 };
+    notes.splice(0..0, left);
+    Ok(RepairDone { repaired, objects, holes, pegs, notes })
+}
+
+/// Why a repaired object still has what was repaired, or is no solid; `None` if it passes.
+/// `most_left` is the number of voids that got no hole.
+fn failing(repair: &WantedRepair, most_left: usize, found: &Remaining) -> Option<String> {
+    if !(found.closed && found.manifold && found.crossings == 0) {
+        return Some("is not one solid".into());
+    }
+    match *repair {
+        WantedRepair::Base(_) if found.base_area <= 0.0 => Some("has no flat base".into()),
+        WantedRepair::Base(_) | WantedRepair::Split(..) | WantedRepair::Draft(_) => None,
+
+        WantedRepair::Holes { kind, least, .. } => {
+            let all = match kind {
+                SealedKind::Trapped => &found.trapped,
+                SealedKind::Cup => &found.cups,
+            };
+            let count = all.iter().filter(|v| v.volume > least).count();
+            let name = kind.name();
+            (count > most_left).then(|| format!("still has what was repaired ({name}: {count})"))
         }
     }
-    Ok(RepairDone { repaired, objects, holes, pegs, notes })
 }
 
 fn ids(now: &Published) -> Vec<ObjectId> {
@@ -179,10 +192,35 @@ fn cut(
             (base_tool(&mesh, request.up, height)?, RepairPlan::default())
         }
         WantedRepair::Split(plane, pegs) => return split(now, plane, pegs, job),
+        WantedRepair::Draft(angle) => return drafted(now, request.up, angle, job),
     };
     let Computed { edit, then, basis, .. } =
         boolean_jobs::join(now, tool, false, Operation::Difference, job)?;
     Ok(Computed { edit, then, made: plan, basis })
+}
+
+/// Draft for the walls of the active object, whose triangles stay.
+fn drafted(
+    now: &Published,
+    up: DVec3,
+    angle: f64,
+    job: &Job,
+) -> Result<Computed<RepairPlan>, OperationError> {
+    let own = now.transform().inverse();
+    let pull = own.apply(up) - own.apply(DVec3::ZERO);
+    let mesh = now.mesh.to_tri();
+    let solid = mesh.to_poly();
+    if solid_of(&solid, job)?.positions != solid.positions {
+        let why = "it crosses itself; unite it with a remesh first".into();
+        return Err(RepairError::NotSolid(why).into());
+    }
+    let made = add_draft(&solid, pull, angle, job)?;
+    let positions = made.mesh.positions.iter().map(|p| p.as_vec3()).collect();
+    let new = TriMesh { positions, ..mesh };
+    let queued = in_place(Arc::new(new), now.mesh.masks(), None, job)?;
+    let plan = RepairPlan { notes: made.notes, most_left: made.kept, ..RepairPlan::default() };
+    let basis = Basis::of_active(now, Placing::Nearest);
+    Ok(Computed::of_clay(now, queued, plan).following(basis))
 }
 
 /// A split of the active object into two.

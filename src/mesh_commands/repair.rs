@@ -1,5 +1,5 @@
-//! `sculptd repair`: a flat base, a split with pegs, drain holes, vents. The file that was written
-//! is read and checked again, and the answer says what is left.
+//! `sculptd repair`: a flat base, a split with pegs, drain holes, vents, draft. The file that was
+//! written is read and checked again, and the answer says what is left.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -9,6 +9,7 @@ use sculptd_check::preset::BuildMethod;
 use sculptd_check::repair::flat_base::base_tool;
 use sculptd_check::repair::holes::{HoleSettings, SealedKind, plan_holes};
 use sculptd_check::repair::split::{PegSettings, SplitPlane, split_part};
+use sculptd_check::repair::wall_draft::add_draft;
 use sculptd_check::repair::{RepairError, remaining, solid_of, subtract};
 use sculptd_check::{
     CheckRequest, CheckSettings, Finding, FindingKind, PresetLibrary, Severity, check_part,
@@ -32,6 +33,7 @@ use super::{Fail, Outcome, answer};
   sculptd repair part.stl flat.stl --base 0.5
   sculptd repair part.stl halves.stl --split 0,0,20,0,0,1 --pegs 3 --clearance 0.15
   sculptd repair hollow.stl drained.stl --drain 3 --inlet --process sla
+  sculptd repair lid.stl drafted.stl --draft 1.5 --process moulding
   sculptd repair cup.stl vented.stl --vent 2 --process sla --up 0,1,0 --json")]
 pub struct RepairArgs {
     /// The mesh file.
@@ -54,6 +56,9 @@ pub struct RepairArgs {
     /// Drill a hole of this diameter into each suction cup where it begins.
     #[arg(long, value_name = "DIAMETER", group = "what")]
     pub vent: Option<f64>,
+    /// Give walls with less draft along --up this draft.
+    #[arg(long, value_name = "DEGREES", group = "what")]
+    pub draft: Option<f64>,
     /// Of --split: most pegs, 0 to 16.
     #[arg(long, value_name = "N", requires = "split", default_value_t = 4)]
     pub pegs: usize,
@@ -144,7 +149,7 @@ struct RepairAnswer {
 
 /// The result before it is written: files and meshes, and what to say of it.
 #[derive(Default)]
-struct Made {
+struct RepairOutput {
     files: Vec<(PathBuf, PolyMesh)>,
     holes: Vec<HoleAnswer>,
     pegs: Vec<[f64; 3]>,
@@ -249,13 +254,13 @@ fn made(
     settings: &CheckSettings,
     scale: f64,
     job: &Job,
-) -> Result<Made, Fail> {
+) -> Result<RepairOutput, Fail> {
     let up = settings.up;
     if let Some(height) = args.base {
         let tool = base_tool(solid, up, height / scale)?;
         let (mesh, warnings) = subtract(solid, &tool, job)?;
         let (files, gone) = (vec![(args.out.clone(), mesh)], vec![FindingKind::Contact]);
-        return Ok(Made { files, warnings, gone, name: "base", ..Made::default() });
+        return Ok(RepairOutput { files, warnings, gone, name: "base", ..RepairOutput::default() });
     }
     if let Some(plane) = args.split {
         let pegs = PegSettings {
@@ -271,7 +276,25 @@ fn made(
             (beside(&args.out, "above"), parts.above),
         ];
         let pegs = parts.pegs.iter().map(|p| (*p * scale).to_array()).collect();
-        return Ok(Made { files, pegs, warnings: parts.notes, name: "split", ..Made::default() });
+        return Ok(RepairOutput {
+            files,
+            pegs,
+            warnings: parts.notes,
+            name: "split",
+            ..RepairOutput::default()
+        });
+    }
+    if let Some(angle) = args.draft {
+        let made = add_draft(solid, up, angle, job)?;
+        let (files, warnings) = (vec![(args.out.clone(), made.mesh)], made.notes);
+        let gone = vec![FindingKind::Draft];
+        return Ok(RepairOutput {
+            files,
+            warnings,
+            gone,
+            name: "draft",
+            ..RepairOutput::default()
+        });
     }
     let process = &settings.process;
     let (kind, diameter, least, finding, name) = match (args.drain, args.vent) {
@@ -280,14 +303,14 @@ fn made(
         }
         (None, Some(d)) => (SealedKind::Cup, d, process.cup, FindingKind::SuctionCup, "vent"),
         (None, None) => {
-            return Err(Fail::Usage("expected --base, --split, --drain or --vent".into()));
+            return Err(Fail::Usage("expected --base, --split, --drain, --vent or --draft".into()));
         }
     };
     let Some(least) = least else {
         let (process, what) = (&process.name, kind.name());
         return Err(Fail::Usage(format!(
-            "--{name}: the process \"{process}\" has no limit for a {what}; give another --process, \
-             such as sla"
+            "--{name}: the process \"{process}\" has no limit for a {what}; give another \
+             --process, such as sla"
         )));
     };
     let asked = HoleSettings {
@@ -309,13 +332,13 @@ fn made(
         inlet: h.inlet,
         sealed_by_plate: h.sealed,
     });
-    Ok(Made {
+    Ok(RepairOutput {
         files: vec![(args.out.clone(), mesh)],
         holes: holes.collect(),
         warnings,
         gone: vec![finding],
         name,
-        ..Made::default()
+        ..RepairOutput::default()
     })
 }
 

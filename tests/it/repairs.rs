@@ -90,7 +90,7 @@ fn the_file_is_read_and_checked_again() {
 }
 
 #[test]
-fn a_split_writes_two_files_with_pegs_or_says_why_it_has_none() {
+fn a_split_writes_two_files_and_draft_turns_the_walls() {
     let dir = tempfile::tempdir().expect("a folder");
     let block = put(dir.path(), "block.stl", &cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 50.0)));
     let out = dir.path().join("half.stl").to_string_lossy().into_owned();
@@ -107,6 +107,15 @@ fn a_split_writes_two_files_with_pegs_or_says_why_it_has_none() {
     let socket = 48.0 * 2.2 * 2.2 * (std::f64::consts::PI / 48.0).tan() * 5.2;
     let wanted = 60_000.0 + 2.0 * (peg - socket);
     assert!((sum - wanted).abs() < 0.1, "{sum} for {wanted}");
+    let drafted = dir.path().join("drafted.stl").to_string_lossy().into_owned();
+    let (code, said) = told(&[&block, &drafted, "--draft", "2", "--process", "moulding"]);
+    let found = said["parts"][0]["findings"].as_array().expect("findings");
+    assert!(code == 0 && found.iter().all(|f| f["kind"] != "draft"), "{said}");
+    let lean = 50.0 * 2f64.to_radians().tan();
+    let (w, d) = (40.0 - 2.0 * lean, 30.0 - 2.0 * lean);
+    let wanted = 50.0 / 6.0 * (1200.0 + 4.0 * (40.0 - lean) * (30.0 - lean) + w * d);
+    let got = number(&said["parts"][0]["volume"]);
+    assert!((got - wanted).abs() < 1e-4 * wanted, "{got} for {wanted}");
     let rod = put(dir.path(), "rod.stl", &cuboid(DVec3::ZERO, DVec3::new(5.0, 5.0, 50.0)));
     let (code, said) = told(&[&rod, &out, "--split", "0,0,20,0,0,1"]);
     assert!(code == 0 && said["pegs"] == json!([]), "{said}");
@@ -181,7 +190,18 @@ fn each_repair_of_the_loop_is_one_step_of_undo() {
     assert!((volume - (40f64.powi(3) - 34f64.powi(3))).abs() < 5.0, "{volume}");
     ask("undo", Value::Null);
     assert!(comes(|| hash() == before && objects() == 1));
+    let done = ask("repair", json!({ "repair": { "draft": 2.0 } }));
+    // The cavity is closed in both directions: its walls stay, and are named.
+    assert!(done["repaired"] == true && done["notes"][0].is_string(), "{done}");
+    let lean = 40.0 * 2f64.to_radians().tan();
+    let (top, middle) = ((40.0 - 2.0 * lean).powi(2), (40.0 - lean).powi(2));
+    let outer = 40.0 / 6.0 * (1600.0 + 4.0 * middle + top);
+    let got = number(&done["objects"][0]["volume"]);
+    assert!((got - (outer - 34f64.powi(3))).abs() < 1.0, "{got}");
+    ask("undo", Value::Null);
+    assert!(comes(|| hash() == before));
     for bad in [
+        json!({ "repair": { "draft": 60.0 } }),
         json!({ "repair": { "base": 90.0 } }),
         json!({ "repair": { "vent": { "diameter": 3.0 } } }),
         json!({ "repair": { "base": 1.0 }, "up": [0, 0, 0] }),

@@ -1,5 +1,5 @@
-//! Repairs of a part: a flat base, a split with pegs and sockets, drain holes and vents. Each is
-//! planned here and carried out by the exact Boolean of `sculptd_geometry`.
+//! Repairs of a part: a flat base, a split with pegs and sockets, drain holes, vents, and draft.
+//! Each is planned here; all but draft are carried out by the exact Boolean of `sculptd_geometry`.
 //!
 //! Lengths are in the mesh's unit, so whoever knows millimetres converts them first. A repair that
 //! is one cut is planned as a *tool*, a solid to subtract, so that a caller can subtract it in its
@@ -12,6 +12,7 @@ pub mod holes;
 mod section_region;
 pub mod split;
 mod tool;
+pub mod wall_draft;
 mod way_out;
 
 use std::borrow::Cow;

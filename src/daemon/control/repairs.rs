@@ -15,12 +15,15 @@ use sculptd_control::repair::{
 };
 use sculptd_devices::Clock;
 
+/// Limit for the volume of cups if a request names none, in cubic units: that of the process sla.
+const CUP: f64 = 100.0;
+
 pub(super) fn repair(host: &Host, params: &RepairParams) -> Result<RepairReply, RpcError> {
     let holes = |kind, of: HoleRepair| WantedRepair::Holes {
         kind,
         diameter: of.diameter,
         inlet: of.inlet,
-        least: of.least,
+        least: of.least.unwrap_or(if kind == SealedKind::Cup { CUP } else { 0.0 }),
         near: of.at.map(DVec3::from),
     };
     let repair = match params.repair {
@@ -31,6 +34,7 @@ pub(super) fn repair(host: &Host, params: &RepairParams) -> Result<RepairReply, 
             let most = of.pegs as usize;
             WantedRepair::Split(plane, PegSettings { radius, length, clearance, most })
         }
+        RepairKind::Draft(angle) => WantedRepair::Draft(angle),
         RepairKind::Drain(of) => holes(SealedKind::Trapped, of),
         RepairKind::Vent(of) => holes(SealedKind::Cup, of),
     };

@@ -1,5 +1,5 @@
-//! Repairs on the Check page: a button beside the finding of a cavity or a cup, a flat base, and a
-//! split with pegs.
+//! Repairs on the Check page: a button beside the finding of a cavity or a cup, draft, a flat base,
+//! and a split with pegs.
 
 use super::retopology;
 use super::rows;
@@ -35,7 +35,11 @@ pub fn button(ui: &mut egui::Ui, finding: &Finding, free: bool) -> Option<Sealed
 /// The request of a finding's button.
 pub fn request(ui_state: &UiState, kind: SealedKind, place: DVec3) -> UiRequest {
     let page = &ui_state.check;
-    UiRequest::Repair(page.repair(page.repairs.hole(kind, place)))
+    let limit = page.process().and_then(|p| match kind {
+        SealedKind::Trapped => p.trapped,
+        SealedKind::Cup => p.cup,
+    });
+    UiRequest::Repair(page.repair(page.repairs.hole(kind, place, limit.unwrap_or(0.0))))
 }
 
 /// A field for a length, mm.
@@ -43,7 +47,7 @@ fn length(value: &mut f64) -> egui::DragValue<'_> {
     egui::DragValue::new(value).range(0.01..=1e6).speed(0.05).suffix(" mm")
 }
 
-/// The part of the page with the numbers, a flat base and a split.
+/// The part of the page with the numbers, and the buttons for draft, a flat base and a split.
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     ui.add_space(6.0);
     rows::folded("repair-heading").show(ui, |ui| {
@@ -53,6 +57,15 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         rows::value(ui, &tr!("repair-diameter"), length(&mut choice.diameter));
         ui.checkbox(&mut choice.inlet, tr!("repair-inlet")).on_hover_text(tr!("repair-inlet.tip"));
         ui.add_space(4.0);
+        let angle = egui::DragValue::new(&mut choice.draft).range(0.1..=45.0).speed(0.05);
+        rows::value(ui, &tr!("repair-draft-angle"), angle.suffix("°"));
+        let button = ui.add_enabled(free, egui::Button::new(tr!("repair-draft")));
+        if button.on_hover_text(tr!("repair-draft.tip")).clicked() {
+            let wanted = WantedRepair::Draft(page.repairs.draft);
+            out.push(UiRequest::Repair(page.repair(wanted)));
+        }
+        ui.add_space(4.0);
+        let choice = &mut page.repairs;
         rows::value(ui, &tr!("repair-base-height"), length(&mut choice.base));
         let base = ui.add_enabled(free, egui::Button::new(tr!("repair-base")));
         if base.on_hover_text(tr!("repair-base.tip")).clicked() {

@@ -64,10 +64,13 @@ fn a_finding_is_repaired_by_its_button_and_the_page_asks_for_a_base_and_a_split(
         panic!("{:?}", asked(&h)[2])
     };
     assert!((plane.point.y - 20.0).abs() < 1e-3 && plane.normal == DVec3::Y && pegs.most == 4);
+    h.get_by_label("Add draft").click();
+    h.run_steps(2);
+    assert!(matches!(asked(&h)[3].repair, WantedRepair::Draft(angle) if angle == 1.5));
     // While another change is under way nothing is asked for.
     h.state_mut().ui_state.joining = true;
     h.run_steps(2);
     h.get_by_label("Drain").click();
     h.run_steps(2);
-    assert_eq!(asked(&h).len(), 3);
+    assert_eq!(asked(&h).len(), 4);
 }

@@ -13,6 +13,8 @@ pub struct RepairChoice {
     pub diameter: f64,
     /// A second hole at the highest point of a cavity.
     pub inlet: bool,
+    /// Of walls, degrees.
+    pub draft: f64,
     /// The height of a flat base above the lowest point.
     pub base: f64,
     /// The height of a split as a share of the object's, 0 to 1, along the build direction.
@@ -26,6 +28,7 @@ impl Default for RepairChoice {
         RepairChoice {
             diameter: 3.0,
             inlet: false,
+            draft: 1.5,
             base: 0.5,
             split: 0.5,
             pegs: PegSettings::default(),
@@ -34,11 +37,12 @@ impl Default for RepairChoice {
 }
 
 impl RepairChoice {
-    /// A hole for the cavity or the cup at a place of the world.
-    pub fn hole(&self, kind: SealedKind, near: DVec3) -> WantedRepair {
+    /// A hole for the cavity or the cup at a place of the world. A void of at most `least` mm3 gets
+    /// none.
+    pub fn hole(&self, kind: SealedKind, near: DVec3, least: f64) -> WantedRepair {
         let RepairChoice { diameter, inlet, .. } = *self;
         let inlet = inlet && kind == SealedKind::Trapped;
-        WantedRepair::Holes { kind, diameter, inlet, least: 0.0, near: Some(near) }
+        WantedRepair::Holes { kind, diameter, inlet, least, near: Some(near) }
     }
 
     /// The split of the active object across a direction.

@@ -429,8 +429,9 @@ class HoleRepair(TypedDict):
     diameter: float
     # A second hole at the highest point, through which air comes in.
     inlet: NotRequired[bool]
-    # Only cavities and cups that hold more than this, in cubic units.
-    least: NotRequired[float]
+    # Only cavities and cups that hold more than this, in cubic units. Without it 0 for cavities and
+    # 100 for cups.
+    least: NotRequired[float | None]
 
 # Parameters of join.
 class JoinParams(TypedDict):
@@ -908,11 +909,11 @@ class RepairParams(TypedDict):
     # The build direction, away from the plate.
     up: NotRequired[Sequence[float]]
 
-# Reply of repair: what was done, and what a check of the result finds.
+# Reply of repair: the changes, and the result of a check of them.
 class RepairReply(TypedDict):
     # The holes that were drilled.
     holes: Sequence[DrilledHole]
-    # What is left, and how the repair was carried out, one sentence each.
+    # Findings that the repair left, and remarks on how it was carried out, one sentence each.
     notes: Sequence[str]
     # The results, each as it was checked.
     objects: Sequence[RepairedObject]
@@ -923,7 +924,7 @@ class RepairReply(TypedDict):
     # Duration, in seconds.
     seconds: float
 
-# What a check finds in a repaired object.
+# A repaired object, and the result of its check.
 class RepairedObject(TypedDict):
     # The flat area on the plate, in square units.
     base_area: float
@@ -1060,7 +1061,7 @@ class SnapReply(TypedDict):
 class SplitRepair(TypedDict):
     # The least distance between a peg and its socket.
     clearance: NotRequired[float]
-    # How far a peg reaches beyond the plane.
+    # The length of a peg beyond the plane.
     length: NotRequired[float]
     # The direction of the part that gets the sockets; the other gets the pegs.
     normal: Sequence[float]
@@ -1547,7 +1548,7 @@ class Client:
         ...
     def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
         """Repairs the object for printing or moulding, then checks it again: a flat base, a split
-        with pegs and sockets, drain holes, or vents. One step of undo."""
+        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
         ...
     def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
@@ -1846,7 +1847,7 @@ class AsyncClient:
         ...
     async def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
         """Repairs the object for printing or moulding, then checks it again: a flat base, a split
-        with pegs and sockets, drain holes, or vents. One step of undo."""
+        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
         ...
     async def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
