@@ -27,6 +27,10 @@ use sculptd_geometry::{PolyMesh, TriMesh};
 /// The height of a layer that the check of a result takes, mm: that of fine resin prints.
 const LAYER: f64 = 0.05;
 
+/// Volume of a pocket of a drained cavity above which it gets a hole too, mm3: the limit for cups of
+/// the process sla.
+const POCKET: f64 = 100.0;
+
 /// The repair of an object. Lengths and places are in the world's unit and frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WantedRepair {
@@ -180,8 +184,10 @@ fn cut(
     let (tool, plan) = match request.repair {
         WantedRepair::Holes { kind, diameter, inlet, least, near } => {
             let RepairRequest { up, plate, .. } = *request;
+            let pocket = plate.then_some(POCKET);
+            let layer = LAYER;
             let asked =
-                HoleSettings { kind, diameter, inlet, least, near, up, layer: LAYER, plate };
+                HoleSettings { kind, diameter, inlet, least, pocket, near, up, layer, plate };
             let solid = solid_of(&mesh, job)?;
             let plan = plan_holes(&solid, &asked, job)?;
             let most_left = plan.found - plan.voids;

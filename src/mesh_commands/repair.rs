@@ -196,7 +196,7 @@ pub fn run(args: &RepairArgs, library: &PresetLibrary, json: bool) -> Outcome {
     warnings.extend(made.warnings);
     let (mut parts, mut left) = (Vec::new(), Vec::new());
     for (file, mesh) in &made.files {
-        let tolerance = default_tolerance([&mesh, mesh]).tolerance;
+        let tolerance = default_tolerance([mesh, mesh]).tolerance;
         let written = write_checked(file, mesh, Some(tolerance), &job)?;
         warnings.extend(written.warnings);
         let name = file.display().to_string();
@@ -318,6 +318,7 @@ fn made(
         diameter: diameter / scale,
         inlet: args.inlet,
         least: least / scale.powi(3),
+        pocket: process.cup,
         near: None,
         up,
         layer: settings.layer() / scale,

@@ -8,13 +8,19 @@
 
 use glam::DVec3;
 use sculptd_geometry::PolyMesh;
+use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
 
 use super::tool::{Cylinder, united};
 use super::way_out::{WayOut, WaySearch};
-use super::{RepairError, rounding_volume, standing};
+use super::{RepairError, combined, rounding_volume, standing};
 use crate::layers::plate::PlateContact;
 use crate::layers::sweep::{SealedVoid, sweep};
+
+/// Rounds of holes for the pockets of opened cavities.
+const ROUNDS: usize = 4;
+/// Share of the size, and of the volume, within which two voids are one.
+const SAME: f64 = 1e-3;
 
 /// The kind of void that gets a hole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +52,9 @@ pub struct HoleSettings {
     pub inlet: bool,
     /// Only voids that hold more than this.
     pub least: f64,
+    /// Of trapped volumes: a pocket of an opened cavity that holds more than this and would stay
+    /// full while the part is built gets a hole too. `None`: it gets none.
+    pub pocket: Option<f64>,
     /// Only the void whose centre is nearest to this place.
     pub near: Option<DVec3>,
     /// The build direction.
@@ -94,66 +103,118 @@ pub fn plan_holes(
     settings: &HoleSettings,
     job: &Job,
 ) -> Result<HolePlan, RepairError> {
-    let radius = 0.5 * RepairError::expect_length("diameter", settings.diameter)?;
-    let (part, stand) = standing(solid, settings.up, settings.layer, job)?;
-    let contact = PlateContact::new(&part, &stand);
-    let found = sweep(&part, &stand, &contact, settings.layer, settings.plate, job)?;
-    let all = match settings.kind {
-        SealedKind::Trapped => found.trapped,
-        SealedKind::Cup => found.cups,
-    };
-    let least = settings.least + rounding_volume(&part);
-    let mut voids: Vec<SealedVoid> = all.into_iter().filter(|v| v.volume > least).collect();
-    let count = voids.len();
-    if let Some(near) = settings.near {
-        let far = |v: &SealedVoid| part.to_file(v.position).distance(near);
-        let nearest = voids.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b)));
-        voids = nearest.into_iter().collect();
-    }
+    RepairError::expect_length("diameter", settings.diameter)?;
+    let mut holes = DrilledHoles::default();
+    let (found, before) = holes.drill(solid, settings, &[], job)?;
     let name = settings.kind.name();
-    if voids.is_empty() {
+    if found == 0 {
         return Err(RepairError::NoFinding(name));
     }
-    let (mut cylinders, mut holes, mut notes) = (Vec::new(), Vec::new(), Vec::new());
-    let mut drained = 0;
-    for void in &voids {
-        job.check()?;
-        let mut ends = vec![(-stand.up, settings.plate, false)];
-        if settings.inlet {
-            ends.push((stand.up, false, true));
-        }
-        let before = holes.len();
-        for (down, plate, inlet) in ends {
-            let (void_of, number) = (&found.void_of[..], void.number);
-            let search =
-                WaySearch { part: &part, stand: &stand, void_of, number, radius, down, plate };
-            let Some(way) = search.best() else { continue };
-            let WayOut { start, along, wall, begin, end, sealed } = way;
-            cylinders.push(Cylinder {
-                from: part.to_file(start + along * begin),
-                to: part.to_file(start + along * end),
-                radius,
-                around: true,
-            });
-            let (from, to) = (part.to_file(start), part.to_file(start + along * wall));
-            holes.push(PlannedHole { from, to, inlet, sealed });
-            if sealed && !inlet {
-                let [x, y, z] = to.to_array();
-                notes.push(format!(
-                    "the hole at ({x:.3}, {y:.3}, {z:.3}) leads down to the plate, which seals it \
-                     while the part is built"
-                ));
-            }
-        }
-        drained += usize::from(holes.len() > before);
-        if holes.len() == before {
-            let [x, y, z] = part.to_file(void.position).to_array();
-            notes.push(format!("no hole leads out of the {name} at ({x:.3}, {y:.3}, {z:.3})"));
-        }
-    }
-    if holes.is_empty() {
+    if holes.holes.is_empty() {
         return Err(RepairError::NoWayOut(name));
     }
-    let tool = united(&cylinders, job)?;
-    Ok(HolePlan { tool, holes, voids: drained, found: count, notes })
+    let voids = holes.voids;
+    let mut tool = united(&holes.cylinders, job)?;
+    if let Some(least) = settings.pocket.filter(|_| settings.kind == SealedKind::Trapped) {
+        // A cavity with several feet has a pocket in each of the higher ones.
+        let pockets = HoleSettings { kind: SealedKind::Cup, inlet: false, near: None, ..*settings };
+        let pockets = HoleSettings { least, ..pockets };
+        for _ in 0..ROUNDS {
+            let count = holes.holes.len();
+            let opened = combined(solid, &tool, Operation::Difference, job)?.0;
+            holes.drill(&opened, &pockets, &before, job)?;
+            if holes.holes.len() == count {
+                break;
+            }
+            tool = united(&holes.cylinders, job)?;
+        }
+    }
+    let DrilledHoles { holes, notes, .. } = holes;
+    Ok(HolePlan { tool, holes, voids, found, notes })
+}
+
+/// The holes that were planned so far.
+#[derive(Debug, Default)]
+struct DrilledHoles {
+    cylinders: Vec<Cylinder>,
+    holes: Vec<PlannedHole>,
+    voids: usize,
+    notes: Vec<String>,
+}
+
+impl DrilledHoles {
+    /// Plans the holes of the voids of a solid, but for those cups that are in `known`. Returns the
+    /// number of voids that are findings, and all cups of the solid.
+    fn drill(
+        &mut self,
+        solid: &PolyMesh,
+        settings: &HoleSettings,
+        known: &[SealedVoid],
+        job: &Job,
+    ) -> Result<(usize, Vec<SealedVoid>), RepairError> {
+        let (part, stand) = standing(solid, settings.up, settings.layer, job)?;
+        let contact = PlateContact::new(&part, &stand);
+        let found = sweep(&part, &stand, &contact, settings.layer, settings.plate, job)?;
+        let placed = |v: &SealedVoid| SealedVoid { position: part.to_file(v.position), ..*v };
+        let cups: Vec<SealedVoid> = found.cups.iter().map(placed).collect();
+        let all = match settings.kind {
+            SealedKind::Trapped => &found.trapped,
+            SealedKind::Cup => &found.cups,
+        };
+        let least = settings.least + rounding_volume(&part);
+        let size = DVec3::from(part.sizes.dimensions).length();
+        let is_known = |v: &SealedVoid| {
+            let same = |k: &SealedVoid| {
+                let near = k.position.distance(part.to_file(v.position)) < SAME * size;
+                near && (k.volume - v.volume).abs() < SAME * v.volume
+            };
+            known.iter().any(same)
+        };
+        let wanted = |v: &&SealedVoid| v.volume > least && !is_known(v);
+        let mut voids: Vec<SealedVoid> = all.iter().filter(wanted).copied().collect();
+        let count = voids.len();
+        if let Some(near) = settings.near {
+            let far = |v: &SealedVoid| part.to_file(v.position).distance(near);
+            let nearest = voids.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b)));
+            voids = nearest.into_iter().collect();
+        }
+        let (radius, name) = (0.5 * settings.diameter, settings.kind.name());
+        for void in &voids {
+            job.check()?;
+            let mut ends = vec![(-stand.up, settings.plate, false)];
+            if settings.inlet {
+                ends.push((stand.up, false, true));
+            }
+            let before = self.holes.len();
+            for (down, plate, inlet) in ends {
+                let (void_of, number) = (&found.void_of[..], void.number);
+                let search =
+                    WaySearch { part: &part, stand: &stand, void_of, number, radius, down, plate };
+                let Some(way) = search.best() else { continue };
+                let WayOut { start, along, wall, begin, end, sealed } = way;
+                self.cylinders.push(Cylinder {
+                    from: part.to_file(start + along * begin),
+                    to: part.to_file(start + along * end),
+                    radius,
+                    around: true,
+                });
+                let (from, to) = (part.to_file(start), part.to_file(start + along * wall));
+                self.holes.push(PlannedHole { from, to, inlet, sealed });
+                if sealed && !inlet {
+                    let [x, y, z] = to.to_array();
+                    self.notes.push(format!(
+                        "the hole at ({x:.3}, {y:.3}, {z:.3}) leads down to the plate, which seals \
+                         it while the part is built"
+                    ));
+                }
+            }
+            self.voids += usize::from(self.holes.len() > before);
+            if self.holes.len() == before {
+                let [x, y, z] = part.to_file(void.position).to_array();
+                self.notes
+                    .push(format!("no hole leads out of the {name} at ({x:.3}, {y:.3}, {z:.3})"));
+            }
+        }
+        Ok((count, cups))
+    }
 }

@@ -18,6 +18,7 @@ fn settings(kind: SealedKind, up: DVec3, plate: bool) -> HoleSettings {
         diameter: 3.0,
         inlet: false,
         least: 0.0,
+        pocket: None,
         near: None,
         up,
         layer: 0.05,
@@ -148,6 +149,35 @@ fn a_sharp_keel_and_a_tip_drain_too() {
             let kept: f64 = left.cups.iter().map(|c| c.volume).sum();
             assert!(kept < 1.0 && !plan.holes[0].sealed, "plate {plate}: {:?}", left.cups);
         }
+    }
+}
+
+#[test]
+fn each_foot_of_a_cavity_drains_where_pockets_count() {
+    // Two feet, of which the higher one holds 10 x 12 x 20 up to the ridge between them.
+    let feet = [
+        [5.0, 5.0],
+        [15.0, 5.0],
+        [15.0, 20.0],
+        [25.0, 20.0],
+        [25.0, 8.0],
+        [35.0, 8.0],
+        [35.0, 30.0],
+        [5.0, 30.0],
+    ];
+    let mut cavity = flipped(&drawn_out(&feet, 20.0));
+    cavity.positions.iter_mut().for_each(|p| p.y += 5.0);
+    let part = joined(&block([0.0; 3], [40.0, 30.0, 36.0]), &cavity);
+    for (turn, shift) in poses() {
+        let (part, up) = (placed(&part, turn, shift), turn * DVec3::Z);
+        let asked = settings(SealedKind::Trapped, up, true);
+        let (plan, _, left) = drilled(&part, &asked);
+        assert_eq!((plan.holes.len(), left.trapped.len()), (1, 0));
+        assert!((left.cups[0].volume - 2400.0).abs() < 3.0, "{:?}", left.cups);
+        let (plan, _, left) = drilled(&part, &HoleSettings { pocket: Some(100.0), ..asked });
+        assert_eq!((plan.holes.len(), plan.voids, plan.found), (2, 1, 1));
+        let kept: f64 = left.cups.iter().map(|c| c.volume).sum();
+        assert!(left.trapped.is_empty() && kept < 1.0, "{:?}", left.cups);
     }
 }
 
