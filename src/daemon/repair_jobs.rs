@@ -27,8 +27,8 @@ use sculptd_geometry::{PolyMesh, TriMesh};
 /// The height of a layer that the check of a result takes, mm: that of fine resin prints.
 const LAYER: f64 = 0.05;
 
-/// Volume of a pocket of a drained cavity above which it gets a hole too, mm3: the limit for cups of
-/// the process sla.
+/// Volume of a pocket of a drained cavity above which it gets a hole too, mm3: the limit of the
+/// process sla for cups.
 const POCKET: f64 = 100.0;
 
 /// The repair of an object. Lengths and places are in the world's unit and frame.
