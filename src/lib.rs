@@ -83,16 +83,16 @@
 //!   scene and its undo, the world, camera, strokes, hands.
 //! * `sculptd-control` (`src/control`) depends on none: the requests, replies and events of the
 //!   control socket as types, their JSON schema, a client.
+//! * `sculptd-check` (`src/check`) depends on geometry: whether a part is ready to be printed or
+//!   moulded, as findings with place, value and limit, in which direction to build it, and repairs.
 //! * `sculptd-daemon` (`src/daemon`) depends on all of the above: the tick loop, simulated time,
 //!   sessions, control socket, kiosk, metrics, the page by which guests join.
 //! * `sculptd-network` (`src/network`) depends on the daemon and all below it: one sculpture shared
 //!   by several daemons, and a fleet of installations. Both protocols are state machines without
 //!   clock, IO and threads; Zenoh carries their messages (feature `network`, not in the default
 //!   set).
-//! * `sculptd-window` (`src/window`) depends on the daemon and all below it, and on check: panels
-//!   (egui) and viewer (wgpu), which read snapshots and send commands.
-//! * `sculptd-check` (`src/check`) depends on geometry: whether a part is ready to be printed or
-//!   moulded, as findings with place, value and limit, and in which direction to build it.
+//! * `sculptd-window` (`src/window`) depends on the daemon and all below it: panels (egui) and
+//!   viewer (wgpu), which read snapshots and send commands.
 //! * `sculptd-mesh-commands` (`src/mesh_commands`) depends on geometry, check, and on the clock of
 //!   the devices: the subcommands over mesh files. They are separate so that an edit of the clay
 //!   does not recompile them.

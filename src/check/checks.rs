@@ -18,6 +18,7 @@ use crate::layers::sweep::sweep;
 use crate::moulding::{best_parting, draft_regions, undercuts};
 use crate::part::{PreparedPart, Standing};
 use crate::preset::BuildMethod;
+use crate::repair::rounding_volume;
 use crate::settings::CheckSettings;
 use crate::walls::{WallLimits, thin_places, wall_spread, welded};
 
@@ -172,7 +173,7 @@ fn layers(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         }
     }
     if let Some(limit) = p.trapped {
-        for v in found.trapped.iter().filter(|v| v.volume > limit + small(part)) {
+        for v in found.trapped.iter().filter(|v| v.volume > limit + rounding_volume(part)) {
             let what = match p.method {
                 BuildMethod::Layers if p.cup.is_some() => "resin stays in it; add a drain hole",
                 BuildMethod::Powder => "powder stays in it; add an escape hole",
@@ -204,12 +205,6 @@ fn layers(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         }
     }
     Ok((out, PartFacts::default()))
-}
-
-/// A volume that is only rounding.
-fn small(part: &PreparedPart) -> f64 {
-    let [x, y, z] = part.sizes.dimensions;
-    part.tolerance * (x * y + y * z + z * x)
 }
 
 fn down_faces(c: &CheckView<'_>) -> Result<Outcome, Stopped> {

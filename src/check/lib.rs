@@ -14,6 +14,7 @@
 //! | draft, undercuts, parting direction | [`moulding`] |
 //! | weight, time, cooling, clamping | [`estimates`] |
 //! | in which direction to build | [`orientation`] |
+//! | how to repair it: base, split, holes | [`repair`] |
 //!
 //! No claim without a check: [`CheckAnswer::ok`] is true only if every check that the process
 //! asks for ran. A check that could not run is a finding. A tie with a limit passes. Results are
@@ -33,6 +34,7 @@ pub mod orientation;
 pub mod part;
 pub mod preset;
 pub mod regions;
+pub mod repair;
 pub mod report;
 mod run;
 pub mod settings;

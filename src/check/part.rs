@@ -127,6 +127,20 @@ impl PreparedPart {
         self.tree().closest_hit(ray, against).map(|h| (f64::from(h.t), h.triangle))
     }
 
+    /// The distance from `from` along `along` (of unit length) to the first accepted face through
+    /// which the ray leaves the solid, from `least` on.
+    pub fn exit_along(
+        &self,
+        from: DVec3,
+        along: DVec3,
+        least: f64,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<(f64, u32)> {
+        let ray = Ray { t_min: least as f32, ..Ray::new(from.as_vec3(), along.as_vec3()) };
+        let out = |t: u32| self.normals[t as usize].dot(along) > 0.0 && accept(t);
+        self.tree().closest_hit(ray, out).map(|h| (f64::from(h.t), h.triangle))
+    }
+
     /// Returns true if a face that looks against the ray blocks it from `least` on.
     pub fn blocked(&self, from: DVec3, along: DVec3, least: f64) -> bool {
         let ray = Ray { t_min: least as f32, ..Ray::new(from.as_vec3(), along.as_vec3()) };

@@ -7,7 +7,7 @@ use sculptd_daemon::startup::StartupError;
 pub use sculptd_mesh_commands::{Fail, Outcome, answer};
 use sculptd_mesh_commands::{
     boolean, check, convert, decimate, distance, hollow, info, measure, offset, project, remesh,
-    slice, subdivide, thickness,
+    repair, slice, subdivide, thickness,
 };
 
 pub mod bench;
@@ -153,6 +153,8 @@ pub enum Command {
     Thickness(thickness::ThicknessArgs),
     /// Whether a part is ready to print or mould: findings against limits, and how it should stand.
     Check(check::CheckArgs),
+    /// Repair a part (flat base, split with pegs, drain holes, vents, draft) and check it again.
+    Repair(repair::RepairArgs),
     /// Volume, area, dimensions, projected areas and thickness of a part.
     Measure(measure::MeasureArgs),
     /// Signed distance to a solid, at points or on a grid.
@@ -217,6 +219,9 @@ pub fn run() -> u8 {
         }
         Some(Command::Check(args)) => {
             check_presets::all().and_then(|library| check::run(&args, &library, cli.json))
+        }
+        Some(Command::Repair(args)) => {
+            check_presets::all().and_then(|library| repair::run(&args, &library, cli.json))
         }
         Some(Command::Measure(args)) => measure::run(&args, cli.json),
         Some(Command::Info(args)) => info::run(&args, cli.json),

@@ -40,6 +40,7 @@ pub mod layers;
 pub mod method;
 pub mod people;
 pub mod range;
+pub mod repair;
 pub mod retopology;
 pub mod scene;
 #[cfg(test)]

@@ -32,6 +32,7 @@ use crate::layers::{
     LayerReply, LayerSetParams, LayersReply,
 };
 use crate::people::PeopleReply;
+use crate::repair::{RepairParams, RepairReply};
 use crate::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
     RemeshQuadsReply,
@@ -256,6 +257,9 @@ methods! {
     /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
     /// New crossings are undone where they can be and counted, and the border of the mask stays.
     "decimate" Decimate decimate(DecimateParams) -> DecimateReply;
+    /// Repairs the object for printing or moulding, then checks it again: a flat base, a split with
+    /// pegs and sockets, drain holes, vents, or draft. One step of undo.
+    "repair" Repair repair(RepairParams) -> RepairReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;
     /// Every object of the scene, and which is active.

@@ -22,6 +22,8 @@ impl Range {
 
 /// A coordinate of a point in space, in the mesh's unit.
 pub const COORDINATE: Range = Range { min: -1e6, max: 1e6 };
+/// A length above 0, in the mesh's unit.
+pub const LENGTH: Range = Range { min: 1e-6, max: 1e6 };
 /// A coordinate of a point in the view. (0, 0) is the top left and (1, 1) the bottom right; points
 /// outside are beside the view.
 pub const VIEW: Range = Range { min: -10.0, max: 10.0 };

@@ -51,6 +51,7 @@ pub mod quad_job;
 #[cfg(unix)]
 pub mod random_token;
 pub mod remesh_job;
+pub mod repair_jobs;
 pub mod scene_jobs;
 #[cfg(unix)]
 pub mod service;

@@ -128,7 +128,7 @@ pub fn selected(
 }
 
 /// An object, its clay, and what an [`Exchange`] says of it.
-fn operand(
+pub(crate) fn operand(
     shown: &Published,
     id: ObjectId,
 ) -> Result<(&ObjectView, &Snapshot, Operand), CombineError> {
@@ -156,7 +156,7 @@ fn seen_from(clay: &Snapshot, own: &ObjectTransform, frame: &ObjectTransform) ->
     mesh
 }
 
-fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
+pub(crate) fn built(plain: &TriMesh, job: &Job) -> Result<Clay, CombineError> {
     Clay::build(plain, job).map_err(|e| CombineError::Build(e.to_string()))
 }
 

@@ -25,6 +25,7 @@ pub mod offset;
 pub mod project;
 pub mod remesh;
 pub mod remesh_quads;
+pub mod repair;
 pub mod slice;
 pub mod subdivide;
 pub mod thickness;

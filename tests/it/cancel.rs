@@ -21,12 +21,15 @@ use sculptd_geometry::shapes;
 /// The methods that compute, with parameters for a scene of two balls of radius 1.
 fn methods(dir: &Path, other: &Value) -> Vec<(&'static str, Value)> {
     let file = dir.join("tool.ply");
+    let plane = json!({ "point": [0, 0, 0.1], "normal": [0, 0, 1], "radius": 0.1 });
     let both = |operation: &str| json!({ "operation": operation, "a": 0, "b": other });
     vec![
         ("load", json!({ "path": file })),
         ("scene.add", json!({ "path": file })),
         ("boolean", json!({ "operation": "difference", "path": file, "at": [0.3, 0.2, 0.1] })),
         ("trim", json!({ "part": { "box": [0.0, 0.0, 0.45, 1.0] } })),
+        ("repair", json!({ "repair": { "base": 0.4 } })),
+        ("repair", json!({ "repair": { "split": plane } })),
         ("scene.boolean", both("union")),
         ("scene.merge", json!({ "ids": [0, other] })),
         ("scene.mirror", json!({ "id": 0, "axis": "x" })),

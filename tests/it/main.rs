@@ -51,6 +51,8 @@ mod random_work;
 mod read_back;
 mod recovery;
 mod remesh_live;
+#[cfg(unix)]
+mod repairs;
 mod retopology_live;
 #[cfg(unix)]
 mod scene;

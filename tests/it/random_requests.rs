@@ -68,6 +68,16 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
         "thickness" => json!({ "rays": 1 }),
         "join" => json!({ "operation": operation }),
         "trim" => json!({ "part": { "box": [0.0, 0.0, 0.45, 1.0] } }),
+        "repair" => match r.below(4) {
+            0 => json!({ "repair": { "base": 0.05 + 0.3 * r.part() } }),
+            1 => json!({ "repair": { "draft": 1.0 + r.part() } }),
+            2 => json!({ "repair": { "drain": { "diameter": 0.1 } }, "plate": r.below(2) == 0 }),
+            _ => {
+                let point = [0.0, r.part() - 0.5, 0.0];
+                let plane = json!({ "point": point, "normal": [0, 1, 0], "radius": 0.1 });
+                json!({ "repair": { "split": plane } })
+            }
+        },
         "level" => json!({ "to": r.of(&["up", "down"]) }),
         "remesh" => json!({ "voxel": 0.08 + 0.1 * r.part() }),
         "remesh.quads" => json!({ "quads": 200 + r.below(200) }),

@@ -5,6 +5,7 @@ mod beside;
 mod brush_panel;
 mod check;
 mod check_maps;
+mod check_repairs;
 mod cut;
 mod files;
 mod four_views;

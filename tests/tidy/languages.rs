@@ -22,7 +22,7 @@ const OF_DATA: [&str; 8] = [
 ];
 
 /// Texts that stay in the code, and why.
-const STAY: [(&str, &[&str]); 17] = [
+const STAY: [(&str, &[&str]); 18] = [
     // English names of what messages name too, by which Ctrl+K finds an action in any language:
     // tests/it/viewer/languages.rs holds them equal to the messages.
     ("panels/state/action.rs", &[]),
@@ -41,6 +41,7 @@ const STAY: [(&str, &[&str]); 17] = [
     ("panels/timing.rs", &["p50", "p99", "max", "ms"]),
     ("panels/files.rs", &["stl, obj, ply, off, glb, 3mf"]),
     ("panels/analysis.rs", &[" mm"]),
+    ("panels/check_repairs.rs", &[" mm"]),
     // Units as the checks state them, each with a message, and the name of a preset.
     ("panels/check_values.rs", &["mm", "mm2", "mm3", "degrees", "edges", "pairs", "times", "kN"]),
     ("panels/state/check.rs", &["fdm"]),

@@ -21,7 +21,7 @@ use sculptd_geometry::distance::topology::NO_PARTNER;
 use sculptd_geometry::job::{Cancelled, Job};
 
 use super::plate::{OUTSIDE, PlateContact};
-use super::voids::{NONE, Voids, measured};
+use super::voids::{NONE, Voids, measured, walls};
 use crate::part::{PreparedPart, Standing};
 
 /// A contour that begins with nothing below it.
@@ -48,6 +48,8 @@ pub struct SealedVoid {
     pub opens: Option<f64>,
     /// True if only the plate seals it below: it is open once it is off the plate.
     pub through: bool,
+    /// Its number in [`SweepResult::void_of`].
+    pub number: u32,
 }
 
 /// The findings of one sweep.
@@ -59,7 +61,12 @@ pub struct SweepResult {
     pub cups: Vec<SealedVoid>,
     /// Voids that never open; the largest first.
     pub trapped: Vec<SealedVoid>,
+    /// The number of the void that each triangle borders, or [`NO_VOID`]; empty without voids.
+    pub void_of: Vec<u32>,
 }
+
+/// The number of no void.
+pub const NO_VOID: u32 = NONE;
 
 /// A piece of the surface below the sweep's height.
 #[derive(Clone, Copy)]
@@ -219,8 +226,11 @@ pub fn sweep(
             }
         }
     }
-    let mut out = SweepResult { islands, ..Default::default() };
-    for ((sum, opens), plated) in found.iter().zip(&voids.opened).zip(plated) {
+    let void_of = walls(part, &voids, |t| node(lowest(t)), contact);
+    let mut out = SweepResult { islands, void_of, ..Default::default() };
+    for (number, ((sum, opens), plated)) in found.iter().zip(&voids.opened).zip(plated).enumerate()
+    {
+        let number = number as u32;
         if !(sum.volume > 0.0) {
             continue;
         }
@@ -229,7 +239,7 @@ pub fn sweep(
         let height = position.dot(stand.up).clamp(stand.plate, stand.top);
         let position = position + stand.up * (height - position.dot(stand.up));
         let through = plated && opens.is_some();
-        let found = SealedVoid { position, volume: sum.volume, opens, through };
+        let found = SealedVoid { position, volume: sum.volume, opens, through, number };
         if opens.is_some() || plated { &mut out.cups } else { &mut out.trapped }.push(found);
     }
     out.cups.sort_by(|a, b| b.volume.total_cmp(&a.volume));

@@ -118,6 +118,23 @@ pub(super) fn measured(
     sums
 }
 
+/// The cup that each triangle borders, or [`NONE`]; empty where there are no cups.
+pub(super) fn walls(
+    part: &PreparedPart,
+    voids: &Voids,
+    node: impl Fn(u32) -> u32,
+    contact: &PlateContact,
+) -> Vec<u32> {
+    if voids.opened.is_empty() {
+        return Vec::new();
+    }
+    let cup = |t: u32| match part.corners(t) {
+        Some(_) if !contact.triangles[t as usize] => voids.cup[node(t) as usize],
+        _ => NONE,
+    };
+    (0..part.triangles() as u32).map(cup).collect()
+}
+
 /// The part of a convex polygon below a height.
 fn below_level(polygon: &[DVec3], level: f64, up: DVec3) -> Vec<DVec3> {
     let mut out = Vec::with_capacity(polygon.len() + 1);

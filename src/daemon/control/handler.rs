@@ -11,14 +11,14 @@ use serde_json::Value;
 use super::face_sets::{self, SetsDone};
 pub use super::host::MAX_MESH_FILE;
 use super::host::{Host, failed};
-use super::jobs::JobPlace;
+use super::joining::boolean;
 use super::layers::{self, LayerDone};
 use super::snap::operation;
 use super::status_reply::{self, convert, other_version};
 use super::stroke::LentBrush;
 use super::view_region::mask_region;
-use super::{guests_reply, history, mask, measurement, people_reply, retopology, scene, snap};
-use crate::operations::{OperationError, Target};
+use super::{guests_reply, history, mask, measurement, people_reply, repairs};
+use super::{retopology, scene, snap};
 use crate::trim::Part;
 use crate::window_link::DisplayVariables;
 use crate::{Published, boolean_jobs, scene_jobs, startup, trim};
@@ -32,6 +32,7 @@ use sculptd_control::guests;
 use sculptd_control::layers::{self as asked_layers, LayerParams};
 use sculptd_control::method::{self, METHODS};
 use sculptd_control::people::PeopleReply;
+use sculptd_control::repair::{RepairParams, RepairReply};
 use sculptd_control::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
     RemeshQuadsReply,
@@ -41,7 +42,6 @@ use sculptd_control::snap::{SnapParams, SnapReply};
 use sculptd_control::status::{self, NoParams, SentReply, Versions};
 use sculptd_control::view::{CameraSettings, ReachParams, ReachReply};
 use sculptd_control::{Handler, Request, RpcError, event};
-use sculptd_devices::Clock;
 use sculptd_engine::command::Command;
 use sculptd_engine::hand::ReachBox;
 use sculptd_engine::scene::{ObjectId, SceneCommand};
@@ -121,27 +121,6 @@ fn safe(path: &Path) -> Result<(), RpcError> {
 fn load(path: &Path, job: &Job) -> Result<startup::Loaded, RpcError> {
     safe(path)?;
     startup::load_within(path, MAX_MESH_FILE, job).map_err(failed)
-}
-
-/// Runs a Boolean in its place.
-fn boolean(
-    host: &Host,
-    place: &JobPlace<'_>,
-    work: impl FnOnce(Target<'_>, &Job) -> Result<boolean_jobs::Joined, OperationError>,
-) -> Result<edit::BooleanReply, RpcError> {
-    let clock = Clock::monotonic();
-    let begun = clock.now_us();
-    let (layers, sets) = (layers::count(host), face_sets::count(host));
-    let joined = work(host.link().target(), &place.job).map_err(failed)?;
-    Ok(edit::BooleanReply {
-        layers_baked: if joined.local { 0 } else { layers },
-        sets_dropped: if joined.local { 0 } else { sets },
-        local: joined.local,
-        pages_written: joined.pages_written as u64,
-        pages_shared: joined.pages_shared as u64,
-        tries: joined.tries as u64,
-        seconds: (clock.now_us() - begun) as f64 * 1e-6,
-    })
 }
 
 impl Handler for Host {
@@ -536,6 +515,10 @@ impl Handler for Host {
 
     fn decimate(&self, params: DecimateParams) -> Result<DecimateReply, RpcError> {
         retopology::decimate(self, params)
+    }
+
+    fn repair(&self, params: RepairParams) -> Result<RepairReply, RpcError> {
+        repairs::repair(self, &params)
     }
 
     fn boolean(&self, params: edit::BooleanParams) -> Result<edit::BooleanReply, RpcError> {

@@ -3,6 +3,7 @@
 use crate::command_queue::NoAnswer;
 use crate::scene_jobs::CombineError;
 use crate::snap_jobs::SnapError;
+use sculptd_check::repair::RepairError;
 use sculptd_clay::LevelError;
 use sculptd_clay::face_sets::{ExtractError, SetsError};
 use sculptd_clay::measured_mask::MeasuredMaskError;
@@ -62,6 +63,8 @@ pub enum OperationError {
     Extract(#[from] ExtractError),
     #[error(transparent)]
     Mask(#[from] MeasuredMaskError),
+    #[error(transparent)]
+    Repair(#[from] RepairError),
 }
 
 impl OperationError {

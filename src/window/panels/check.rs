@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use super::act::act;
+use super::check_repairs;
 use super::check_values;
 use super::rows;
 use super::state::{Action, CheckPage, CheckStop, MarkedFinding, UiRequest, UiState, View};
@@ -13,6 +14,7 @@ use crate::look::Map;
 use glam::DVec3;
 use sculptd_check::Severity;
 use sculptd_check::preset::BuildMethod;
+use sculptd_check::repair::holes::SealedKind;
 
 /// Interval at which the progress is redrawn, while a check runs.
 const LOOK: Duration = Duration::from_millis(100);
@@ -36,8 +38,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     ui.add_space(8.0);
     let page = &mut ui_state.check;
     status(ui, view, page, out);
-    findings(ui, view, page, out);
-    facts(ui, view, page);
+    let wanted = findings(ui, view, ui_state, out);
+    out.extend(wanted.map(|(kind, place)| check_repairs::request(ui_state, kind, place)));
+    facts(ui, view, &ui_state.check);
+    check_repairs::ui(ui, view, ui_state, out);
 }
 
 /// Process, machine, material, objects and direction.
@@ -202,9 +206,19 @@ fn status(ui: &mut egui::Ui, view: &View<'_>, page: &CheckPage, out: &mut Vec<Ui
     }
 }
 
-/// The list; each row is a button that flies to its place, where it has one.
-fn findings(ui: &mut egui::Ui, view: &View<'_>, page: &mut CheckPage, out: &mut Vec<UiRequest>) {
-    let Some(found) = page.shown() else { return };
+/// The list; each row is a button that flies to its place, where it has one. Returns the finding
+/// that a person wants repaired.
+fn findings(
+    ui: &mut egui::Ui,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    out: &mut Vec<UiRequest>,
+) -> Option<(SealedKind, DVec3)> {
+    let free = !ui_state.joining;
+    let page = &mut ui_state.check;
+    let found = page.shown()?;
+    let active = view.state.scene.active().map(|o| o.id);
+    let mut wanted = None;
     let (all, present) = (found.by_severity(), found.is_present(view.state));
     let several = found.objects.len() > 1;
     let mut marked = page.marked;
@@ -226,6 +240,10 @@ fn findings(ui: &mut egui::Ui, view: &View<'_>, page: &mut CheckPage, out: &mut 
             marked = Some(mark);
             out.push(UiRequest::FlyTo(place.as_vec3()));
         }
+        if present && Some(object.id) == active {
+            let pressed = ui.push_id(*at, |ui| check_repairs::button(ui, finding, free)).inner;
+            wanted = pressed.map(|kind| (kind, place)).or(wanted);
+        }
     }
     if all.len() > LISTED {
         ui.colored_label(theme::quiet(ui), tr!("check-more", count = all.len() - LISTED));
@@ -234,6 +252,7 @@ fn findings(ui: &mut egui::Ui, view: &View<'_>, page: &mut CheckPage, out: &mut 
         ui.colored_label(theme::quiet(ui), warning);
     }
     page.marked = marked;
+    wanted
 }
 
 /// Figures of the part, if they are of one object as it is now.

@@ -12,6 +12,7 @@ mod brush_picture;
 mod brush_size;
 mod camera_preview;
 pub mod check;
+mod check_repairs;
 pub mod check_values;
 pub mod chooser;
 mod colours;

@@ -38,7 +38,12 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         let triangles = (left.round() as usize).max(LEAST);
         out.push(UiRequest::Decimate(DecimateWanted { triangles, max_error: None }));
     }
-    if let Some(job) = &wanted.under_way {
+    progress(ui, ui_state);
+}
+
+/// Shows the progress of an operation on the whole object, with a button that cancels it.
+pub fn progress(ui: &mut egui::Ui, ui_state: &UiState) {
+    if let Some(job) = &ui_state.retopology.under_way {
         ui.horizontal(|ui| {
             let percent = tr!("percent", value = format!("{:.0}", job.done() * 100.0));
             ui.add(egui::ProgressBar::new(job.done()).desired_width(120.0).text(percent));

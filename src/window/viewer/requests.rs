@@ -116,6 +116,11 @@ impl WindowState {
                 let job = self.begin_change();
                 self.tasks.decimate(wanted, job, state, commands);
             }
+            UiRequest::Repair(request) => {
+                let to = (wiring.published.clone(), wiring.commands.clone());
+                let job = self.begin_change();
+                self.tasks.repair(request, job, to);
+            }
             UiRequest::Reference => self.before = Some(state.mesh.clone()),
             UiRequest::Outline(path) => {
                 if let Some(found) = &self.ui_state.sizes.found {

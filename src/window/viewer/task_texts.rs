@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::language::tr;
+use sculptd_daemon::repair_jobs::RepairDone;
 use sculptd_geometry::boolean::Operation;
 
 /// A file was written.
@@ -23,4 +24,22 @@ pub(super) fn operation_title(operation: Operation) -> String {
         Operation::Difference => "operation-difference",
         Operation::ReverseDifference => "operation-reverse-difference",
     })
+}
+
+/// The message after a repair: the holes, the pegs, and the findings that are left.
+pub(super) fn repaired(done: &RepairDone) -> String {
+    let trapped: usize = done.objects.iter().map(|(_, left)| left.trapped.len()).sum();
+    let cups: usize = done.objects.iter().map(|(_, left)| left.cups.len()).sum();
+    let (holes, pegs) = (done.holes.len(), done.pegs.len());
+    let mut text = match done.repaired {
+        true => tr!("task-repaired", holes = holes, pegs = pegs),
+        false => tr!("task-not-repaired"),
+    };
+    text.push('\n');
+    text.push_str(&tr!("task-repair-left", trapped = trapped, cups = cups));
+    for note in &done.notes {
+        text.push('\n');
+        text.push_str(note);
+    }
+    text
 }

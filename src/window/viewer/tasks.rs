@@ -15,7 +15,7 @@ use super::latest_wins::LatestWins;
 use super::look_files::LookFiles;
 use super::pages::MapValues;
 use super::preview::{self, Preview};
-use super::task_texts::{failed, operation_title, saved};
+use super::task_texts::{failed, operation_title, repaired, saved};
 use super::thickness_task::{ThicknessRequest, WallReport, follow};
 use super::wiring::Wiring;
 use crate::language::{current, set_current, tr};
@@ -32,13 +32,14 @@ use sculptd_daemon::decimate_job::{DecimateMade, DecimateWanted};
 use sculptd_daemon::operations::{self, Computed, Installed, OperationError, Target};
 use sculptd_daemon::quad_job::{QuadsMade, QuadsWanted};
 use sculptd_daemon::remesh_job::{Remeshed, Wanted};
+use sculptd_daemon::repair_jobs::RepairRequest;
 use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
 use sculptd_daemon::snap_jobs::{self, PickedFace};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{
     Published, boolean_jobs, decimate_job, face_set_jobs, mask_jobs, polygons, quad_job,
-    remesh_job, scene_jobs, startup,
+    remesh_job, repair_jobs, scene_jobs, startup,
 };
 use sculptd_devices::Clock;
 use sculptd_engine::answer::Answer;
@@ -370,6 +371,14 @@ impl Tasks {
             let to = Target { published: &shown, commands: &commands };
             trim::carry_out(to, &part, &Job::default())?;
             Ok(tr!("task-trimmed"))
+        });
+    }
+
+    /// Repairs the active object.
+    pub fn repair(&self, request: RepairRequest, job: Arc<Job>, (shown, commands): Loop) {
+        self.report("sculptd-boolean", move || {
+            let to = Target { published: &shown, commands: &commands };
+            repair_jobs::carry_out(to, &request, &job).map(|done| repaired(&done))
         });
     }
 

@@ -8,15 +8,19 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use sculptd_check::preset::{CheckPreset, MaterialPreset, PrinterPreset, ProcessPreset};
+use sculptd_check::preset::{
+    BuildMethod, CheckPreset, MaterialPreset, PrinterPreset, ProcessPreset,
+};
 use sculptd_check::settings::UnknownPreset;
 use sculptd_check::{
     CheckAnswer, CheckProgress, CheckSettings, Finding, FindingKind, PresetLibrary, Severity,
 };
 use sculptd_daemon::Published;
+use sculptd_daemon::repair_jobs::{RepairRequest, WantedRepair};
 use sculptd_engine::scene::{ObjectId, ObjectTransform};
 use sculptd_geometry::job::Job;
 
+use super::repairs::RepairChoice;
 use crate::look::Map;
 
 /// The process that is chosen first.
@@ -178,6 +182,8 @@ pub struct CheckPage {
     pub marked: Option<MarkedFinding>,
     /// The best direction was asked for: the next check searches for it.
     pub searches: bool,
+    /// The numbers of repairs.
+    pub repairs: RepairChoice,
 }
 
 impl CheckPage {
@@ -221,6 +227,12 @@ impl CheckPage {
             let process = name.into();
             self.choice = CheckChoice { process, printer: None, material: None, visible, up };
         }
+    }
+
+    /// A repair of the active object for the chosen process and direction.
+    pub fn repair(&self, repair: WantedRepair) -> RepairRequest {
+        let plate = self.process().is_none_or(|p| p.method == BuildMethod::Layers);
+        RepairRequest { repair, up: self.choice.up, plate }
     }
 
     /// The result, if it is one of the present choice.

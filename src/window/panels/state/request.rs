@@ -8,6 +8,7 @@ use sculptd_clay::measured_mask::MaskMeasure;
 use sculptd_daemon::decimate_job::DecimateWanted;
 use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
+use sculptd_daemon::repair_jobs::RepairRequest;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::window_link::NextSculpture;
 use sculptd_devices::pad_actions::{Binding, Control};
@@ -74,6 +75,8 @@ pub enum UiRequest {
     Quads(QuadsWanted),
     /// The object gets fewer triangles.
     Decimate(DecimateWanted),
+    /// The object is repaired for printing or moulding.
+    Repair(RepairRequest),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

@@ -197,6 +197,9 @@ class DecimateReply(TypedDict):
     # What must be known of the figures, one sentence each.
     warnings: NotRequired[Sequence[str]]
 
+# A hole that was drilled.
+DrilledHole: TypeAlias = dict[str, Any]
+
 # The name of an event, as subscribe lists it.
 EventName: TypeAlias = Literal['work', 'history', 'brush', 'losses', 'journal']
 
@@ -417,6 +420,18 @@ class HistoryState(TypedDict):
     redo_steps: int
     # Number of steps that undo can reach.
     undo_steps: int
+
+# The holes of drain and vent.
+class HoleRepair(TypedDict):
+    # Only the cavity or cup whose centre is nearest to this place; without it all of them.
+    at: NotRequired[Sequence[float] | None]
+    # The diameter of a hole.
+    diameter: float
+    # A second hole at the highest point, through which air comes in.
+    inlet: NotRequired[bool]
+    # Only cavities and cups that hold more than this, in cubic units. Without it 0 for cavities and
+    # 100 for cups.
+    least: NotRequired[float | None]
 
 # Parameters of join.
 class JoinParams(TypedDict):
@@ -882,6 +897,52 @@ class RenameParams(TypedDict):
     # Its new name; several objects may have the same.
     name: str
 
+# A repair of an object.
+RepairKind: TypeAlias = dict[str, Any]
+
+# Parameters of repair. Lengths and places are in the unit and the frame of the world.
+class RepairParams(TypedDict):
+    # True if the object is built on a plate, which seals what leads down to it.
+    plate: NotRequired[bool]
+    # The repair of the active object.
+    repair: RepairKind
+    # The build direction, away from the plate.
+    up: NotRequired[Sequence[float]]
+
+# Reply of repair: the changes, and the result of a check of them.
+class RepairReply(TypedDict):
+    # The holes that were drilled.
+    holes: Sequence[DrilledHole]
+    # Findings that the repair left, and remarks on how it was carried out, one sentence each.
+    notes: Sequence[str]
+    # The results, each as it was checked.
+    objects: Sequence[RepairedObject]
+    # The centre of each peg, in the plane of the split.
+    pegs: Sequence[Sequence[float]]
+    # True if the check no longer finds what was repaired, and every result is one solid.
+    repaired: bool
+    # Duration, in seconds.
+    seconds: float
+
+# A repaired object, and the result of its check.
+class RepairedObject(TypedDict):
+    # The flat area on the plate, in square units.
+    base_area: float
+    # True if every edge has two faces.
+    closed: bool
+    # Suction cups, the largest first.
+    cups: Sequence[SealedPlace]
+    # The object.
+    id: int
+    # True if the faces around each vertex and edge are one fan.
+    manifold: bool
+    # Pairs of triangles that cross each other.
+    self_intersections: int
+    # Enclosed cavities, the largest first.
+    trapped: Sequence[SealedPlace]
+    # The enclosed volume, in cubic units.
+    volume: float
+
 # Parameters of scene.reshape.
 class ReshapeParams(TypedDict):
     # As [AddParams::edge].
@@ -917,6 +978,13 @@ class SceneReply(TypedDict):
     active: int
     # All objects, in their order.
     objects: Sequence[ObjectInfo]
+
+# An enclosed cavity, or a suction cup.
+class SealedPlace(TypedDict):
+    # The centre of its volume.
+    at: Sequence[float]
+    # Its volume, in cubic units.
+    volume: float
 
 # Reply of a method that only hands a command to the loop, which carries it out at its next tick.
 class SentReply(TypedDict):
@@ -988,6 +1056,21 @@ class SnapReply(TypedDict):
     off: float
     # Its new transform.
     transform: Placement
+
+# The plane and the pegs of a split.
+class SplitRepair(TypedDict):
+    # The least distance between a peg and its socket.
+    clearance: NotRequired[float]
+    # The length of a peg beyond the plane.
+    length: NotRequired[float]
+    # The direction of the part that gets the sockets; the other gets the pegs.
+    normal: Sequence[float]
+    # Pegs at most; 0 splits without pegs.
+    pegs: NotRequired[int]
+    # A point of the plane.
+    point: Sequence[float]
+    # The radius of a peg.
+    radius: NotRequired[float]
 
 # Parameters of status.
 class StatusParams(TypedDict):
@@ -1463,6 +1546,10 @@ class Client:
     def redo(self) -> SentReply:
         """Redoes the step that was undone last; of a shared sculpture as undo."""
         ...
+    def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
+        """Repairs the object for printing or moulding, then checks it again: a flat base, a split
+        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
+        ...
     def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
         ...
@@ -1757,6 +1844,10 @@ class AsyncClient:
         ...
     async def redo(self) -> SentReply:
         """Redoes the step that was undone last; of a shared sculpture as undo."""
+        ...
+    async def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
+        """Repairs the object for printing or moulding, then checks it again: a flat base, a split
+        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
         ...
     async def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
