@@ -25,7 +25,7 @@ use crate::simd::wide::{self, Wide, WideWork};
 const SAME_SIDE: f32 = 0.94;
 /// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
 /// a wall.
-pub(super) const CORNER: f32 = -(OPPOSED as f32);
+const CORNER: f32 = -(OPPOSED as f32);
 /// cos 60 degrees: a side turned by more than this is beside the wall.
 const FLANK: f32 = 0.5;
 /// cos 20 degrees: a touch farther from the normal, seen from the site, is beside the wall.

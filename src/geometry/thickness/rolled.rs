@@ -14,7 +14,7 @@
 
 use glam::Vec3;
 
-use super::ball::{CORNER, InscribedBall, SLACK, nearest_on};
+use super::ball::{InscribedBall, SLACK, nearest_on};
 use super::ray::{Caster, Site};
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Ray, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
@@ -47,6 +47,7 @@ const SAME_WALL: f32 = 0.9;
 impl Caster<'_> {
     /// The largest ball that the wall holds at a site. `None` where nothing holds one.
     pub fn wall_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
+        let held = |diameter| InscribedBall { diameter, in_corner: false };
         let ball = self.opposed_ball(site)?;
         let half = ball.diameter * 0.5;
         let centre = site.point - site.away * half;
@@ -55,7 +56,7 @@ impl Caster<'_> {
             return Some(ball);
         }
         let rolled = self.roll(centre).filter(|d| *d < SAME_WALL * ball.diameter);
-        Some(rolled.map_or(ball, |diameter| InscribedBall { diameter, in_corner: false }))
+        Some(rolled.map_or(ball, held))
     }
 
     /// Returns the diameter of the ball that rolls from a place inside the solid until it is held.
@@ -64,9 +65,11 @@ impl Caster<'_> {
         let (lo, hi) = self.tree.bounds();
         let largest = (hi - lo).length();
         if r < largest * LEAST {
-            return None;
+            // On the surface, as far as single precision goes: a little into the solid.
+            let facet = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.triangle;
+            centre -= self.face_normals[facet as usize] * (self.sign * largest * 10.0 * LEAST);
+            r = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.distance() as f32;
         }
-        let mut last = Vec3::ZERO;
         for _ in 0..ROLLS {
             if r > largest {
                 return None;
@@ -75,17 +78,9 @@ impl Caster<'_> {
             let way = steepest(&touches);
             let next = if way.length() <= HELD { None } else { self.step(centre, r, way) };
             let Some(next) = next else {
-                let touching: Vec<BallTouch> =
-                    touches.iter().filter(|t| t.distance <= r * 1.001).copied().collect();
-                let on = steepest(&touching);
-                return Some(self.settled(
-                    &touching,
-                    r,
-                    if on.length() > HELD { on } else { last },
-                ));
+                return Some(self.settled(centre, r));
             };
             (centre, r) = next;
-            last = way;
         }
         None
     }
@@ -106,10 +101,11 @@ impl Caster<'_> {
         None
     }
 
-    /// Returns the diameter of a held ball of radius `r`, or of one tangent where it touches, or a
-    /// little farther on its way: those know the facets' planes, so they are exact where the way to
+    /// Returns the diameter of a held ball, or of one tangent where it touches, or a little farther
+    /// from what is beside it: those know the facets' planes, so they are exact where the way to
     /// this place was not.
-    fn settled(&self, touches: &[BallTouch], r: f32, way: Vec3) -> f32 {
+    fn settled(&self, centre: Vec3, r: f32) -> f32 {
+        let near = self.touching(centre, r * (1.0 + NEAR));
         let tangent = |triangle: u32, point: Vec3| {
             let own = [triangle];
             let away = self.face_normals[triangle as usize] * self.sign;
@@ -117,13 +113,15 @@ impl Caster<'_> {
             self.ball(&site).map_or(0.0, |ball| ball.diameter)
         };
         let mut best = 2.0 * r;
-        for touch in touches {
+        for touch in &near {
             let away = self.face_normals[touch.triangle as usize] * self.sign;
             if away.dot(touch.towards) > -0.99 {
                 continue;
             }
             best = best.max(tangent(touch.triangle, touch.foot));
-            let along = (way - away * way.dot(away)).normalize_or_zero() * (ON * r);
+            let beside: Vec3 = near.iter().map(|t| t.towards - away * t.towards.dot(away)).sum();
+            let along =
+                if beside.length() < HELD { Vec3::ZERO } else { beside.normalize() * (ON * r) };
             let on = self.tree.nearest((touch.foot + along).as_dvec3(), f64::from(r));
             if let Some(on) = on.filter(|_| along != Vec3::ZERO) {
                 let flat = self.face_normals[on.triangle as usize] * self.sign;
@@ -149,6 +147,11 @@ impl Caster<'_> {
         {
             return vec![first, touch(hit.triangle, centre + first.towards * hit.t)];
         }
+        self.touching(centre, within)
+    }
+
+    /// The points of the surface within a distance of a place, one for each direction.
+    fn touching(&self, centre: Vec3, within: f32) -> Vec<BallTouch> {
         wide::dispatch(self.tree.scalar(), TouchSearch { tree: self.tree, centre, within })
     }
 }
@@ -235,14 +238,7 @@ impl WideWork for TouchSearch<'_> {
                 match same {
                     Some(known) if found[known].distance > distance => found[known] = new,
                     Some(_) => {}
-                    None if found.len() < TOUCHES => {
-                        // Two that face each other hold the ball: nothing else matters.
-                        let facing = found.iter().any(|t| t.towards.dot(new.towards) < CORNER);
-                        found.push(new);
-                        if facing {
-                            return found;
-                        }
-                    }
+                    None if found.len() < TOUCHES => found.push(new),
                     None => {}
                 }
             }
