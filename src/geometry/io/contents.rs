@@ -1,4 +1,4 @@
-//! What was read from a file beside its surface, for people and for programs that compare files.
+//! The contents of a file beside its surface, for people and for programs that compare files.
 
 use std::collections::BTreeSet;
 

@@ -34,7 +34,7 @@ use instances::INSTANCING;
 use meshopt::MESHOPT;
 use primitives::PrimitivePoints;
 
-/// What the numbers of a file mean.
+/// The unit of a file's numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum GltfUnit {
     /// They are read and written as they stand.
@@ -48,7 +48,7 @@ pub(super) const IN_MILLIMETRES: &str = "sculptdMillimetres";
 /// Who wrote a file.
 pub(super) const GENERATOR: &str = "sculptd";
 
-/// What this program writes beside a primitive: the names of its group, as in OBJ.
+/// Fields beside a primitive, of this program: the names of its group, as in OBJ.
 pub(super) const OBJECT: &str = "object";
 pub(super) const GROUP: &str = "group";
 
@@ -221,7 +221,7 @@ fn outermost(root: &Root, unit: GltfUnit) -> (DMat4, bool) {
     }
 }
 
-/// What a file has that is not read, counted.
+/// The unread parts of a file, counted.
 #[derive(Default)]
 struct LeftOut {
     /// Primitives of points or lines.

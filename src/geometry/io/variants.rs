@@ -166,7 +166,7 @@ fn colours_of_faces_become_colours_of_vertices() {
         let at = 84 + 12 + corner * 12 + axis * 4;
         stl[at..at + 4].copy_from_slice(&1f32.to_le_bytes());
     }
-    // Blue in the lowest bits, and the bit that says so.
+    // Blue in the lowest bits; the highest marks a colour.
     stl[84 + 48..84 + 50].copy_from_slice(&(1u16 << 15 | 31 << 10 | 6).to_le_bytes());
     assert_eq!(reds("a.stl", &stl), [[255, 0, 49, 255]; 3]);
     stl[..10].copy_from_slice(b"COLOR=\xff\x00\x33\xff");

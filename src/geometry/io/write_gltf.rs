@@ -257,7 +257,7 @@ impl GltfLists {
     }
 }
 
-/// The name of a mesh's node: its own, or the one object of all its groups.
+/// The name of a mesh's node: that of the mesh, or the one object of all its groups.
 fn node_name<'a>(one: &GltfMesh<'a>, primitives: &[GltfPrimitive]) -> Option<&'a str> {
     let mesh = one.mesh;
     let mut objects = primitives.iter().filter_map(|p| mesh.group_name(p.group));

@@ -35,7 +35,7 @@ const STEP: f32 = 0.5;
 const LEAST_STEP: f32 = 0.01;
 /// Below this share of the mesh's size nothing is known of a ball: single precision.
 const LEAST: f32 = 1e-5;
-/// How far a settled ball is moved on, in radii: out of the reach of what is beside it.
+/// The move of a settled ball, in radii: out of the reach of other sides.
 const ON: f32 = 0.2;
 
 /// A ball that reaches less than this share of its radius out of the solid fits: so much do the

@@ -18,7 +18,7 @@ use crate::job::Job;
 /// The extension, under its two names.
 pub(super) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Whether a buffer has no bytes, since all its views are packed elsewhere.
+/// Returns true if a buffer has no bytes, since all its views are packed elsewhere.
 pub(super) fn is_fallback(buffer: &Buffer) -> bool {
     let own = |name| buffer.extensions.as_ref()?.others.get(name)?["fallback"].as_bool();
     MESHOPT.into_iter().any(|name| own(name) == Some(true))
@@ -48,7 +48,7 @@ fn extension(view: &buffer::View) -> Option<&Value> {
     MESHOPT.into_iter().find_map(|name| others.get(name))
 }
 
-/// What was expected, and what was found.
+/// The expectation and the finding.
 type Breach = (String, String);
 
 fn unpack_view(packed: &Value, buffers: &[Cow<'_, [u8]>]) -> Result<Vec<u8>, Breach> {

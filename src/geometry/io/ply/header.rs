@@ -9,7 +9,7 @@ pub(super) const ROLES: [&str; 9] = ["x", "y", "z", "red", "green", "blue", "alp
 /// The values of a vertex, by [`ROLES`].
 pub(super) type PlyValues = [f64; ROLES.len()];
 
-/// What a vertex has that its row does not say. `scale`: of its colours to bytes.
+/// Values of a vertex that its row does not state. `scale`: of its colours to bytes.
 pub(super) fn values(scale: f64) -> PlyValues {
     [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 255.0 / scale, 0.0, 0.0]
 }
@@ -160,7 +160,7 @@ impl PlyHeader {
         })
     }
 
-    /// Whether the vertices have texture coordinates.
+    /// Returns true if the vertices have texture coordinates.
     pub(super) fn textured(&self) -> bool {
         self.vertices().is_some_and(|e| {
             let roles = e.roles();
@@ -168,7 +168,7 @@ impl PlyHeader {
         })
     }
 
-    /// Whether the corners of faces have texture coordinates.
+    /// Returns true if the corners of faces have texture coordinates.
     pub(super) fn textures_faces(&self) -> bool {
         let faces = self.elements.iter().find(|e| e.role == PlyRole::Face);
         faces.is_some_and(|e| e.texture_coordinates().is_some())

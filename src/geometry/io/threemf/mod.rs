@@ -52,7 +52,7 @@ struct ThreemfPackage {
     /// Groups of composite materials, multiproperties and texture coordinates.
     properties: usize,
     beams: usize,
-    /// Stacks of slices, which stand beside the mesh of an object.
+    /// Stacks of slices beside the meshes of objects.
     slices: usize,
 }
 
