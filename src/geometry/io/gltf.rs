@@ -236,7 +236,8 @@ struct LeftOut {
 }
 
 impl LeftOut {
-    /// One sentence for each kind. Normals and tangents are not named: they follow from the surface.
+    /// One sentence for each kind. Normals and tangents are not named: they follow from the
+    /// surface.
     fn sentences(&self, root: &Root) -> Vec<String> {
         let (materials, textures) = (root.materials.len(), root.textures.len());
         let mut out = Vec::new();

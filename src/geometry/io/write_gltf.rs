@@ -1,5 +1,5 @@
-//! GLB and glTF, out: single precision, colours as linear light (the format's own) of 16 bits, which
-//! every byte of sRGB survives.
+//! GLB and glTF, out: single precision, colours as linear light (as the format has them) of
+//! 16 bits, which every byte of sRGB survives.
 
 use std::io::{self, Write};
 

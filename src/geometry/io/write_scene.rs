@@ -61,12 +61,11 @@ impl SceneMesh {
     }
 }
 
-/// Writes several meshes, in millimetres, in the format that the extension of `path` names, whole or
-/// not at all.
-/// Returns the parts that the file does not hold, one sentence each. glTF keeps each mesh as a node
-/// with its name and its transform, in metres by one node above them, 3MF as a component of one
-/// object. Every other format gets one
-/// mesh with the transforms applied, the meshes one after the other; in OBJ each has its name.
+/// Writes several meshes, in millimetres, in the format that the extension of `path` names, whole
+/// or not at all. Returns the parts that the file does not hold, one sentence each. glTF keeps each
+/// mesh as a node with its name and its transform, in metres by one node above them, 3MF as a
+/// component of one object. Every other format gets one mesh with the transforms applied, the
+/// meshes one after the other; in OBJ each has its name.
 ///
 /// # Errors
 /// Returns an error if no format has the extension, or the file cannot be written.

@@ -29,7 +29,7 @@ fn places(mesh: &TriMesh, count: usize, seed: u64) -> Vec<DVec3> {
 }
 
 /// The balls at random places of a part, turned; ascending.
-fn balls(part: &PolyMesh) -> Vec<f32> {
+fn diameters(part: &PolyMesh) -> Vec<f32> {
     let settings =
         ThicknessSettings { method: ThicknessMethod::Sphere, ..ThicknessSettings::default() };
     let mut all = Vec::new();
@@ -51,7 +51,7 @@ fn balls(part: &PolyMesh) -> Vec<f32> {
 }
 
 fn range(part: &PolyMesh) -> (f64, f64) {
-    let all = balls(part);
+    let all = diameters(part);
     (f64::from(all[0]), f64::from(all[all.len() - 1]))
 }
 

@@ -1,12 +1,13 @@
 //! Thickness by the definition *sphere*: the largest ball that the wall holds at a place.
 //!
 //! Between two sides of a wall this is the ball that touches both. That ball may stick out beside
-//! them: along an edge of the wall, where the wall is nevertheless as thick as it is farther in; and
-//! where a thinner wall meets the place edge on, such as the top of a rib or the side of a pocket.
-//! So a ball that sticks out shrinks about its centre until it fits, and then rolls, always inside
-//! the solid and always the way in which it grows fastest, until it is held: until it touches points
-//! at least 140 degrees apart, seen from its centre, or touches all around. If it is then about as
-//! large as before, the place is at an edge of its wall; if not, the smaller ball is the wall's.
+//! them: along an edge of the wall, where the wall is nevertheless as thick as it is farther in;
+//! and where a thinner wall meets the place edge on, such as the top of a rib or the side of a
+//! pocket. So a ball that sticks out shrinks about its centre until it fits, and then rolls, always
+//! inside the solid and always the way in which it grows fastest, until it is held: until it
+//! touches points at least 140 degrees apart, seen from its centre, or touches all around. If it is
+//! then about as large as before, the place is at an edge of its wall; if not, the smaller ball is
+//! the wall's.
 //!
 //! This is the flow of the distance function (Chazal and Lieutier, "The lambda-medial axis", 2005):
 //! at a centre it grows by the length of the point nearest to zero in the convex hull of the

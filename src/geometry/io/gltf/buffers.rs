@@ -1,4 +1,5 @@
-//! The bytes of a glTF file's buffers: the binary chunk, base64 inside the JSON, or a file beside it.
+//! The bytes of a glTF file's buffers: the binary chunk, base64 inside the JSON, or a file beside
+//! it.
 
 use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};

@@ -49,9 +49,9 @@ fn extension(view: &buffer::View) -> Option<&Value> {
 }
 
 /// The expectation and the finding.
-type Breach = (String, String);
+type PackedProblem = (String, String);
 
-fn unpack_view(packed: &Value, buffers: &[Cow<'_, [u8]>]) -> Result<Vec<u8>, Breach> {
+fn unpack_view(packed: &Value, buffers: &[Cow<'_, [u8]>]) -> Result<Vec<u8>, PackedProblem> {
     let whole = |name: &str, otherwise: Option<u64>| {
         let found = || (format!("a whole number \"{name}\""), packed[name].to_string());
         packed[name].as_u64().or(otherwise).map(|n| n as usize).ok_or_else(found)
@@ -120,7 +120,7 @@ fn indices(all: &[u32], stride: usize) -> Vec<u8> {
 }
 
 /// Values of `stride` bytes each; the decoder has a type for each length.
-fn attributes(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Breach> {
+fn attributes(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, PackedProblem> {
     macro_rules! by_length {
         ($($n:literal)*) => {
             match stride {
@@ -136,6 +136,6 @@ fn attributes(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Brea
     by_length!(4 8 12 16 20 24 28 32 36 40 44 48 52 56 60 64)
 }
 
-fn damaged(error: impl std::fmt::Debug) -> Breach {
+fn damaged(error: impl std::fmt::Debug) -> PackedProblem {
     ("packed data that unpacks".into(), format!("damage ({error:?})"))
 }

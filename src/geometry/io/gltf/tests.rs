@@ -61,7 +61,8 @@ fn square() -> Value {
         "nodes": [{"mesh": 0, "name": "lid \"A\""}],
         "materials": [{"name": "oak"}, {"name": "brass"}],
         "meshes": [{"name": "unused", "primitives": [
-            {"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 1}, "indices": 2, "material": 0},
+            {"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 1}, "indices": 2,
+             "material": 0},
             {"attributes": {"POSITION": 0}, "indices": 3, "material": 1},
         ]}],
         "accessors": [
@@ -117,7 +118,10 @@ fn instances_of_the_extension_stand_where_it_says() {
     let half = std::f32::consts::FRAC_1_SQRT_2;
     to.floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half]);
     to.floats(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
-    let vectors = |view: usize, count: usize, kind: &str| json!({"bufferView": view, "componentType": 5126, "count": count, "type": kind});
+    let vectors = |view: usize, count: usize, kind: &str| {
+        let float = 5126;
+        json!({"bufferView": view, "componentType": float, "count": count, "type": kind})
+    };
     let file = to.file(json!({
         "extensionsRequired": ["EXT_mesh_gpu_instancing"],
         "nodes": [{"mesh": 0, "translation": [0, 0, 5], "extensions": {"EXT_mesh_gpu_instancing": {
