@@ -61,10 +61,12 @@ fn all_near(name: &str, part: &PolyMesh, right: f64) {
     assert!(off < right * 1e-3, "{name}: {least} to {most}, not {right}");
 }
 
-/// Beside an end of a prism a ball settles before it is quite as large as the prism holds.
+/// Between an end of a prism and an edge a ball may settle before it is as large as the prism
+/// holds.
+/// None is larger.
 fn none_larger(name: &str, part: &PolyMesh, right: f64) {
     let (least, most) = range(part);
-    let fits = least > right * 0.9 && (most - right).abs() < right * 1e-3;
+    let fits = least > right * 0.6 && (most - right).abs() < right * 1e-3;
     assert!(fits, "{name}: {least} to {most}, not {right}");
 }
 
