@@ -7,12 +7,12 @@
 //! radius is `|pq|^2 / (2 away . pq)`. Each ball is inside the last, so no earlier constraint
 //! returns.
 //!
-//! The ball between two sides ([`Caster::opposed_ball`]) is limited by the opposite side alone:
-//! facets turned by less than 40 degrees from parallel, touched within 20 degrees of the normal.
-//! Facets beside the ball, such as the sides of a plate along its edges, do not limit it, so the
-//! value does not go to zero there. The inscribed ball ([`Caster::ball`]) is limited by all facets.
-//! Both ignore the site's triangles, and triangles that turn from the site's normal by less than
-//! `SAME_SIDE`; a tessellated wall would otherwise dent every ball that rests on it.
+//! The ball between two sides (`opposed_ball`) is limited by the opposite side alone: facets turned
+//! by less than 40 degrees from parallel, touched within 20 degrees of the normal. Facets beside
+//! the ball, such as the sides of a plate along its edges, do not limit it, so the value does not
+//! go to zero there. The inscribed ball ([`Caster::ball`]) is limited by all facets. Both ignore
+//! the site's triangles, and triangles that turn from the site's normal by less than `SAME_SIDE`; a
+//! tessellated wall would otherwise dent every ball that rests on it.
 
 use glam::Vec3;
 
