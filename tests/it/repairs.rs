@@ -26,7 +26,7 @@ fn repair(args: &[&str]) -> Output {
 }
 
 /// The exit code and the object.
-fn told(args: &[&str]) -> (i32, Value) {
+fn reported(args: &[&str]) -> (i32, Value) {
     let out = repair(&[args, &["--json"]].concat());
     let said = String::from_utf8_lossy(&out.stderr);
     assert!(!said.contains("panicked"), "{said}");
@@ -61,7 +61,7 @@ fn the_file_is_read_and_checked_again() {
     let part = put(dir.path(), "part.stl", &hollow());
     let out = dir.path().join("out.stl").to_string_lossy().into_owned();
     for (process, down) in [("sla", false), ("sls", true)] {
-        let (code, said) = told(&[&part, &out, "--drain", "3", "--process", process]);
+        let (code, said) = reported(&[&part, &out, "--drain", "3", "--process", process]);
         assert_eq!((code, &said["repaired"]), (0, &json!(true)), "{said}");
         let made = &said["parts"][0];
         assert_eq!((&made["closed"], &made["self_intersections"]), (&json!(true), &json!(0)));
@@ -79,11 +79,12 @@ fn the_file_is_read_and_checked_again() {
     inches.positions.iter_mut().for_each(|p| *p /= 25.4);
     let inches = put(dir.path(), "inches.ply", &inches);
     let to = dir.path().join("inches-out.ply").to_string_lossy().into_owned();
-    let (code, said) = told(&[&inches, &to, "--drain", "3", "--process", "sls", "--unit", "in"]);
+    let (code, said) =
+        reported(&[&inches, &to, "--drain", "3", "--process", "sls", "--unit", "in"]);
     let removed = 40f64.powi(3) - 34f64.powi(3) - number(&said["parts"][0]["volume"]);
     let cylinder = std::f64::consts::PI * 1.5 * 1.5 * 3.0;
     assert!(code == 0 && (removed - cylinder).abs() < 0.01 * cylinder, "{removed}: {said}");
-    let (code, said) = told(&[&part, &out, "--base", "5", "--process", "fdm"]);
+    let (code, said) = reported(&[&part, &out, "--base", "5", "--process", "fdm"]);
     assert_eq!(code, 0, "{said}");
     let base = number(&said["parts"][0]["base_area"]);
     assert!((base - (1600.0 - 34.0 * 34.0)).abs() < 0.1, "{base}");
@@ -94,7 +95,7 @@ fn a_split_writes_two_files_and_draft_turns_the_walls() {
     let dir = tempfile::tempdir().expect("a folder");
     let block = put(dir.path(), "block.stl", &cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 50.0)));
     let out = dir.path().join("half.stl").to_string_lossy().into_owned();
-    let (code, said) = told(&[&block, &out, "--split", "0,0,20,0,0,1", "--pegs", "2"]);
+    let (code, said) = reported(&[&block, &out, "--split", "0,0,20,0,0,1", "--pegs", "2"]);
     assert_eq!((code, &said["repaired"]), (0, &json!(true)), "{said}");
     assert_eq!(said["pegs"].as_array().map(Vec::len), Some(2));
     let names: Vec<&str> =
@@ -108,7 +109,7 @@ fn a_split_writes_two_files_and_draft_turns_the_walls() {
     let wanted = 60_000.0 + 2.0 * (peg - socket);
     assert!((sum - wanted).abs() < 0.1, "{sum} for {wanted}");
     let drafted = dir.path().join("drafted.stl").to_string_lossy().into_owned();
-    let (code, said) = told(&[&block, &drafted, "--draft", "2", "--process", "moulding"]);
+    let (code, said) = reported(&[&block, &drafted, "--draft", "2", "--process", "moulding"]);
     let found = said["parts"][0]["findings"].as_array().expect("findings");
     assert!(code == 0 && found.iter().all(|f| f["kind"] != "draft"), "{said}");
     let lean = 50.0 * 2f64.to_radians().tan();
@@ -117,7 +118,7 @@ fn a_split_writes_two_files_and_draft_turns_the_walls() {
     let got = number(&said["parts"][0]["volume"]);
     assert!((got - wanted).abs() < 1e-4 * wanted, "{got} for {wanted}");
     let rod = put(dir.path(), "rod.stl", &cuboid(DVec3::ZERO, DVec3::new(5.0, 5.0, 50.0)));
-    let (code, said) = told(&[&rod, &out, "--split", "0,0,20,0,0,1"]);
+    let (code, said) = reported(&[&rod, &out, "--split", "0,0,20,0,0,1"]);
     assert!(code == 0 && said["pegs"] == json!([]), "{said}");
     assert!(said["warnings"][0].as_str().is_some_and(|w| w.contains("no pegs")), "{said}");
 }

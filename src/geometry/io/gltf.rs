@@ -146,11 +146,12 @@ pub(super) fn parse(
     };
     job.progress(0.3);
     let scene = root.scene.or(if root.scenes.is_empty() { None } else { Some(Index::new(0)) });
-    let (outer, marked) = outermost(&root, unit);
-    let mut todo: Vec<(usize, DMat4)> = match scene.and_then(|s| root.scenes.get(s.value())) {
-        Some(s) => s.nodes.iter().rev().map(|n| (n.value(), outer)).collect(),
-        None => (0..root.nodes.len()).rev().map(|n| (n, outer)).collect(),
+    let roots: Vec<usize> = match scene.and_then(|s| root.scenes.get(s.value())) {
+        Some(s) => s.nodes.iter().map(|n| n.value()).collect(),
+        None => (0..root.nodes.len()).collect(),
     };
+    let (outer, marked) = outermost(&root, unit, roots.len());
+    let mut todo: Vec<(usize, DMat4)> = roots.into_iter().rev().map(|n| (n, outer)).collect();
     let mut converts = marked;
     let mut seen = vec![false; root.nodes.len()];
     while let Some((n, outer)) = todo.pop() {
@@ -208,16 +209,16 @@ pub(super) fn parse(
 
 /// Returns the transform around all nodes, and whether the first node's own is left out: that of a
 /// file of this program, whose numbers are millimetres.
-fn outermost(root: &Root, unit: GltfUnit) -> (DMat4, bool) {
+fn outermost(root: &Root, unit: GltfUnit, roots: usize) -> (DMat4, bool) {
+    let grown = DMat4::from_scale(DVec3::splat(1000.0));
     let ours = root.asset.generator.as_deref() == Some(GENERATOR);
+    let marks = root.asset.extras.as_ref().is_some_and(|e| e.get().contains(IN_MILLIMETRES));
     match unit {
-        GltfUnit::Millimetres if ours => {
-            let marks =
-                root.asset.extras.as_ref().is_some_and(|e| e.get().contains(IN_MILLIMETRES));
-            (DMat4::IDENTITY, marks)
-        }
-        GltfUnit::Millimetres => (DMat4::from_scale(DVec3::splat(1000.0)), false),
         GltfUnit::AsTheyStand => (DMat4::IDENTITY, false),
+        GltfUnit::Millimetres if ours && !marks => (DMat4::IDENTITY, false),
+        GltfUnit::Millimetres if ours && roots == 1 => (DMat4::IDENTITY, true),
+        // Of another program, or changed by one.
+        GltfUnit::Millimetres => (grown, false),
     }
 }
 

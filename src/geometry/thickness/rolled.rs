@@ -72,7 +72,7 @@ impl Caster<'_> {
             r = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.distance() as f32;
         }
         for _ in 0..ROLLS {
-            if r > largest {
+            if r > largest || r <= 0.0 {
                 return None;
             }
             let touches = self.touches(centre, r);

@@ -63,8 +63,8 @@ fn unpack_view(packed: &Value, buffers: &[Cow<'_, [u8]>]) -> Result<Vec<u8>, Pac
     let bytes = bytes.ok_or_else(|| {
         ("bytes inside its buffer".to_owned(), format!("{length} bytes from {from} of {number}"))
     })?;
-    // A byte of a well packed surface holds a few values at most.
-    if count > MAX_INSTANCED || count.saturating_mul(stride) > (bytes.len() + 64) * 2048 {
+    // Two bits stand for sixteen equal bytes: no byte unpacks to more than 64.
+    if count > MAX_INSTANCED || count.saturating_mul(stride) > (bytes.len() + 64) * 64 {
         return Err(("a count that its bytes can hold".into(), count.to_string()));
     }
     let mode = packed["mode"].as_str().unwrap_or("none");
