@@ -1,6 +1,8 @@
 //! The bounded queue of commands to the loop. Each command carries its payload and the channel for
 //! its answer.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
 use crossbeam_channel as cc;
@@ -90,9 +92,26 @@ pub struct CommandSender {
     answers: Option<cc::Sender<CommandAnswer>>,
     /// Gives commands the times of the events that asked for them.
     clock: Option<EventClock>,
+    /// The tick of the newest effect that was waited for; 0 for none.
+    effect: Arc<AtomicU64>,
 }
 
 impl CommandSender {
+    /// Returns the sender of one client, with a separate record of that client's effects.
+    pub fn of_client(&self) -> Self {
+        CommandSender { effect: Arc::default(), ..self.clone() }
+    }
+
+    /// Records an effect at `tick` that came about otherwise than by [`Self::carry_out`].
+    pub fn had_effect(&self, tick: u64) {
+        self.effect.fetch_max(tick, Relaxed);
+    }
+
+    /// Returns the tick of the newest effect since this was last called, if there was one.
+    pub fn take_effect(&self) -> Option<u64> {
+        Some(self.effect.swap(0, Relaxed)).filter(|tick| *tick > 0)
+    }
+
     /// Returns the sender of a window. Its commands report their results to `answers`, so that no
     /// refusal is lost if the caller does not wait, and have the times of `clock`, so that they are
     /// carried out between the samples before and after them.
@@ -131,10 +150,14 @@ impl CommandSender {
             cc::SendTimeoutError::Timeout(_) => NoAnswer::Full,
             cc::SendTimeoutError::Disconnected(_) => NoAnswer::Ended,
         })?;
-        answered.recv_timeout(patience).map_err(|e| match e {
+        let answered = answered.recv_timeout(patience).map_err(|e| match e {
             cc::RecvTimeoutError::Timeout => NoAnswer::Late(patience.as_secs()),
             cc::RecvTimeoutError::Disconnected => NoAnswer::Ended,
-        })
+        })?;
+        if answered.result.is_ok() {
+            self.had_effect(answered.tick);
+        }
+        Ok(answered)
     }
 
     /// Sends a command without waiting.
@@ -166,5 +189,5 @@ impl CommandSender {
 /// A queue for at most `capacity` commands: the senders' end and the loop's.
 pub fn command_queue(capacity: usize) -> (CommandSender, cc::Receiver<QueuedCommand>) {
     let (sender, receiver) = cc::bounded(capacity);
-    (CommandSender { queue: sender, answers: None, clock: None }, receiver)
+    (CommandSender { queue: sender, answers: None, clock: None, effect: Arc::default() }, receiver)
 }

@@ -75,16 +75,22 @@ fn every_reply_comes_after_its_effect() {
     let ask = |method: &str, params| call(&host, method, params).ok();
     let rounds = if std::env::var_os("SCULPTD_LONG").is_some() { 100 } else { 3 };
     let mut r = Random(0x5eed);
-    let (mut stale, mut waits, mut done) =
-        (Vec::new(), Vec::new(), std::collections::BTreeMap::new());
+    let (mut stale, mut untold, mut waits) = (Vec::new(), Vec::new(), Vec::new());
+    let mut done = std::collections::BTreeMap::new();
     for round in 0..rounds {
         for method in METHODS.iter().map(|m| m.name).filter(|m| !LEFT_OUT.contains(m)) {
             prepare(method, &ask, dir.path());
             let asked = params(method, &mut r, &ask, dir.path());
+            let before = state(&host);
+            host.commands.take_effect();
             let begun_us = clock.now_us();
             let reply = call(&host, method, asked.clone());
             waits.push(clock.now_us() - begun_us);
+            let effect = host.commands.take_effect();
             let at_once = state(&host);
+            if at_once != before && effect.is_none() {
+                untold.push(format!("round {round}: {method} {asked}"));
+            }
             let tick = live.published.load().tick + LATER;
             until("the loop goes on", || live.published.load().tick >= tick);
             let later = state(&host);
@@ -121,6 +127,7 @@ fn every_reply_comes_after_its_effect() {
     let never: Vec<_> = done.iter().filter(|(_, n)| n.1 == 0).map(|(m, _)| *m).collect();
     println!("never carried out: {never:?}");
     assert!(stale.is_empty(), "{} stale: {:#?}", stale.len(), stale);
+    assert!(untold.is_empty(), "without the tick of the effect: {untold:#?}");
     live.stop().expect("ends");
     assert_eq!(thread.finish(), None);
 }

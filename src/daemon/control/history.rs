@@ -1,7 +1,6 @@
 //! What the methods of the history do: undo and redo, where memory holds no more of them too, and
 //! jumps. Each returns once the published state shows where the sculpture is.
 
-use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use super::host::{Host, failed};
@@ -68,6 +67,6 @@ fn settle(host: &Host, history: &Handle) -> Result<(), RpcError> {
         }
         let _ = quiet.recv_timeout(Duration::from_millis(1));
     }
-    host.effect.store(host.published.load().tick, Relaxed);
+    host.commands.had_effect(host.published.load().tick);
     Ok(())
 }

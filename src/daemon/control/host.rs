@@ -1,6 +1,6 @@
 //! What a request may touch.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use arc_swap::ArcSwap;
@@ -53,8 +53,6 @@ pub struct Host {
     pub window: WindowLink,
     /// Set by `shutdown` and `window`.
     pub stop: Arc<AtomicBool>,
-    /// The tick of the newest effect that this client's requests had.
-    pub effect: Arc<AtomicU64>,
 }
 
 impl Host {
@@ -76,7 +74,6 @@ impl Host {
             web: None,
             window: WindowLink::default(),
             stop: Arc::default(),
-            effect: Arc::default(),
         }
     }
 
@@ -91,24 +88,17 @@ impl Host {
         job: &Job,
         compute: impl Fn(&Published) -> Result<Computed<T>, OperationError>,
     ) -> Result<Installed<T>, RpcError> {
-        let done = operations::carry_out(self.link().target(), job, compute).map_err(failed)?;
-        self.effect.store(done.tick, Relaxed);
-        Ok(done)
+        operations::carry_out(self.link().target(), job, compute).map_err(failed)
     }
 
     /// The loop alone.
     pub(super) fn link(&self) -> LoopLink<'_> {
-        LoopLink {
-            commands: &self.commands,
-            published: &self.published,
-            stop: &self.stop,
-            effect: &self.effect,
-        }
+        LoopLink { commands: &self.commands, published: &self.published, stop: &self.stop }
     }
 
     /// Returns a handle for one client, with a separate record of that client's effects.
     pub fn for_client(&self) -> Host {
-        Host { effect: Arc::default(), ..self.clone() }
+        Host { commands: self.commands.of_client(), ..self.clone() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The tick loop as a request reaches it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
 use arc_swap::ArcSwap;
@@ -24,8 +24,6 @@ pub struct LoopLink<'a> {
     pub published: &'a Arc<ArcSwap<Published>>,
     /// Set when the daemon ends.
     pub stop: &'a AtomicBool,
-    /// The tick of the newest effect that this client's requests had.
-    pub effect: &'a AtomicU64,
 }
 
 impl LoopLink<'_> {
@@ -37,7 +35,6 @@ impl LoopLink<'_> {
     pub fn carry_out(&self, command: impl Into<QueuedCommand>) -> Result<Answer, RpcError> {
         let failed = |e: &dyn std::fmt::Display| RpcError::failed(e.to_string());
         let answered = self.commands.carry_out(command, PATIENCE).map_err(|e| failed(&e))?;
-        self.effect.store(answered.tick, Relaxed);
         answered.result.map_err(|e| failed(&e))
     }
 

@@ -1,7 +1,5 @@
 //! What `repair` does.
 
-use std::sync::atomic::Ordering::Relaxed;
-
 use glam::DVec3;
 
 use super::host::{Host, failed};
@@ -43,7 +41,6 @@ pub(super) fn repair(host: &Host, params: &RepairParams) -> Result<RepairReply, 
     let clock = Clock::monotonic();
     let begun = clock.now_us();
     let done = carry_out(host.link().target(), &request, &place.job).map_err(failed)?;
-    host.effect.store(host.published.load().tick, Relaxed);
     let sealed = |all: &[SealedVoid]| {
         let place = |v: &SealedVoid| SealedPlace { at: v.position.to_array(), volume: v.volume };
         all.iter().map(place).collect()

@@ -253,7 +253,7 @@ fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
         Ok(asked) => asked,
     };
     let mut subscribes = false;
-    host.effect.store(0, SeqCst);
+    host.commands.take_effect();
     let result = if flood {
         let text = format!("at most {MAX_RATE} requests a second");
         Err(RpcError::new(Code::TooManyRequests, text))
@@ -269,7 +269,7 @@ fn answer(host: &Host, line: &[u8], flood: bool) -> (Option<Response>, bool) {
     if host.journal.as_ref().is_some_and(|journal| !journal.wait_until_safe()) {
         tracing::debug!("{}: a reply did not wait for the session any longer", asked.method);
     }
-    let effect = Some(host.effect.load(SeqCst)).filter(|tick| *tick > 0);
+    let effect = host.commands.take_effect();
     (asked.id.map(|id| Response::new(id, result).with_effect(effect)), subscribes)
 }
 

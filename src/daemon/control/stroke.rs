@@ -2,11 +2,11 @@
 //! those of a tablet. So they are recorded, replayed and bounded like any other.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
 use glam::{Vec2, Vec3};
 
+use super::host::failed;
 use super::loop_link::LoopLink;
 use crate::Published;
 use crate::adaptors::CONTROL_PEN_ID;
@@ -144,8 +144,10 @@ impl VirtualPen {
         if shown.standing.state != SharedState::NotShared {
             // In the order of everybody's input the command comes after the stroke: once it is
             // carried out, the stroke is made.
-            link.carry_out(Command::Brush(shown.brush))?;
-            tick = link.effect.load(Relaxed);
+            let done = link.commands.carry_out(Command::Brush(shown.brush), PATIENCE);
+            let done = done.map_err(failed)?;
+            done.result.map_err(failed)?;
+            tick = done.tick;
         }
         Ok(StrokeReply { samples: points.len() as u64 + 1, tick })
     }
@@ -161,7 +163,7 @@ impl VirtualPen {
             let shown = link.published.load();
             // Dabs that wait for their budget belong to the stroke.
             if shown.tick >= by && !shown.is_behind {
-                link.effect.store(shown.tick, Relaxed);
+                link.commands.had_effect(shown.tick);
                 return Ok(shown.tick);
             }
             let now_us = self.clock.now_us();

@@ -2,7 +2,9 @@
 //! the daemon and the C interface judge a part in this way.
 
 use super::check::{CheckedPart, ThicknessLimits, add_places, check};
-use super::{ThicknessError, ThicknessSettings, Walls, overlap};
+use super::{
+    Thickness, ThicknessError, ThicknessSettings, WallQuery, Walls, measure_at_places, overlap,
+};
 use crate::boolean::BooleanError;
 use crate::job::Job;
 use crate::{CentredMesh, PolyMesh, TriMesh};
@@ -60,6 +62,22 @@ impl ReadyPart {
     /// The part without added places.
     pub fn whole(&self) -> &TriMesh {
         self.walls.as_ref().map_or(&self.mesh.mesh, |w| &w.mesh)
+    }
+
+    /// Measures the part at its places, with a list of the facets that have walls below `limit`, in
+    /// millimetres.
+    ///
+    /// # Errors
+    /// Returns an error if the settings are out of range, or the job was cancelled.
+    pub fn measure(
+        &self,
+        settings: &ThicknessSettings,
+        limit: Option<f32>,
+        job: &Job,
+    ) -> Result<Thickness, ThicknessError> {
+        let query =
+            WallQuery { limit: limit.map(f64::from), thinnest: false, grain: self.mesh.grain };
+        measure_at_places(&self.mesh.mesh, self.walls.as_ref(), settings, query, job)
     }
 
     /// Measures the part and compares it with `limits`; see [`check`].

@@ -6,13 +6,13 @@ use glam::DVec3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use sculptd_geometry::CentredMesh;
-use sculptd_geometry::thickness::check::{ThicknessLimits, add_places, check};
+use sculptd_geometry::thickness::check::ThicknessLimits;
 use sculptd_geometry::thickness::partition::PartitionSettings;
+use sculptd_geometry::thickness::ready::ReadyPart;
 use sculptd_geometry::thickness::summary::{BeyondArea, ThicknessSummary};
 use sculptd_geometry::thickness::{
     self, Comparison, EdgePolicy, LeastWall, MeasuredPlaces, MeasuredSide, ThicknessMethod,
-    ThicknessSettings, WallQuery, overlap,
+    ThicknessSettings, WallQuery,
 };
 
 use crate::array::shared;
@@ -26,8 +26,11 @@ use crate::part_check::wall_limits;
 #[pyclass(frozen, module = "sculptd")]
 #[derive(Debug)]
 pub struct Thickness {
+    /// At the vertices, and at the middles of the triangles if asked for.
     pub measured: Arc<thickness::Thickness>,
-    pub part: Arc<CentredMesh>,
+    /// At the places that `part` has, from which the least wall and all statistics are.
+    judged: Arc<thickness::Thickness>,
+    pub part: Arc<ReadyPart>,
     summary: ThicknessSummary,
     reasons: Arc<Vec<u8>>,
 }
@@ -64,8 +67,8 @@ impl Thickness {
     /// `opposite`; None where no place has a wall.
     #[getter]
     fn least<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let moved = |p: [f64; 3]| (DVec3::from(p) + self.part.centre).to_array();
-        let least = self.measured.least.map(|l| LeastWall {
+        let moved = |p: [f64; 3]| (DVec3::from(p) + self.part.mesh.centre).to_array();
+        let least = self.judged.least.map(|l| LeastWall {
             position: moved(l.position),
             opposite: moved(l.opposite),
             ..l
@@ -80,7 +83,7 @@ impl Thickness {
     /// the rounding of the file's coordinates. So True says that no wall is proven to be thinner.
     /// To keep the limit for sure, test `least['lower'] >= limit`.
     fn reaches(&self, limit: f32) -> Option<bool> {
-        match self.measured.compare(limit) {
+        match self.judged.compare(limit) {
             Comparison::Reached => Some(true),
             Comparison::Below => Some(false),
             Comparison::Undecided => None,
@@ -150,7 +153,7 @@ impl Thickness {
         let out = PyList::empty(py);
         let found = self.against(py, limit)?;
         for spot in found.worst(limit, 0.0, count) {
-            let position: (f64, f64, f64) = self.part.to_file(spot.position.into()).into();
+            let position: (f64, f64, f64) = self.part.mesh.to_file(spot.position.into()).into();
             out.append(kind.call1((position, spot.thickness, spot.area))?)?;
         }
         Ok(out)
@@ -182,12 +185,9 @@ impl Thickness {
         #[allow(clippy::disallowed_methods)] // The answer states its duration.
         let began = std::time::Instant::now();
         let seconds = move || began.elapsed().as_secs_f64();
-        let found = watched(py, &progress, move |job| {
-            let mut part = (*part).clone();
-            let walls = add_places(&mut part.mesh, None, settings.crease);
-            check("", &part, walls.as_ref(), &settings, limits, job, seconds)
-        })?
-        .map_err(|e| errors::thickness(&e))?;
+        let found =
+            watched(py, &progress, move |job| part.judge("", &settings, limits, job, seconds))?
+                .map_err(|e| errors::thickness(&e))?;
         plain(py, &found.answer)
     }
 
@@ -208,7 +208,7 @@ impl Thickness {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         self.measured_faces("parts")?;
         let how = PartitionSettings { levels, smoothing };
-        let (measured, centre) = (self.measured.clone(), self.part.centre);
+        let (measured, centre) = (self.measured.clone(), self.part.mesh.centre);
         let found = watched(py, &None, move |job| measured.partition(how, job))?;
         let found = found.map_err(|e| errors::thickness(&e))?.moved(centre);
         let facts = plain(py, &found)?;
@@ -226,7 +226,7 @@ impl Thickness {
         self.measured_faces("medial_curve")?;
         let measured = self.measured.clone();
         let found = watched(py, &None, move |job| measured.medial_curve(job))?;
-        plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.centre))
+        plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.mesh.centre))
     }
 
     fn __repr__(&self) -> String {
@@ -250,16 +250,12 @@ impl Thickness {
     fn against(&self, py: Python<'_>, limit: f32) -> PyResult<Arc<thickness::Thickness>> {
         let settings = self.measured.settings;
         if settings.method != ThicknessMethod::Ray {
-            return Ok(self.measured.clone());
+            return Ok(self.judged.clone());
         }
-        let query =
-            WallQuery { limit: Some(f64::from(limit)), thinnest: false, grain: self.part.grain };
         let part = self.part.clone();
-        watched(py, &None, move |job| {
-            thickness::measure_at_places(&part.mesh, None, &settings, query, job)
-        })?
-        .map(Arc::new)
-        .map_err(|e| errors::thickness(&e))
+        watched(py, &None, move |job| part.measure(&settings, Some(limit), job))?
+            .map(Arc::new)
+            .map_err(|e| errors::thickness(&e))
     }
 }
 
@@ -319,26 +315,34 @@ fn thickness_of(
     };
     let poly = mesh.get().poly().clone();
     let found = watched(py, &progress, move |job| {
-        if overlap::united(&poly, job).map_or(true, |u| u.is_some()) {
-            return Ok(None);
-        }
-        let part = CentredMesh::new(&poly, 1.0);
-        let query = WallQuery { grain: part.grain, ..WallQuery::default() };
-        let measured = thickness::measure_at_places(&part.mesh, None, &settings, query, job)?;
-        let mut summary = measured.summary();
-        let moved = |p: [f32; 3]| part.to_file(p.into()).as_vec3().to_array();
-        summary.thinnest = summary.thinnest.map(moved);
-        summary.thickest = summary.thickest.map(moved);
-        Ok(Some((part, measured, summary)))
+        let part = match ReadyPart::new(&poly, 1.0, None, settings.crease, job) {
+            Ok(part) if !part.united => part,
+            _ => return Ok(None),
+        };
+        let vertices = ThicknessSettings { at: MeasuredPlaces::Vertices, ..settings };
+        let judged = Arc::new(part.measure(&vertices, None, job)?);
+        // The values that are returned are those of the mesh as it was given.
+        let measured = if part.walls.is_none() && settings.at == MeasuredPlaces::Vertices {
+            judged.clone()
+        } else {
+            let query = WallQuery { grain: part.mesh.grain, ..WallQuery::default() };
+            let whole = part.whole();
+            Arc::new(thickness::measure_at_places(whole, None, &settings, query, job)?)
+        };
+        Ok(Some((part, measured, judged)))
     })?
     .map_err(|e| errors::thickness(&e))?;
-    let Some((part, measured, summary)) = found else {
+    let Some((part, measured, judged)) = found else {
         return Err(PyValueError::new_err(
             "the shells of the mesh overlap: unite them first and measure the result",
         ));
     };
+    let mut summary = judged.summary();
+    let moved = |p: [f32; 3]| part.mesh.to_file(p.into()).as_vec3().to_array();
+    summary.thinnest = summary.thinnest.map(moved);
+    summary.thickest = summary.thickest.map(moved);
     let reasons = Arc::new(measured.reasons.iter().map(|&r| r as u8).collect());
-    Ok(Thickness { measured: Arc::new(measured), part: Arc::new(part), summary, reasons })
+    Ok(Thickness { measured, judged, part: Arc::new(part), summary, reasons })
 }
 
 /// Adds what this file defines.

@@ -242,7 +242,7 @@ class Questions(unittest.TestCase):
             for n, part in enumerate(parts):
                 file = pathlib.Path(folder) / f"part-{n}.off"
                 part.write(file)
-                for method in ("ray", "sphere"):
+                for method in ("ray", "cone", "sphere"):
                     limit = 2.5
                     told = subprocess.run(
                         [BINARY, "thickness", file, "--method", method, "--warn-below", str(limit), "--json"],
@@ -251,12 +251,12 @@ class Questions(unittest.TestCase):
                     told = json.loads(told.stdout)
                     walls = sculptd.thickness(sculptd.read(file), method=method)
                     summary = walls.summary()
-                    for name in ("min", "max", "mean", "median", "valid", "histogram"):
+                    for name in ("min", "max", "mean", "median", "valid", "histogram", "error_bound"):
                         self.assertEqual(told[name], summary[name], (n, method, name))
                     share = 100 * walls.below(limit)[1]
                     self.assertAlmostEqual(told["below"]["area_percent"], share, 9, (n, method))
                     compared += 1
-        self.assertEqual(compared, 40)
+        self.assertEqual(compared, 60)
 
     def test_distance_inside_and_outside(self):
         solid = sculptd.Solid(Mesh.box((0, 0, 0), (2, 2, 2)))
