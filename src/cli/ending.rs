@@ -9,6 +9,7 @@ use sculptd_daemon::scene_jobs::{Selection, selected};
 use sculptd_daemon::session::writer::WriterThread;
 use sculptd_engine::world::World;
 use sculptd_geometry::io::write_scene;
+use sculptd_geometry::job::Job;
 
 /// Set once by SIGINT or SIGTERM.
 pub fn stop_signal() -> Arc<AtomicBool> {
@@ -27,7 +28,7 @@ pub fn export(path: Option<&Path>, world: &mut World) -> Result<Option<String>, 
     let (scene, active) = (world.scene_view(), world.snapshot());
     let meshes = selected(&scene, &active, Selection::Visible);
     let meshes = meshes.map_err(|e| Fail::Input(format!("{}: {e}", path.display())))?;
-    for lost in write_scene(path, &meshes).map_err(Fail::from)? {
+    for lost in write_scene(path, &meshes, &Job::default()).map_err(Fail::from)? {
         eprintln!("sculptd: warning: {}: {lost}", path.display());
     }
     Ok(Some(path.display().to_string()))

@@ -8,6 +8,7 @@ use std::process::Command;
 
 use sculptd_daemon::session;
 use sculptd_geometry::io::{SceneMesh, write_scene};
+use sculptd_geometry::job::Job;
 use serde_json::Value;
 
 /// Builds the library; `None` where there is no C compiler.
@@ -265,7 +266,7 @@ fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
         .map(|n| {
             let path = home.path().join(format!("{n}.glb"));
             let work = SceneMesh { mesh: visitor(n), ..SceneMesh::default() };
-            write_scene(&path, &[work]).expect("written");
+            write_scene(&path, &[work], &Job::default()).expect("written");
             std::fs::read(path).expect("read")
         })
         .collect();

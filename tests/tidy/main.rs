@@ -1,5 +1,6 @@
 //! What the compiler does not guard: circles inside a crate, the words, the style, the map.
 
+mod claims;
 mod languages;
 mod map;
 mod picture;

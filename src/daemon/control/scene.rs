@@ -267,6 +267,7 @@ pub(super) fn mirror(host: &Host, params: MirrorParams) -> Result<CombineReply, 
 }
 
 pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, RpcError> {
+    let place = host.jobs.begin();
     let shown = host.published.load_full();
     let which = match params.objects {
         None | Some(ExportObjects::Visible) => Selection::Visible,
@@ -275,7 +276,7 @@ pub(super) fn export(host: &Host, params: ExportParams) -> Result<ExportReply, R
         Some(ExportObjects::Object(id)) => Selection::One(ObjectId(id)),
     };
     let meshes = scene_jobs::selected(&shown.scene, &shown.mesh, which).map_err(failed)?;
-    let warnings = write_scene(&params.path, &meshes).map_err(failed)?;
+    let warnings = write_scene(&params.path, &meshes, &place.job).map_err(failed)?;
     let vertices = meshes.iter().map(|m| m.mesh.positions.len() as u64).sum();
     Ok(ExportReply { path: params.path, tick: shown.tick, vertices, warnings })
 }

@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use glam::{Vec2, Vec3};
 
-use super::host::failed;
 use super::loop_link::LoopLink;
 use crate::Published;
 use crate::adaptors::CONTROL_PEN_ID;
@@ -145,8 +144,8 @@ impl VirtualPen {
             // In the order of everybody's input the command comes after the stroke: once it is
             // carried out, the stroke is made.
             let done = link.commands.carry_out(Command::Brush(shown.brush), PATIENCE);
-            let done = done.map_err(failed)?;
-            done.result.map_err(failed)?;
+            let done = done.map_err(|e| RpcError::failed(e.to_string()))?;
+            done.result.map_err(|e| RpcError::failed(e.to_string()))?;
             tick = done.tick;
         }
         Ok(StrokeReply { samples: points.len() as u64 + 1, tick })

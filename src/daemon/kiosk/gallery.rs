@@ -9,6 +9,7 @@ use serde::Serialize;
 pub use super::names::works;
 use super::names::{number, sent};
 use sculptd_geometry::io::{SceneMesh, write_beside, write_scene};
+use sculptd_geometry::job::Job;
 use sculptd_geometry::picture::{self, Camera, Picture};
 use sculptd_geometry::{PolyMesh, TriMesh};
 
@@ -47,7 +48,7 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     let work = SceneMesh { mesh: mesh.clone(), ..SceneMesh::default() };
-    write_scene(&path, &[work]).map_err(std::io::Error::other)?;
+    write_scene(&path, &[work], &Job::default()).map_err(std::io::Error::other)?;
     if let Err(e) = draw(&path.with_extension("png"), mesh) {
         tracing::error!("{}: no picture of it is written: {e}", path.display());
     }

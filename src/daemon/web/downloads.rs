@@ -14,6 +14,7 @@ use crate::http::{Answer, Refusal};
 use crate::random_token::random_token;
 use crate::scene_jobs::{Selection, selected};
 use sculptd_geometry::io::write_scene;
+use sculptd_geometry::job::Job;
 
 /// Time for which a file can be fetched.
 const LASTS: Duration = Duration::from_secs(600);
@@ -106,7 +107,8 @@ impl Downloads {
         let until_us = now_us + LASTS.as_micros() as u64;
         // From here on it is removed, whatever happens.
         let file = WorkFile { path: path.clone(), format, folder, until_us };
-        write_scene(&file.folder.join(format.file_name()), &meshes).map_err(|e| e.to_string())?;
+        let to = file.folder.join(format.file_name());
+        write_scene(&to, &meshes, &Job::default()).map_err(|e| e.to_string())?;
         let mut files = locked(&self.files);
         files.retain(|f| f.until_us > now_us);
         if files.len() >= MOST {
@@ -142,7 +144,6 @@ mod tests {
     use sculptd_clay::{Clay, Workers};
     use sculptd_engine::camera::Camera;
     use sculptd_engine::world::{World, WorldOptions};
-    use sculptd_geometry::job::Job;
     use sculptd_geometry::shapes;
 
     fn folders(files: &Downloads) -> Vec<PathBuf> {

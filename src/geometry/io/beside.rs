@@ -5,6 +5,27 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use crate::job::{Cancelled, Job};
+
+/// A writer that fails with [`Cancelled`] once the job is cancelled.
+pub(super) struct CancellableWriter<'a, W: Write> {
+    pub out: W,
+    pub job: &'a Job,
+}
+
+impl<W: Write> Write for CancellableWriter<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.job.cancelled() {
+            return Err(io::Error::other(Cancelled));
+        }
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 /// Removes the temporary file unless it was renamed.
 struct TemporaryFile {
     path: PathBuf,

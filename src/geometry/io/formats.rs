@@ -176,7 +176,7 @@ fn scene_survives(kind: &str) -> Value {
         morphed,
     };
     let all = [object("lid", 0.0, Some(morphed)), object("pot", 5.0, None)];
-    let says = write_scene(&file, &all).expect("written");
+    let says = write_scene(&file, &all, &Job::default()).expect("written");
     #[allow(clippy::disallowed_methods)] // Nobody writes it meanwhile.
     let bytes = std::fs::read(&file).expect("there");
     let back = read(&format!("a.{kind}"), &bytes);

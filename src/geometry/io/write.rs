@@ -7,10 +7,12 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::beside::CancellableWriter;
 use super::gltf::GltfUnit::AsTheyStand;
 use super::write_gltf::{self, GltfMesh};
 use super::{WriteError, extension, write_beside, write_threemf};
 use crate::face_attributes::NO_UV;
+use crate::job::Job;
 use crate::{GroupName, PolyMesh};
 
 /// The formats written, by the ending of a name.
@@ -41,6 +43,17 @@ pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
 
 /// The bytes of `mesh` as a file of extension `kind` (lower case) holds them.
 pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
+    encode_until_cancelled(kind, mesh, out, &Job::default())
+}
+
+/// The same; fails with [`Cancelled`](crate::job::Cancelled) once the job is cancelled.
+pub(super) fn encode_until_cancelled(
+    kind: &str,
+    mesh: &PolyMesh,
+    out: &mut dyn Write,
+    job: &Job,
+) -> io::Result<()> {
+    let out = &mut CancellableWriter { out, job };
     match kind {
         "obj" => obj(mesh, out),
         "stl" => stl(mesh, out),
@@ -48,7 +61,7 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "off" => off(mesh, out),
         "glb" => write_gltf::glb(&[GltfMesh::bare(mesh)], AsTheyStand, out),
         "gltf" => write_gltf::gltf(&[GltfMesh::bare(mesh)], AsTheyStand, out),
-        "3mf" => write_threemf::threemf(mesh, out),
+        "3mf" => write_threemf::threemf(mesh, out, job),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("no mesh format is called \"{kind}\""),

@@ -6,12 +6,14 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::beside::CancellableWriter;
 use super::gltf::GltfUnit::Millimetres;
-use super::write::{encode, left_out, writable_format};
+use super::write::{encode_until_cancelled, left_out, writable_format};
 use super::write_gltf::{self, GltfMesh};
 use super::write_threemf::{self, ThreeMfPart};
 use super::{MorphedMesh, WriteError, write_beside};
 use crate::face_attributes::NO_UV;
+use crate::job::Job;
 use crate::{FaceAttributes, GroupName, PolyMesh};
 
 /// A mesh with a name and a place.
@@ -68,10 +70,15 @@ impl SceneMesh {
 /// meshes one after the other; in OBJ each has its name.
 ///
 /// # Errors
-/// Returns an error if no format has the extension, or the file cannot be written.
-pub fn write_scene(path: &Path, meshes: &[SceneMesh]) -> Result<Vec<String>, WriteError> {
+/// Returns an error if no format has the extension, the file cannot be written, or the job was
+/// cancelled; then nothing is written.
+pub fn write_scene(
+    path: &Path,
+    meshes: &[SceneMesh],
+    job: &Job,
+) -> Result<Vec<String>, WriteError> {
     let kind = writable_format(path)?;
-    encode_scene(path, kind, meshes)?;
+    encode_scene(path, kind, meshes, job)?;
     Ok(scene_left_out(kind, meshes))
 }
 
@@ -96,7 +103,12 @@ fn scene_left_out(kind: &str, meshes: &[SceneMesh]) -> Vec<String> {
     out
 }
 
-fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), WriteError> {
+fn encode_scene(
+    path: &Path,
+    kind: &str,
+    meshes: &[SceneMesh],
+    job: &Job,
+) -> Result<(), WriteError> {
     let failed = |source: io::Error| WriteError::Io { path: path.into(), source };
     match kind {
         "glb" | "gltf" => {
@@ -109,9 +121,12 @@ fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), Wri
                     place: (!m.stands_still()).then_some((m.shift, m.turn, m.scale)),
                 })
                 .collect();
-            write_beside(path, |out| match kind {
-                "glb" => write_gltf::glb(&parts, Millimetres, out),
-                _ => write_gltf::gltf(&parts, Millimetres, out),
+            write_beside(path, |out| {
+                let out = &mut CancellableWriter { out, job };
+                match kind {
+                    "glb" => write_gltf::glb(&parts, Millimetres, out),
+                    _ => write_gltf::gltf(&parts, Millimetres, out),
+                }
             })
             .map_err(failed)
         }
@@ -125,11 +140,11 @@ fn encode_scene(path: &Path, kind: &str, meshes: &[SceneMesh]) -> Result<(), Wri
                     shift: m.shift,
                 })
                 .collect();
-            write_beside(path, |out| write_threemf::threemf_parts(&parts, out)).map_err(failed)
+            write_beside(path, |out| write_threemf::threemf_parts(&parts, out, job)).map_err(failed)
         }
         _ => {
             let mesh = merged(meshes);
-            write_beside(path, |out| encode(kind, &mesh, out)).map_err(failed)
+            write_beside(path, |out| encode_until_cancelled(kind, &mesh, out, job)).map_err(failed)
         }
     }
 }
@@ -265,7 +280,7 @@ mod tests {
         all[0].morphed = Some(MorphedMesh { base: base.clone(), targets: targets.clone() });
         for ending in ["glb", "gltf"] {
             let path = dir.path().join(format!("layers.{ending}"));
-            write_scene(&path, &all[..1]).expect("written");
+            write_scene(&path, &all[..1], &Job::default()).expect("written");
             let bytes = std::fs::read(&path).expect("there");
             let read = parse_in_millimetres(&bytes, &path, &Job::default()).expect("readable");
             assert_eq!(read.mesh.positions, base);
@@ -287,7 +302,7 @@ mod tests {
         assert_eq!((all.positions.len(), all.face_count()), (16, 12));
         for ending in ["glb", "gltf", "obj", "ply", "stl", "off", "3mf"] {
             let path = dir.path().join(format!("scene.{ending}"));
-            write_scene(&path, &scene()).expect("written");
+            write_scene(&path, &scene(), &Job::default()).expect("written");
             let bytes = std::fs::read(&path).expect("there");
             let read = parse_in_millimetres(&bytes, &path, &Job::default()).expect("readable").mesh;
             let bounds = |mesh: &PolyMesh| {

@@ -5,7 +5,9 @@ use std::io::{self, Cursor, Write};
 use glam::{DMat3, DVec3};
 use zip::write::SimpleFileOptions;
 
+use super::beside::CancellableWriter;
 use crate::PolyMesh;
+use crate::job::Job;
 
 const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\
@@ -29,16 +31,20 @@ pub(super) struct ThreeMfPart<'a> {
 }
 
 /// One object, in millimetres, double precision.
-pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
-    threemf_model(out, |text| {
+pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write, job: &Job) -> io::Result<()> {
+    threemf_model(out, job, |text| {
         let id = threemf_mesh(1, "", mesh, text)?;
         writeln!(text, "</resources><build><item objectid=\"{id}\"/></build></model>")
     })
 }
 
 /// One object whose components are the parts, each with its name and its transform.
-pub(super) fn threemf_parts(parts: &[ThreeMfPart<'_>], out: &mut dyn Write) -> io::Result<()> {
-    threemf_model(out, |text| {
+pub(super) fn threemf_parts(
+    parts: &[ThreeMfPart<'_>],
+    out: &mut dyn Write,
+    job: &Job,
+) -> io::Result<()> {
+    threemf_model(out, job, |text| {
         let mut ids = Vec::new();
         for part in parts {
             let name = format!(" name=\"{}\"", xml(part.name));
@@ -79,6 +85,7 @@ fn xml(text: &str) -> String {
 /// The package around a model whose resources and build `rest` writes.
 fn threemf_model(
     out: &mut dyn Write,
+    job: &Job,
     rest: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
@@ -90,7 +97,7 @@ fn threemf_model(
         zip.write_all(text.as_bytes())?;
     }
     zip.start_file("3D/3dmodel.model", options)?;
-    let mut text = io::BufWriter::with_capacity(1 << 16, &mut zip);
+    let mut text = io::BufWriter::with_capacity(1 << 16, CancellableWriter { out: &mut zip, job });
     writeln!(text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
     writeln!(
         text,

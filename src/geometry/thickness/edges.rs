@@ -9,6 +9,7 @@ use super::walls::OwnWalls;
 use super::{
     EdgePolicy, Opposite, Reason, SiteValue, ThicknessMethod, ThicknessSettings, WeldedSurface,
 };
+use crate::job::{Cancelled, Job};
 
 /// The sides of a wedge of 40 degrees or more meet within 1.2 times its thickness; the way along
 /// the mesh is longer.
@@ -22,7 +23,8 @@ pub(super) fn apply(
     own: &OwnWalls<'_>,
     settings: &ThicknessSettings,
     values: &mut [SiteValue],
-) {
+    job: &Job,
+) -> Result<(), Cancelled> {
     mark(solid, surface, values);
     let marked: Vec<usize> =
         (0..values.len()).filter(|&v| values[v].reason == Reason::Edge).collect();
@@ -34,6 +36,7 @@ pub(super) fn apply(
         EdgePolicy::Sphere if settings.method == ThicknessMethod::Sphere => {}
         EdgePolicy::Sphere => {
             for v in marked {
+                job.check()?;
                 let away = surface.normals[v] * caster.sign;
                 let (point, clear) = (surface.positions[v], own.clear(v));
                 let along = surface.along(v);
@@ -52,12 +55,14 @@ pub(super) fn apply(
             let mut alone = marked;
             spread(surface, values, &mut alone);
             for v in alone {
+                job.check()?;
                 if let Some(value) = under_faces(caster, surface, own, v) {
                     values[v] = value;
                 }
             }
         }
     }
+    Ok(())
 }
 
 /// Marks values that measure an edge and not a wall: the opposite side is one of an edge

@@ -180,7 +180,7 @@ pub fn measure_prepared(
         tilts: &tilts,
         opposed_only: sphere,
     };
-    edges::apply(&caster, &solid, &surface, &own, settings, &mut welded);
+    edges::apply(&caster, &solid, &surface, &own, settings, &mut welded, job)?;
     let (mut face_values, mut face_reasons) = (Vec::new(), Vec::new());
     let at_face = |t: usize, scratch: &mut ConeScratch| -> SiteValue {
         let Some([a, b, c]) = surface.corners(t) else {
@@ -274,9 +274,12 @@ fn sampled(
     let found = places
         .par_chunks(CHUNK)
         .map(|chunk| {
-            job.check()?;
             let mut scratch = ConeScratch::default();
-            Ok(chunk.iter().map(|s| at(s, &mut scratch)).collect::<Vec<_>>())
+            let each = |s: &AreaSample| {
+                job.check()?;
+                Ok(at(s, &mut scratch))
+            };
+            chunk.iter().map(each).collect::<Result<Vec<_>, Cancelled>>()
         })
         .collect::<Result<Vec<_>, Cancelled>>()?
         .concat();
@@ -413,10 +416,12 @@ fn scattered(
     let found: Vec<SiteValue> = order
         .par_chunks(CHUNK)
         .map(|chunk| {
-            job.check()?;
             let mut scratch = ConeScratch::default();
-            let values: Vec<SiteValue> =
-                chunk.iter().map(|&i| value(i as usize, &mut scratch)).collect();
+            let each = |&i: &u32| {
+                job.check()?;
+                Ok(value(i as usize, &mut scratch))
+            };
+            let values = chunk.iter().map(each).collect::<Result<Vec<SiteValue>, Cancelled>>()?;
             let n = done.fetch_add(chunk.len(), std::sync::atomic::Ordering::Relaxed);
             job.progress(from + (to - from) * n as f32 / order.len() as f32);
             Ok(values)

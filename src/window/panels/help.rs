@@ -1,8 +1,11 @@
 //! The page that lists all: how the clay is touched and turned, and every action with its keys.
 
-use super::state::{Action, Tab, UiState, View};
+use super::state::{Action, SessionView, Tab, UiState, View};
 use super::theme;
 use crate::language::tr;
+
+/// What is true only while a session keeps the work.
+const KEPT: &str = "help-work";
 
 /// Titles, and what a person does: its message, and beside it the attribute `does` of the same.
 const SECTIONS: [(&str, &[&str]); 4] = [
@@ -34,7 +37,7 @@ const SECTIONS: [(&str, &[&str]); 4] = [
             "help-hands-menu",
         ],
     ),
-    ("help-work", &["help-work-close", "help-work-files"]),
+    (KEPT, &["help-work-close", "help-work-files"]),
 ];
 
 /// The window, while it is open.
@@ -66,7 +69,7 @@ pub fn ui(
                         }
                     }
                 });
-                sections(ui);
+                sections(ui, view);
                 actions(ui, view);
             });
         });
@@ -77,8 +80,9 @@ pub fn ui(
     chosen
 }
 
-fn sections(ui: &mut egui::Ui) {
-    for (title, rows) in SECTIONS {
+fn sections(ui: &mut egui::Ui, view: &View<'_>) {
+    let keeps = view.session.as_ref().is_some_and(SessionView::keeps);
+    for (title, rows) in SECTIONS.into_iter().filter(|s| keeps || s.0 != KEPT) {
         ui.add_space(8.0);
         ui.strong(tr!(title));
         for row in rows {

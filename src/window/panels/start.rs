@@ -6,7 +6,7 @@ use std::path::Path;
 use egui::{Rect, Sense, vec2};
 
 use super::icons::{self, Icon};
-use super::state::{Action, EarlierWork, NextSculpture, UiRequest, UiState, View};
+use super::state::{Action, EarlierWork, NextSculpture, SessionView, UiRequest, UiState, View};
 use super::{act, theme};
 use crate::language::tr;
 
@@ -83,7 +83,7 @@ pub fn ui(
                 if ui.button(name).clicked() {
                     act(Action::New, ctx, view, ui_state, out);
                 }
-            } else {
+            } else if view.session.as_ref().is_some_and(SessionView::keeps) {
                 ui.colored_label(theme::quiet(ui), tr!("start-note"));
             }
         });

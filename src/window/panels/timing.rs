@@ -51,7 +51,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>) {
         row(ui, "loop-vertices", format!("{}", s.mesh.vertex_count()));
         row(ui, "loop-triangles", format!("{}", s.mesh.triangle_count()));
     });
-    if let Some(session) = &view.session {
+    if let Some(session) = view.session.as_ref().filter(|s| s.keeps()) {
         ui.colored_label(quiet, tr!("loop-saved", path = session.path));
     }
     ui.add_space(8.0);

@@ -235,7 +235,7 @@ impl Tasks {
                 .map_err(|e| e.to_string())
                 .and_then(|mut meshes| {
                     meshes.iter_mut().for_each(|m| m.enlarge(scale));
-                    write_scene(&path, &meshes).map_err(|e| e.to_string())
+                    write_scene(&path, &meshes, &Job::default()).map_err(|e| e.to_string())
                 });
             let said = match written {
                 Ok(lost) => {

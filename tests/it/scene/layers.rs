@@ -33,7 +33,7 @@ fn morphed(path: &Path) -> MorphedMesh {
         scale: 1.0,
         morphed: Some(morphed.clone()),
     };
-    write_scene(path, &[mesh]).expect("written");
+    write_scene(path, &[mesh], &Job::default()).expect("written");
     morphed
 }
 

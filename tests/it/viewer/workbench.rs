@@ -151,6 +151,36 @@ fn the_line_below_says_whether_the_work_is_kept() {
     assert!(says(&h, "the session takes nothing") && !says(&h, "head.sculpt"));
 }
 
+/// Every sentence by which the window promises that the work is saved.
+#[test]
+fn no_page_says_that_work_is_saved_where_it_is_not() {
+    let mut h = harness(Tab::Loop);
+    h.state_mut().ui_state.earlier.all = vec![EarlierWork {
+        path: PathBuf::from("/s/2026-11-22_0308_head.sculpt"),
+        picture: None,
+        told: None,
+    }];
+    for session in [
+        None,
+        Some(TestSession { fault: None, lost: 0 }),
+        Some(TestSession { fault: None, lost: 7 }),
+        Some(TestSession { fault: Some("disk full".into()), lost: 0 }),
+    ] {
+        let keeps = session.as_ref().is_some_and(|s| s.fault.is_none() && s.lost == 0);
+        h.state_mut().session = session;
+        for (text, help) in [
+            ("This new sculpture is saved as you work.", false),
+            ("saved as you work: ", false),
+            ("Work is kept", true),
+        ] {
+            h.state_mut().ui_state.help = help;
+            h.run_steps(3);
+            let said = h.query_all_by_label_contains(text).next().is_some();
+            assert_eq!(said, keeps, "{text} (keeps: {keeps})");
+        }
+    }
+}
+
 #[test]
 fn bars_scales_hints_and_messages_keep_apart_on_small_screens() {
     let mut bad = Vec::new();

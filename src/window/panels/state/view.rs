@@ -57,6 +57,13 @@ pub struct SessionView<'a> {
     pub lost: u64,
 }
 
+impl SessionView<'_> {
+    /// Returns true if the file holds all input up to now.
+    pub fn keeps(&self) -> bool {
+        self.fault.is_none() && self.lost == 0
+    }
+}
+
 impl View<'_> {
     /// The keys of two actions, as a tooltip has them.
     pub fn both(&self, first: Action, second: Action) -> String {
