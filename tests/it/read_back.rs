@@ -78,6 +78,7 @@ fn every_reply_comes_after_its_effect() {
     let (mut stale, mut untold, mut waits) = (Vec::new(), Vec::new(), Vec::new());
     let mut done = std::collections::BTreeMap::new();
     for round in 0..rounds {
+        println!("round {round} at {} s", clock.now_us() / 1_000_000);
         for method in METHODS.iter().map(|m| m.name).filter(|m| !LEFT_OUT.contains(m)) {
             prepare(method, &ask, dir.path());
             let asked = params(method, &mut r, &ask, dir.path());
@@ -86,6 +87,9 @@ fn every_reply_comes_after_its_effect() {
             let begun_us = clock.now_us();
             let reply = call(&host, method, asked.clone());
             waits.push(clock.now_us() - begun_us);
+            if clock.now_us() - begun_us > 1_000_000 {
+                println!("round {round}: {method} {asked} took {} ms", waits[waits.len() - 1] / 1000);
+            }
             let effect = host.commands.take_effect();
             let at_once = state(&host);
             if at_once != before && effect.is_none() {
