@@ -1,11 +1,11 @@
 //! Thickness against shapes of which it is known.
 
 use glam::{Quat, Vec3};
-use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::thickness::{
     Correction, Outliers, Reason, ThicknessMethod, ThicknessSettings, measure,
 };
+use sculptd_geometry::{CentredMesh, TriMesh};
 
 use crate::thickness_shapes::{ribbed, shell, slab, tube, wedge};
 
@@ -140,4 +140,33 @@ fn on_a_closed_mesh_every_value_is_there() {
             }
         }
     }
+}
+
+/// No mesh that people have is refused by a panic, and no wall is less than nothing.
+#[test]
+fn every_mesh_of_the_corpus_is_measured_by_every_definition() {
+    let Some(dir) = crate::corpus() else { return };
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let most = if long { usize::MAX } else { 14_000 };
+    let folder = dir.join("meshes");
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("meshes").map(|e| e.expect("an entry").path()).collect();
+    files.sort();
+    let mut measured = 0;
+    for file in files.into_iter().step_by(if long { 1 } else { 3 }) {
+        let Ok(read) = sculptd_geometry::io::read_mesh(&file, &Job::default()) else { continue };
+        let part = CentredMesh::new(&read.mesh, 1.0);
+        if part.mesh.triangles.len() > most {
+            continue;
+        }
+        for method in [ThicknessMethod::Ray, ThicknessMethod::Cone, ThicknessMethod::Sphere] {
+            let settings = ThicknessSettings { method, ..ThicknessSettings::default() };
+            let found = measure(&part.mesh, &settings, &Job::default());
+            let found = found.unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+            let below = |v: &&f32| v.is_sign_negative() && !v.is_nan();
+            assert_eq!(found.values.iter().find(below), None, "{} {method:?}", file.display());
+            measured += 1;
+        }
+    }
+    assert!(measured >= 30, "{measured}");
 }

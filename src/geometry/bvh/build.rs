@@ -251,5 +251,7 @@ impl<C: Fn(u32) -> Option<[Vec3; 3]>> Bvh8Builder<'_, C> {
 fn empty() -> WideNode {
     let mut planes = [[f32::INFINITY; 8]; 6];
     planes[3..].fill([f32::NEG_INFINITY; 8]);
-    WideNode { planes, child: [0; 8] }
+    // No box meets these. A ray that is not a number meets them all the same, and then must not go
+    // back to the root.
+    WideNode { planes, child: [LEAF; 8] }
 }

@@ -170,7 +170,8 @@ pub(super) fn nearest_of<W: Wide>(
         let (t, triangle) = (hits.t[i], pack.id[i]);
         let nearer = best.is_none_or(|b| t < b.t || (t == b.t && triangle < b.triangle));
         if nearer && accept(triangle) {
-            *best = Some(TreeHit { t, triangle, u: hits.u[i], v: hits.v[i] });
+            // A ray that begins on a triangle gives -0.
+            *best = Some(TreeHit { t: t + 0.0, triangle, u: hits.u[i], v: hits.v[i] });
             t_max = t;
         }
     }
@@ -263,5 +264,36 @@ impl<V: FnMut(TreeHit) -> bool> WideWork for EachHit<'_, V> {
             }
             t_max
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::job::Job;
+    use crate::shapes;
+
+    #[test]
+    fn a_ray_that_is_no_number_meets_nothing_and_ends() {
+        let ball = shapes::icosphere(1.0, 12);
+        let tree = Bvh8::build_for_rays(&ball, &Job::default()).unwrap();
+        let nan = Vec3::new(f32::NAN, 0.0, 0.0);
+        for (origin, dir) in [
+            (nan, Vec3::Z),
+            (Vec3::splat(f32::NAN), Vec3::Z),
+            (Vec3::ZERO, nan),
+            (Vec3::ZERO, Vec3::splat(f32::NAN)),
+            (Vec3::ZERO, Vec3::ZERO),
+            (Vec3::splat(f32::INFINITY), Vec3::NEG_X),
+        ] {
+            let ray = Ray::new(origin, dir);
+            assert!(tree.closest_hit(ray, |_| true).is_none(), "{origin} {dir}");
+            assert!(tree.all_hits(ray).is_empty(), "{origin} {dir}");
+            let (mut stack, mut hits) = (TraversalStack::new(), Vec::new());
+            tree.closest_hits(&mut stack, &[ray; 5], |_, _| true, &mut hits);
+            assert_eq!(hits, vec![None; 5], "{origin} {dir}");
+        }
     }
 }

@@ -18,7 +18,7 @@ use glam::Vec3;
 
 use super::ray::{Caster, Site};
 use super::sharp_edges::{AcuteEdges, OPPOSED};
-use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, push_children};
+use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, nearest_on_triangle, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
 /// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
@@ -285,39 +285,9 @@ impl Shrinking {
     }
 }
 
-/// The nearest point of a triangle by its seven regions (Ericson, Real-Time Collision Detection,
-/// 5.1.5).
-#[inline(always)]
+/// The point nearest to `p` of a triangle in a leaf.
 pub(super) fn nearest_on(pack: &Pack, lane: usize, p: Vec3) -> Vec3 {
     let corner = |k: usize| Vec3::new(pack.v[k][0][lane], pack.v[k][1][lane], pack.v[k][2][lane]);
-    let (a, b, c) = (corner(0), corner(1), corner(2));
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return a;
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return b;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return c;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && (d4 - d3) >= 0.0 && (d5 - d6) >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let n = 1.0 / (va + vb + vc);
-    a + ab * (vb * n) + ac * (vc * n)
+    let corners = [0, 1, 2].map(|k| corner(k).as_dvec3());
+    nearest_on_triangle(p.as_dvec3(), corners).0.as_vec3()
 }

@@ -139,10 +139,12 @@ impl Caster<'_> {
         let within = r * (1.0 + NEAR);
         let touch = |triangle: u32, foot: Vec3| {
             let distance = (centre - foot).length();
-            BallTouch { triangle, foot, towards: (centre - foot) / distance, distance }
+            let towards = (centre - foot).normalize_or_zero();
+            BallTouch { triangle, foot, towards, distance }
         };
         let first = self.tree.nearest(centre.as_dvec3(), f64::INFINITY);
         if let Some(first) = first.map(|n| touch(n.triangle, n.point.as_vec3()))
+            && first.towards != Vec3::ZERO
             && let Some(hit) = self.tree.closest_hit(Ray::new(centre, first.towards), |_| true)
             && hit.t <= within
         {
@@ -231,7 +233,7 @@ impl WideWork for TouchSearch<'_> {
                 }
                 let foot = nearest_on(pack, lane, self.centre);
                 let (way, distance) = (self.centre - foot, (self.centre - foot).length());
-                if distance > self.within || distance == 0.0 {
+                if !(distance > 0.0 && distance <= self.within) {
                     continue;
                 }
                 let new = BallTouch { triangle, foot, towards: way / distance, distance };
