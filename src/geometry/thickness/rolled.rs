@@ -34,6 +34,8 @@ const ROLLS: usize = 160;
 /// The longest step and the shortest, in radii.
 const STEP: f32 = 0.5;
 const LEAST_STEP: f32 = 0.01;
+/// Above 1 by more than single precision loses.
+const ABOVE: f64 = 1.001;
 /// Below this share of the mesh's size nothing is known of a ball: single precision.
 const LEAST: f32 = 1e-5;
 /// The move of a settled ball, in radii: out of the reach of other sides.
@@ -93,7 +95,9 @@ impl Caster<'_> {
         let mut step = STEP * r;
         while step > LEAST_STEP * r {
             let next = centre + way * step;
-            let found = self.tree.nearest(next.as_dvec3(), f64::INFINITY)?.distance() as f32;
+            // No distance changes faster than its place.
+            let within = f64::from(r + step) * ABOVE;
+            let found = self.tree.nearest(next.as_dvec3(), within)?.distance() as f32;
             if found >= r + 0.4 * growth * step {
                 return Some((next, found));
             }
@@ -142,7 +146,7 @@ impl Caster<'_> {
             let towards = (centre - foot).normalize_or_zero();
             BallTouch { triangle, foot, towards, distance }
         };
-        let first = self.tree.nearest(centre.as_dvec3(), f64::INFINITY);
+        let first = self.tree.nearest(centre.as_dvec3(), f64::from(r) * ABOVE);
         if let Some(first) = first.map(|n| touch(n.triangle, n.point.as_vec3()))
             && first.towards != Vec3::ZERO
             && let Some(hit) = self.tree.closest_hit(Ray::new(centre, first.towards), |_| true)
