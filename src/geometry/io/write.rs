@@ -11,6 +11,7 @@ use super::gltf::GltfUnit::AsTheyStand;
 use super::write_gltf::{self, GltfMesh};
 use super::{WriteError, extension, write_beside, write_threemf};
 use crate::face_attributes::NO_UV;
+use crate::filaments::Filaments;
 use crate::{GroupName, PolyMesh};
 
 /// The formats written, by the ending of a name.
@@ -39,6 +40,17 @@ pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
         .map_err(|source| WriteError::Io { path: path.into(), source })
 }
 
+/// Writes `mesh` as a 3MF file whose triangles are painted for slicers, with the colours of `mesh`
+/// beside, as [`write_mesh`] does.
+pub fn write_painted(
+    path: &Path,
+    mesh: &PolyMesh,
+    filaments: &Filaments,
+) -> Result<(), WriteError> {
+    write_beside(path, |out| write_threemf::threemf(mesh, Some(filaments), out))
+        .map_err(|source| WriteError::Io { path: path.into(), source })
+}
+
 /// The bytes of `mesh` as a file of extension `kind` (lower case) holds them.
 pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     match kind {
@@ -48,7 +60,7 @@ pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()
         "off" => off(mesh, out),
         "glb" => write_gltf::glb(&[GltfMesh::bare(mesh)], AsTheyStand, out),
         "gltf" => write_gltf::gltf(&[GltfMesh::bare(mesh)], AsTheyStand, out),
-        "3mf" => write_threemf::threemf(mesh, out),
+        "3mf" => write_threemf::threemf(mesh, None, out),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("no mesh format is called \"{kind}\""),
