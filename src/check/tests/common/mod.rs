@@ -1,5 +1,5 @@
 //! Parts made by formula, and the presets that the program carries.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::print_stdout)] // Says when it skips.
 
 use glam::{DQuat, DVec3, EulerRot};
 use sculptd_check::preset::CheckPreset;
