@@ -51,6 +51,7 @@ pub mod distance;
 pub mod edges;
 pub mod face_attributes;
 mod fans;
+pub mod filaments;
 pub mod flat;
 pub mod flat_region;
 pub mod grid;

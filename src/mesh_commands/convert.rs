@@ -7,7 +7,10 @@ use serde::Serialize;
 
 use super::{Fail, Outcome, answer};
 use sculptd_geometry::PolyMesh;
-use sculptd_geometry::io::{left_out, read_mesh, writable_format, write_mesh};
+use sculptd_geometry::filaments::{Filaments, MAX_FILAMENTS};
+use sculptd_geometry::io::{
+    left_out, read_mesh, read_painting, writable_format, write_mesh, write_painted,
+};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::written::KnownFaces;
 use sculptd_geometry::{boolean, check, repair, written};
@@ -34,6 +37,11 @@ pub struct ConvertArgs {
     /// shells that overlap, by how often the surface goes around a place.
     #[arg(long)]
     pub mend: bool,
+    /// Paint the triangles for slicers with this number of filaments, 1 to 16: the colours of the
+    /// mesh reduced, in the attributes of PrusaSlicer, OrcaSlicer and Bambu Studio (3MF alone).
+    #[arg(long, value_name = "NUMBER",
+        value_parser = clap::value_parser!(u8).range(1..=MAX_FILAMENTS as i64))]
+    pub filaments: Option<u8>,
 }
 
 #[derive(Debug, Serialize)]
@@ -45,7 +53,20 @@ pub(super) struct Written {
     pub volume: Option<f64>,
     pub closed: bool,
     pub manifold: bool,
+    /// Of a file that is painted for slicers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub filaments: Vec<WrittenFilament>,
     pub warnings: Vec<String>,
+}
+
+/// A filament in a painted file.
+#[derive(Debug, Serialize)]
+pub(super) struct WrittenFilament {
+    /// As slicers count them, from 1.
+    pub number: usize,
+    /// `#RRGGBB`, sRGB.
+    pub colour: String,
+    pub triangles: usize,
 }
 
 /// The facts of a written file, which is read again.
@@ -175,14 +196,14 @@ fn file_facts(
 
 /// Writes `mesh` and reports it: the end of every command that makes a mesh.
 pub(super) fn deliver(path: &Path, mesh: &PolyMesh, warnings: Vec<String>, json: bool) -> Outcome {
-    deliver_checked(path, mesh, None, warnings, json)
+    deliver_checked(path, mesh, (None, None), warnings, json)
 }
 
-/// The same; `crossings` as of [`write_checked`].
+/// The same; `crossings` as of [`write_checked`]; `filaments`: paint the triangles with so many.
 fn deliver_checked(
     path: &Path,
     mesh: &PolyMesh,
-    crossings: Option<f64>,
+    (crossings, filaments): (Option<f64>, Option<u8>),
     warnings: Vec<String>,
     json: bool,
 ) -> Outcome {
@@ -191,7 +212,10 @@ fn deliver_checked(
             "the result has coordinates beyond 3.4e38; nothing was written".into(),
         ));
     }
-    let facts = write_checked(path, mesh, crossings, &Job::default())?;
+    let (facts, painted) = match filaments {
+        None => (write_checked(path, mesh, crossings, &Job::default())?, Vec::new()),
+        Some(count) => paint(path, mesh, count, crossings)?,
+    };
     let file = path.display().to_string();
     let mut all = warnings;
     all.extend(facts.warnings);
@@ -208,15 +232,60 @@ fn deliver_checked(
         volume: facts.volume,
         closed: facts.closed,
         manifold: facts.manifold,
+        filaments: painted,
         warnings: all,
     };
     answer(json, &written, |out| {
         for w in &written.warnings {
             writeln!(out, "warning: {w}")?;
         }
-        writeln!(out, "{}: {} vertices, {} faces", written.file, written.vertices, written.faces)
+        writeln!(out, "{}: {} vertices, {} faces", written.file, written.vertices, written.faces)?;
+        for f in &written.filaments {
+            writeln!(out, "filament {}: {}, {} triangles", f.number, f.colour, f.triangles)?;
+        }
+        Ok(())
     });
     Ok(())
+}
+
+/// Writes a painted file, reads it again, and compares the filaments and the colours.
+fn paint(
+    path: &Path,
+    mesh: &PolyMesh,
+    count: u8,
+    crossings: Option<f64>,
+) -> Result<(FileFacts, Vec<WrittenFilament>), Fail> {
+    let job = Job::default();
+    let ready = crossings.map(|t| ReadyMesh::of(path, mesh, t, None, &job)).transpose()?;
+    let mesh = ready.as_ref().and_then(|r| r.changed.as_ref()).unwrap_or(mesh);
+    let Some(filaments) = Filaments::of(mesh, usize::from(count)) else {
+        return Err(Fail::Input(
+            "--filaments: the mesh has no colours; convert a PLY, OBJ, glTF or 3MF file with \
+             colours"
+                .into(),
+        ));
+    };
+    let warnings = left_out("3mf", mesh);
+    write_painted(path, mesh, &filaments)?;
+    let again = read_mesh(path, &job)?.mesh;
+    // Vertices of no triangle have no colour in the file.
+    let corners = |m: &PolyMesh| -> Vec<[[u8; 4]; 3]> {
+        let of = |v: u32| m.colours.as_ref().map_or([0; 4], |c| c[v as usize]);
+        m.triangles().0.iter().map(|t| t.map(of)).collect()
+    };
+    if read_painting(path, &job)? != filaments || corners(&again) != corners(mesh) {
+        return Err(Fail::Check(format!(
+            "{}: the filaments or colours read back differ from those written; do not use the file",
+            path.display()
+        )));
+    }
+    let facts = file_facts(path, ready.map(|r| r.crossings), warnings, &job)?;
+    let painted = filaments.colours.iter().enumerate().map(|(i, [r, g, b])| WrittenFilament {
+        number: i + 1,
+        colour: format!("#{r:02X}{g:02X}{b:02X}"),
+        triangles: filaments.triangles.iter().filter(|&&k| usize::from(k) == i).count(),
+    });
+    Ok((facts, painted.collect()))
 }
 
 pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
@@ -232,6 +301,12 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     }
     if args.weld.is_some_and(|w| !(w.is_finite() && w >= 0.0)) {
         return Err(Fail::Usage("--weld: expected a distance of 0 or more".into()));
+    }
+    if args.filaments.is_some() && writable_format(output)? != "3mf" {
+        return Err(Fail::Usage(format!(
+            "--filaments: only .3mf holds filaments, and the output is {}",
+            output.display()
+        )));
     }
     let job = Job::default();
     let loaded = read_mesh(&args.input, &job)?;
@@ -281,5 +356,5 @@ pub fn run(args: &ConvertArgs, json: bool) -> Outcome {
     if args.triangulate {
         mesh = written::triangulated(&mesh);
     }
-    deliver_checked(output, &mesh, crossings, warnings, json)
+    deliver_checked(output, &mesh, (crossings, args.filaments), warnings, json)
 }

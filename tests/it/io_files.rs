@@ -370,3 +370,53 @@ fn the_commands_answer_and_bad_input_leaves_nothing_behind() {
     assert_eq!(sculptd(&["info", &at("absent.stl")]).status.code(), Some(6));
     assert_eq!(sculptd(&["convert", &cube, &at("out.doc")]).status.code(), Some(2));
 }
+
+#[test]
+fn a_painted_file_has_the_filaments_that_the_command_reports() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |n: &str| dir.path().join(n).to_str().unwrap().to_string();
+    let (ball, painted) = (at("ball.ply"), at("painted.3mf"));
+    let mut mesh = shapes::icosphere(20.0, 16).to_poly();
+    let colour = |p: &DVec3| {
+        let [r, g, b] = (*p / 40.0 + 0.5).to_array().map(|v| (v * 255.0) as u8);
+        [r, g, b, 255]
+    };
+    mesh.colours = Some(mesh.positions.iter().map(colour).collect());
+    write_mesh(Path::new(&ball), &mesh).unwrap();
+    let job = Job::default();
+    assert_eq!(read_mesh(Path::new(&ball), &job).unwrap().mesh.colours, mesh.colours);
+    let out = sculptd(&["convert", &ball, &painted, "--filaments", "5", "--json"]);
+    assert!(out.status.success(), "{out:?}");
+    let said: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let filaments = io::read_painting(Path::new(&painted), &job).unwrap();
+    assert_eq!(said["filaments"].as_array().map(Vec::len), Some(5));
+    let mut all = 0;
+    for (i, [r, g, b]) in filaments.colours.iter().enumerate() {
+        let of = &said["filaments"][i];
+        assert_eq!(of["number"], i + 1);
+        assert_eq!(of["colour"], format!("#{r:02X}{g:02X}{b:02X}"));
+        let own = filaments.triangles.iter().filter(|&&k| usize::from(k) == i).count();
+        assert_eq!(of["triangles"], own);
+        all += own;
+    }
+    assert_eq!(all, mesh.face_count());
+    let again = read_mesh(Path::new(&painted), &job).unwrap();
+    assert_eq!(again.mesh.colours, mesh.colours, "the colours are beside the painting");
+    let plain = at("plain.3mf");
+    assert!(sculptd(&["convert", &ball, &plain]).status.success());
+    assert!(io::read_painting(Path::new(&plain), &job).is_err(), "nothing is painted");
+    let cube = at("cube.ply");
+    write_mesh(Path::new(&cube), &shapes::cuboid(DVec3::ZERO, DVec3::ONE)).unwrap();
+    for (args, code, expected) in [
+        ([&ball, &at("a.ply"), "--filaments", "5"], 2, "3mf"),
+        ([&ball, &at("a.3mf"), "--filaments", "0"], 2, "16"),
+        ([&ball, &at("a.3mf"), "--filaments", "17"], 2, "16"),
+        ([&cube, &at("a.3mf"), "--filaments", "5"], 6, "no colours"),
+    ] {
+        let out = sculptd(&[&["convert"], &args[..]].concat());
+        let said = String::from_utf8(out.stderr).unwrap();
+        assert_eq!(out.status.code(), Some(code), "{args:?}: {said}");
+        assert!(said.contains(expected), "{args:?}: {said}");
+    }
+    assert!(!Path::new(&at("a.3mf")).exists() && !Path::new(&at("a.ply")).exists());
+}

@@ -102,58 +102,6 @@ fn a_short_span_passes_and_a_ceiling_held_on_one_side_is_an_overhang() {
     assert!((answer.facts.support_volume.expect("a volume") - 960.0).abs() < 0.1);
 }
 
-/// Volume of support by rays against every triangle, in double precision.
-fn by_rays(mesh: &PolyMesh, limit: f64, rays: usize) -> (f64, f64) {
-    let (triangles, _) = mesh.triangles();
-    let corners: Vec<[DVec3; 3]> =
-        triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])).collect();
-    let cross = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
-    let plate = mesh.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-    let down: Vec<&[DVec3; 3]> = corners
-        .iter()
-        .filter(|t| {
-            let n = cross(t).normalize_or_zero();
-            let on_plate = t.iter().all(|p| p.z < plate + 1e-3);
-            -n.z > (limit + 0.01).to_radians().sin() && !on_plate
-        })
-        .collect();
-    let weight = |t: &[DVec3; 3]| -cross(t).z * 0.5;
-    let all: f64 = down.iter().map(|t| weight(t)).sum();
-    let area: f64 = down.iter().map(|t| cross(t).length() * 0.5).sum();
-    let (mut state, mut sum) = (7u64, 0.0);
-    let mut unit = || {
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    let mut sums = vec![0.0];
-    down.iter().for_each(|t| sums.push(sums[sums.len() - 1] + weight(t)));
-    for i in 0..rays {
-        let at = (i as f64 + unit()) / rays as f64 * all;
-        let k = sums.partition_point(|&s| s <= at).clamp(1, down.len().max(1)) - 1;
-        let Some(t) = down.get(k) else { break };
-        let (mut u, mut v) = (unit(), unit());
-        if u + v > 1.0 {
-            (u, v) = (1.0 - u, 1.0 - v);
-        }
-        let p = t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v;
-        let mut floor = plate;
-        for q in &corners {
-            let n = cross(q);
-            let [a, b, c] = q.map(|x| x.truncate() - p.truncate());
-            let signs = [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)];
-            if n.z > 0.0 && signs.iter().all(|s| *s >= 0.0) {
-                let z = q[0].z - ((p - q[0]).x * n.x + (p - q[0]).y * n.y) / n.z;
-                if z < p.z - 1e-9 {
-                    floor = floor.max(z);
-                }
-            }
-        }
-        sum += p.z - floor;
-    }
-    (sum / rays as f64 * all, area)
-}
-
 #[test]
 fn support_agrees_with_rays_against_every_triangle() {
     let turn = |m: &PolyMesh, x: f64, y: f64| {
@@ -200,7 +148,7 @@ fn support_agrees_with_rays_against_every_triangle() {
         let found = overhangs(&part, &stand, 45.0, true, cell, &job).expect("not cancelled");
         let own: f64 = found.iter().map(|o| o.support.total).sum();
         let own_area: f64 = found.iter().map(|o| o.region.area).sum();
-        let (known, area) = by_rays(mesh, 45.0, 30_000);
+        let RaySupport { volume: known, area, .. } = by_rays(mesh, 45.0, 30_000);
         assert!((own_area - area).abs() <= 1e-4 * area.max(1.0), "{n}: area {own_area} {area}");
         assert!((own - known).abs() <= 0.01 * known + 1e-3, "{n}: {own} by rays {known}");
         let faces = overhang_faces(&part, &stand, 45.0);

@@ -39,10 +39,13 @@ pub use format::MeshFormat;
 pub use morph::{MorphTarget, MorphedMesh};
 pub use problem::{FilePlace, FileProblem, ParseError, ReadError, WriteError};
 pub use regular::read_regular;
-pub use write::{encode, left_out, lost, rounding, states_unit, writable_format, write_mesh};
+pub use write::{
+    encode, left_out, lost, rounding, states_unit, writable_format, write_mesh, write_painted,
+};
 pub use write_scene::{SceneMesh, merged, write_scene};
 
 use super::PolyMesh;
+use crate::filaments::Filaments;
 use crate::job::Job;
 use gltf::GltfUnit;
 
@@ -74,6 +77,13 @@ pub fn read_mesh(path: &Path, job: &Job) -> Result<LoadedMesh, ReadError> {
 /// this program wrote has its numbers in millimetres, with or without a node that converts them.
 pub fn read_in_millimetres(path: &Path, limit: u64, job: &Job) -> Result<LoadedMesh, ReadError> {
     read_within(path, limit, (GltfUnit::Millimetres, job))
+}
+
+/// Reads the filaments of the 3MF file at `path`, as [`write_painted`] writes them.
+pub fn read_painting(path: &Path, job: &Job) -> Result<Filaments, ReadError> {
+    let bytes = read_regular(path, MAX_FILE)
+        .map_err(|source| ReadError::Io { path: path.into(), source })?;
+    threemf::parse_painting(&bytes, job).map_err(|stop| stop.of_file(path))
 }
 
 fn read_within(

@@ -12,6 +12,7 @@ use super::gltf::GltfUnit::AsTheyStand;
 use super::write_gltf::{self, GltfMesh};
 use super::{WriteError, extension, write_beside, write_threemf};
 use crate::face_attributes::NO_UV;
+use crate::filaments::Filaments;
 use crate::job::Job;
 use crate::{GroupName, PolyMesh};
 
@@ -41,6 +42,17 @@ pub fn write_mesh(path: &Path, mesh: &PolyMesh) -> Result<(), WriteError> {
         .map_err(|source| WriteError::Io { path: path.into(), source })
 }
 
+/// Writes `mesh` as a 3MF file whose triangles are painted for slicers, with the colours of `mesh`
+/// beside, as [`write_mesh`] does.
+pub fn write_painted(
+    path: &Path,
+    mesh: &PolyMesh,
+    filaments: &Filaments,
+) -> Result<(), WriteError> {
+    write_beside(path, |out| write_threemf::threemf(mesh, Some(filaments), out, &Job::default()))
+        .map_err(|source| WriteError::Io { path: path.into(), source })
+}
+
 /// The bytes of `mesh` as a file of extension `kind` (lower case) holds them.
 pub fn encode(kind: &str, mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     encode_until_cancelled(kind, mesh, out, &Job::default())
@@ -61,7 +73,7 @@ pub(super) fn encode_until_cancelled(
         "off" => off(mesh, out),
         "glb" => write_gltf::glb(&[GltfMesh::bare(mesh)], AsTheyStand, out),
         "gltf" => write_gltf::gltf(&[GltfMesh::bare(mesh)], AsTheyStand, out),
-        "3mf" => write_threemf::threemf(mesh, out, job),
+        "3mf" => write_threemf::threemf(mesh, None, out, job),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("no mesh format is called \"{kind}\""),

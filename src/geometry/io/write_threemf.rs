@@ -6,7 +6,9 @@ use glam::{DMat3, DVec3};
 use zip::write::SimpleFileOptions;
 
 use super::beside::CancellableWriter;
+use super::threemf::painting::filament_code;
 use crate::PolyMesh;
+use crate::filaments::Filaments;
 use crate::job::Job;
 
 const TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -31,9 +33,27 @@ pub(super) struct ThreeMfPart<'a> {
 }
 
 /// One object, in millimetres, double precision.
-pub(super) fn threemf(mesh: &PolyMesh, out: &mut dyn Write, job: &Job) -> io::Result<()> {
-    threemf_model(out, job, |text| {
-        let id = threemf_mesh(1, "", mesh, text)?;
+pub(super) fn threemf(
+    mesh: &PolyMesh,
+    filaments: Option<&Filaments>,
+    out: &mut dyn Write,
+    job: &Job,
+) -> io::Result<()> {
+    threemf_model(out, job, filaments.is_some(), |text| {
+        // Base materials beside the colours list the filaments by number.
+        if let Some(filaments) = filaments {
+            writeln!(text, "<basematerials id=\"1\">")?;
+            for ([r, g, b], number) in filaments.colours.iter().zip(1..) {
+                writeln!(
+                    text,
+                    "<base name=\"Filament {number}\" displaycolor=\"#{r:02X}{g:02X}{b:02X}\"/>"
+                )?;
+            }
+            writeln!(text, "</basematerials>")?;
+        }
+        let first = if filaments.is_some() { 2 } else { 1 };
+        let painting = filaments.map_or(&[][..], |f| &f.triangles);
+        let id = threemf_mesh(first, "", mesh, painting, text)?;
         writeln!(text, "</resources><build><item objectid=\"{id}\"/></build></model>")
     })
 }
@@ -44,12 +64,12 @@ pub(super) fn threemf_parts(
     out: &mut dyn Write,
     job: &Job,
 ) -> io::Result<()> {
-    threemf_model(out, job, |text| {
+    threemf_model(out, job, false, |text| {
         let mut ids = Vec::new();
         for part in parts {
             let name = format!(" name=\"{}\"", xml(part.name));
             let first = ids.last().map_or(1, |last| last + 1);
-            ids.push(threemf_mesh(first, &name, part.mesh, text)?);
+            ids.push(threemf_mesh(first, &name, part.mesh, &[], text)?);
         }
         let all = ids.last().map_or(1, |last| last + 1);
         writeln!(text, "<object id=\"{all}\" type=\"model\"><components>")?;
@@ -82,10 +102,12 @@ fn xml(text: &str) -> String {
     out
 }
 
-/// The package around a model whose resources and build `rest` writes.
+/// The package around a model whose resources and build `rest` writes. `painted`: with triangles
+/// that PrusaSlicer paints, which asks for the version of the painting.
 fn threemf_model(
     out: &mut dyn Write,
     job: &Job,
+    painted: bool,
     rest: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
@@ -99,12 +121,21 @@ fn threemf_model(
     zip.start_file("3D/3dmodel.model", options)?;
     let mut text = io::BufWriter::with_capacity(1 << 16, CancellableWriter { out: &mut zip, job });
     writeln!(text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
+    let slicer = match painted {
+        true => " xmlns:slic3rpe=\"http://schemas.slic3r.org/3mf/2017/06\"",
+        false => "",
+    };
     writeln!(
         text,
         "<model unit=\"millimeter\" xml:lang=\"en\" \
          xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
-         xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">"
+         xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"{slicer}>"
     )?;
+    if painted {
+        for name in ["Version3mf", "MmPaintingVersion"] {
+            writeln!(text, "<metadata name=\"slic3rpe:{name}\">1</metadata>")?;
+        }
+    }
     writeln!(text, "<resources>")?;
     rest(&mut text)?;
     text.flush()?;
@@ -113,8 +144,15 @@ fn threemf_model(
 }
 
 /// Writes a mesh as an object, after its group of colours if it has any. `id`: the first free
-/// number of a resource. Returns the object's.
-fn threemf_mesh(id: usize, name: &str, mesh: &PolyMesh, text: &mut dyn Write) -> io::Result<usize> {
+/// number of a resource; `painting`: the filament of each triangle, from 0, or of none. Returns the
+/// object's.
+fn threemf_mesh(
+    id: usize,
+    name: &str,
+    mesh: &PolyMesh,
+    painting: &[u8],
+    text: &mut dyn Write,
+) -> io::Result<usize> {
     let mut places = Vec::new();
     if let Some(colours) = &mesh.colours {
         // Each colour once, in the order in which vertices have them.
@@ -141,12 +179,15 @@ fn threemf_mesh(id: usize, name: &str, mesh: &PolyMesh, text: &mut dyn Write) ->
         writeln!(text, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z)?;
     }
     writeln!(text, "</vertices><triangles>")?;
-    for corners in mesh.triangles().0 {
+    for (t, corners) in mesh.triangles().0.into_iter().enumerate() {
         let [a, b, c] = corners;
         write!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
         if !places.is_empty() {
             let [p, q, r] = corners.map(|v| places[v as usize]);
             write!(text, " pid=\"{id}\" p1=\"{p}\" p2=\"{q}\" p3=\"{r}\"")?;
+        }
+        if let Some(code) = painting.get(t).and_then(|filament| filament_code(filament + 1)) {
+            write!(text, " slic3rpe:mmu_segmentation=\"{code}\" paint_color=\"{code}\"")?;
         }
         writeln!(text, "/>")?;
     }

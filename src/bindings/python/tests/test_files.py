@@ -10,6 +10,11 @@ import numpy as np
 import sculptd
 from sculptd import Mesh
 
+try:
+    import lib3mf
+except ImportError:
+    lib3mf = None
+
 ENDINGS = ("obj", "stl", "ply", "off", "glb", "3mf")
 
 
@@ -26,6 +31,33 @@ def in_order(mesh):
     """Rows of place and colour, in an order that no format changes."""
     rows = np.column_stack([mesh.vertices.round(4) + 0.0, mesh.colours])
     return rows[np.lexsort(rows.T)]
+
+
+@unittest.skipUnless(lib3mf, "needs lib3mf, the 3MF Consortium's reader")
+class OtherReader(unittest.TestCase):
+    def test_the_consortiums_reader_finds_the_same_triangles_and_colours(self):
+        mesh = coloured(alpha=200)
+        with tempfile.TemporaryDirectory() as folder:
+            path = str(pathlib.Path(folder) / "ball.3mf")
+            mesh.write(path)
+            model = lib3mf.get_wrapper().CreateModel()
+            reader = model.QueryReader("3mf")
+            reader.SetStrictModeActive(True)
+            reader.ReadFromFile(path)
+        self.assertEqual(reader.GetWarningCount(), 0)
+        objects = model.GetMeshObjects()
+        self.assertEqual(objects.Count(), 1)
+        objects.MoveNext()
+        found = objects.GetCurrentMeshObject()
+        triangles = [tuple(t.Indices) for t in found.GetTriangleIndices()]
+        self.assertEqual(triangles, [tuple(t) for t in mesh.faces])
+        places = np.array([v.Coordinates for v in found.GetVertices()])
+        np.testing.assert_allclose(places, mesh.vertices, atol=1e-5)
+        for corners, of in zip(triangles, found.GetAllTriangleProperties()):
+            group = model.GetColorGroupByID(of.ResourceID)
+            for corner, colour in zip(corners, map(group.GetColor, of.PropertyIDs)):
+                rgba = (colour.Red, colour.Green, colour.Blue, colour.Alpha)
+                self.assertEqual(rgba, tuple(mesh.colours[corner]))
 
 
 class Objects(unittest.TestCase):

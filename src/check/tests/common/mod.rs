@@ -1,5 +1,5 @@
 //! Parts made by formula, and the presets that the program carries.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::print_stdout)] // Says when it skips.
 
 use glam::{DQuat, DVec3, EulerRot};
 use sculptd_check::preset::CheckPreset;
@@ -183,5 +183,105 @@ pub fn joined(a: &PolyMesh, b: &PolyMesh) -> PolyMesh {
 pub fn flipped(mesh: &PolyMesh) -> PolyMesh {
     let mut out = mesh.clone();
     sculptd_geometry::repair::flip(&mut out);
+    out
+}
+
+/// The support of a part as rays find it.
+pub struct RaySupport {
+    pub volume: f64,
+    /// At least one standard deviation of `volume`.
+    pub error: f64,
+    pub area: f64,
+}
+
+/// Volume of support and area of the overhangs by rays against every triangle, in double precision.
+pub fn by_rays(mesh: &PolyMesh, limit: f64, rays: usize) -> RaySupport {
+    let (triangles, _) = mesh.triangles();
+    let corners: Vec<[DVec3; 3]> =
+        triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])).collect();
+    let cross = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
+    let plate = mesh.positions.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let down: Vec<&[DVec3; 3]> = corners
+        .iter()
+        .filter(|t| {
+            let n = cross(t).normalize_or_zero();
+            let on_plate = t.iter().all(|p| p.z <= plate + 0.01);
+            -n.z > (limit + 0.01).to_radians().sin() && !on_plate
+        })
+        .collect();
+    let weight = |t: &[DVec3; 3]| -cross(t).z * 0.5;
+    let all: f64 = down.iter().map(|t| weight(t)).sum();
+    let area: f64 = down.iter().map(|t| cross(t).length() * 0.5).sum();
+    let (mut state, mut sum, mut squares) = (7u64, 0.0, 0.0);
+    let mut unit = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut sums = vec![0.0];
+    down.iter().for_each(|t| sums.push(sums[sums.len() - 1] + weight(t)));
+    for i in 0..rays {
+        let at = (i as f64 + unit()) / rays as f64 * all;
+        let k = sums.partition_point(|&s| s <= at).clamp(1, down.len().max(1)) - 1;
+        let Some(t) = down.get(k) else { break };
+        let (mut u, mut v) = (unit(), unit());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let p = t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v;
+        let mut floor = plate;
+        for q in &corners {
+            let n = cross(q);
+            let [a, b, c] = q.map(|x| x.truncate() - p.truncate());
+            let signs = [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)];
+            if n.z > 0.0 && signs.iter().all(|s| *s >= 0.0) {
+                let z = q[0].z - ((p - q[0]).x * n.x + (p - q[0]).y * n.y) / n.z;
+                if z < p.z - 1e-9 {
+                    floor = floor.max(z);
+                }
+            }
+        }
+        sum += p.z - floor;
+        squares += (p.z - floor).powi(2);
+    }
+    let count = rays as f64;
+    let variance = (squares / count - (sum / count).powi(2)).max(0.0) / count;
+    RaySupport { volume: sum / count * all, error: variance.sqrt() * all, area }
+}
+
+/// Closed meshes of the corpus, 60 mm large: four, or 20 with `SCULPTD_LONG`. Without a corpus,
+/// none.
+pub fn corpus_parts() -> Vec<(String, PolyMesh)> {
+    let Some(corpus) = std::env::var_os("SCULPTD_CORPUS").map(std::path::PathBuf::from) else {
+        println!("skipped: SCULPTD_CORPUS is not set");
+        return Vec::new();
+    };
+    let count = if std::env::var_os("SCULPTD_LONG").is_some() { 20 } else { 4 };
+    let entries = std::fs::read_dir(corpus.join("meshes")).expect("a folder");
+    let mut paths: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
+    paths.sort();
+    let job = Job::default();
+    let mut out = Vec::new();
+    for path in paths {
+        let Ok(loaded) = sculptd_geometry::io::read_mesh(&path, &job) else { continue };
+        let mut mesh = loaded.mesh;
+        sculptd_geometry::repair::weld(&mut mesh, 0.0);
+        if mesh.face_count() > 30_000 {
+            continue;
+        }
+        let facts = sculptd_geometry::check::report(&mesh, true, &job).expect("not cancelled");
+        let sound = facts.closed && facts.manifold && facts.oriented;
+        if !sound || facts.self_intersections != Some(0) || facts.volume.is_none_or(|v| v <= 0.0) {
+            continue;
+        }
+        let size = (facts.bounds.max - facts.bounds.min).max_element();
+        mesh.positions.iter_mut().for_each(|p| *p = (*p - facts.bounds.min) * (60.0 / size));
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        out.push((name, mesh));
+        if out.len() == count {
+            break;
+        }
+    }
+    assert_eq!(out.len(), count, "closed meshes in the corpus");
     out
 }

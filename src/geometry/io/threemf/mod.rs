@@ -11,6 +11,7 @@
 
 mod assemble;
 mod model;
+pub(super) mod painting;
 mod relationships;
 mod resources;
 
@@ -22,8 +23,10 @@ use quick_xml::events::BytesStart;
 
 use super::problem::{FilePlace, FileProblem, ParseError};
 use crate::PolyMesh;
+use crate::filaments::{Filaments, MAX_FILAMENTS};
 use crate::job::Job;
 use assemble::assemble;
+use painting::TrianglePaint;
 use relationships::PartNames;
 
 /// The name of an object: its part's path and its number.
@@ -35,6 +38,8 @@ struct ThreemfObject {
     components: Vec<(PartName, DMat4)>,
     /// Colours of the faces' corners; empty: no face has any.
     colours: Vec<[Option<[u8; 4]>; 3]>,
+    /// Filaments of the faces; empty: no face has any.
+    painting: Vec<TrianglePaint>,
     /// An object of the type `other` is never built.
     other: bool,
     /// Material that carries the part while it is printed, and is no part of it.
@@ -51,6 +56,8 @@ struct ThreemfPackage {
     unit: f64,
     /// Groups of composite materials, multiproperties and texture coordinates.
     properties: usize,
+    /// The colours of all base materials.
+    materials: Vec<Option<[u8; 4]>>,
     beams: usize,
     /// Stacks of slices beside the meshes of objects.
     slices: usize,
@@ -65,6 +72,49 @@ pub(super) fn parse(
     warnings: &mut Vec<String>,
     job: &Job,
 ) -> Result<PolyMesh, ParseError> {
+    let package = unpack(bytes, job)?;
+    if package.properties > 0 {
+        warnings.push(format!(
+            "{} groups of composite materials, multiproperties or texture coordinates left out",
+            package.properties
+        ));
+    }
+    if package.beams > 0 {
+        warnings.push(format!("{} beams of beam lattices left out", package.beams));
+    }
+    if package.slices > 0 {
+        warnings.push(format!("{} stacks of slices left out", package.slices));
+    }
+    assemble(&package, warnings, job)
+}
+
+/// Reads the filaments of a file of one object whose triangles are all painted whole, as
+/// [`super::write_painted`] writes it: the base materials are the filaments.
+pub(super) fn parse_painting(bytes: &[u8], job: &Job) -> Result<Filaments, ParseError> {
+    let package = unpack(bytes, job)?;
+    let wrong = |expected: &str, found: String| bad(FilePlace::File, expected, found);
+    let mut painted = package.objects.values().filter(|o| o.mesh.face_count() > 0);
+    let (Some(object), None) = (painted.next(), painted.next()) else {
+        return Err(wrong("one object with triangles", package.objects.len().to_string()));
+    };
+    let colours: Option<Vec<[u8; 3]>> =
+        package.materials.iter().map(|c| c.map(|[r, g, b, _]| [r, g, b])).collect();
+    let Some(colours) = colours.filter(|c| c.len() <= MAX_FILAMENTS) else {
+        let found = package.materials.len().to_string();
+        return Err(wrong("at most 16 base materials with a colour", found));
+    };
+    let filament = |paint: &TrianglePaint| match paint {
+        TrianglePaint::Filament(number) if usize::from(*number) <= colours.len() => Ok(number - 1),
+        _ => Err(wrong("a filament of the base materials", format!("{paint:?}"))),
+    };
+    let triangles: Vec<u8> = object.painting.iter().map(filament).collect::<Result<_, _>>()?;
+    match triangles.len() == object.mesh.face_count() {
+        true => Ok(Filaments { colours, triangles }),
+        false => Err(wrong("a filament for each triangle", "triangles without one".into())),
+    }
+}
+
+fn unpack(bytes: &[u8], job: &Job) -> Result<ThreemfPackage, ParseError> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
         bad(FilePlace::Byte(bytes.len() as u64), "a zip's directory at the end", e.to_string())
     })?;
@@ -130,19 +180,7 @@ pub(super) fn parse(
             ));
         }
     }
-    if package.properties > 0 {
-        warnings.push(format!(
-            "{} groups of composite materials, multiproperties or texture coordinates left out",
-            package.properties
-        ));
-    }
-    if package.beams > 0 {
-        warnings.push(format!("{} beams of beam lattices left out", package.beams));
-    }
-    if package.slices > 0 {
-        warnings.push(format!("{} stacks of slices left out", package.slices));
-    }
-    assemble(&package, warnings, job)
+    Ok(package)
 }
 
 /// An attribute by its name without prefix.

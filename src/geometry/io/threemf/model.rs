@@ -6,6 +6,7 @@ use glam::{DMat4, DVec3, DVec4};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use super::painting::{TrianglePaint, paint_of};
 use super::resources::{Breach, ResourceKind, Resources, colour};
 use super::{ParseError, PartName, ThreemfObject, ThreemfPackage, bad, get, text_for_people};
 use crate::PolyMesh;
@@ -324,6 +325,8 @@ impl ModelPart<'_> {
             *c = i as u32;
         }
         let colours = self.colours_of(e, now.property)?;
+        let [prusa, orca] = ["mmu_segmentation", "paint_color"].map(|name| get(e, name));
+        let paint = paint_of(prusa.as_deref(), orca.as_deref());
         let Some(now) = &mut self.object else { return Ok(()) };
         let faces = now.object.mesh.face_count();
         now.object.mesh.push_face(&corners);
@@ -331,6 +334,10 @@ impl ModelPart<'_> {
             // Those before had none.
             now.object.colours.resize(faces, [None; 3]);
             now.object.colours.push(colours);
+        }
+        if paint != TrianglePaint::None || !now.object.painting.is_empty() {
+            now.object.painting.resize(faces, TrianglePaint::None);
+            now.object.painting.push(paint);
         }
         Ok(())
     }
@@ -378,7 +385,11 @@ impl ModelPart<'_> {
             let found = text.map(|text| {
                 colour(&text).ok_or_else(|| self.wrong("a colour #RRGGBB or #RRGGBBAA", text))
             });
-            self.resources.add_entry(id, found.transpose()?);
+            let found = found.transpose()?;
+            if kind == ResourceKind::BaseMaterials {
+                self.package.materials.push(found);
+            }
+            self.resources.add_entry(id, found);
             return Ok(());
         }
         let Some(kind) = ResourceKind::of_element(name) else {
