@@ -17,7 +17,7 @@ use super::store::{Store, StoreError};
 use super::stored_scene::{StoredObject, StoredScene};
 use super::tree::{NOTHING, Node, Tree, TreePath};
 use super::world_at_rest::WorldAtRest;
-use crate::command_queue::{CommandSender, QueuedCommand};
+use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand};
 use crate::session::history::history_writer::HistoryWriter;
 use crate::session::place::SessionPath;
 use sculptd_clay::{Clay, Levels, ObjectState, Snapshot};
@@ -31,7 +31,10 @@ use sculptd_geometry::job::Job;
 const WAITING: usize = 64;
 /// Interval between retries while the disk cannot be written.
 const RETRY: Duration = Duration::from_millis(1000);
-/// A jump that the world ignores for this long was for an earlier state of the sculpture.
+/// Interval between looks at a jump under way.
+const LOOK: Duration = Duration::from_millis(2);
+/// A jump without an answer that the world ignores for this long was for an earlier state of the
+/// sculpture.
 const PATIENCE: Duration = Duration::from_millis(500);
 /// Maximum number of undos that wait for the one in progress.
 const WANTS: usize = 64;
@@ -217,12 +220,38 @@ struct HistoryThread {
     path: SessionPath,
     shown: Arc<Mutex<Tree>>,
     wants: VecDeque<Want>,
-    /// Time at which the outstanding jump was sent.
-    sent: Option<u64>,
+    /// The outstanding jump.
+    sent: Option<SentJump>,
     jumping: Arc<AtomicBool>,
     /// True if the remaining history exceeds the bound, and that was reported.
     full: bool,
     clock: Clock,
+}
+
+/// A jump on its way to the world.
+struct SentJump {
+    /// What the loop says of it. A loop that gives no answers has ended this channel.
+    answer: cc::Receiver<CommandAnswer>,
+    /// The time by which its entry must have come, in microseconds; `None` before the answer.
+    by: Option<u64>,
+}
+
+impl SentJump {
+    /// Returns true if the jump was refused or is given up. One that was carried out is over when
+    /// its entry has come.
+    fn is_over(&mut self, now: u64) -> bool {
+        if let Some(by) = self.by {
+            return now >= by;
+        }
+        match self.answer.try_recv() {
+            Ok(CommandAnswer { result: Err(_), .. }) => return true,
+            Ok(_) | Err(cc::TryRecvError::Disconnected) => {
+                self.by = Some(now + PATIENCE.as_micros() as u64);
+            }
+            Err(cc::TryRecvError::Empty) => {}
+        }
+        false
+    }
 }
 
 impl HistoryThread {
@@ -236,8 +265,7 @@ impl HistoryThread {
     ) {
         crate::priority::raise_priority_below();
         loop {
-            // A jump that was ignored is given up in time.
-            let patience = if self.jumping.load(Relaxed) { PATIENCE } else { RETRY };
+            let patience = if self.jumping.load(Relaxed) { LOOK } else { RETRY };
             let message = match inbox.recv_timeout(patience) {
                 Ok(message) => message,
                 Err(cc::RecvTimeoutError::Timeout) => {
@@ -292,8 +320,8 @@ impl HistoryThread {
         match message {
             HistoryMessage::HistoryEntry { tick, moment } => {
                 self.ledger.moment(*tick, moment)?;
-                self.sent = None;
                 if matches!(moment.deed, HistoryEvent::Jump(_)) {
+                    self.sent = None;
                     self.ledger.store.settle_pins(*tick)?;
                 }
                 self.show();
@@ -344,7 +372,7 @@ impl HistoryThread {
     /// Sends the next jump that is wanted, unless one is under way.
     fn serve(&mut self, commands: &OnceLock<CommandSender>) {
         let now = self.clock.now_us();
-        if self.sent.is_some_and(|at| now < at + PATIENCE.as_micros() as u64) {
+        if self.sent.as_mut().is_some_and(|sent| !sent.is_over(now)) {
             return;
         }
         self.sent = None;
@@ -361,8 +389,10 @@ impl HistoryThread {
             let Some(to) = to else { continue };
             match self.fetch(to) {
                 Ok(Some(jump)) => {
+                    let (asked, answer) = cc::bounded(1);
+                    let jump = QueuedCommand { answer: Some(asked), ..jump };
                     if commands.try_send(jump).is_ok() {
-                        self.sent = Some(now);
+                        self.sent = Some(SentJump { answer, by: None });
                         return;
                     }
                 }
