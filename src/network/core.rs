@@ -32,6 +32,17 @@ pub enum To {
     Bulk(Address),
 }
 
+/// A datagram on its way.
+#[derive(Debug, Clone)]
+pub struct Outgoing {
+    /// Whom it is for.
+    pub to: To,
+    /// What is in it, for the log: the network sees only sealed bytes.
+    pub kind: &'static str,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
 /// Events that a station reports to its caller.
 #[derive(Debug, Clone)]
 pub enum Event {
@@ -131,7 +142,7 @@ pub struct Core {
     /// The own input.
     pub outbox: Outbox,
     /// Messages to send, in order.
-    pub outgoing: VecDeque<(To, Vec<u8>)>,
+    pub outgoing: VecDeque<Outgoing>,
     /// Events to report, in order.
     pub events: VecDeque<Event>,
     /// Random bytes.
@@ -235,37 +246,37 @@ impl Core {
         nonce
     }
 
-    /// Sends bytes with their head.
-    pub fn send(&mut self, to: To, kind: u8, bytes: &[u8]) {
+    /// Sends bytes with their head. `kind`: see [`Outgoing`].
+    pub fn send(&mut self, to: To, head: u8, kind: &'static str, bytes: &[u8]) {
         let mut out = Vec::with_capacity(bytes.len() + 9);
-        out.push(kind);
+        out.push(head);
         out.extend(self.address.to_le_bytes());
         out.extend(bytes);
-        self.outgoing.push_back((to, out));
+        self.outgoing.push_back(Outgoing { to, kind, bytes: out });
     }
 
     /// Sends in the clear.
     pub fn greet(&mut self, to: To, greeting: &Greeting) {
-        self.send(to, GREETING, &greeting.to_bytes());
+        self.send(to, GREETING, greeting.kind(), &greeting.to_bytes());
     }
 
     /// Sends to the host.
     pub fn up(&mut self, host: Address, seal: &mut crate::seal::Seal, message: &FromMember) {
         let sealed = seal.seal(&message.to_bytes());
-        self.send(To::Peer(host), UP, &sealed);
+        self.send(To::Peer(host), UP, message.kind(), &sealed);
     }
 
     /// Sends to a member.
     pub fn down(&mut self, member: Address, seal: &mut crate::seal::Seal, message: &FromHost) {
         let sealed = seal.seal(&message.to_bytes());
-        self.send(To::Peer(member), DOWN, &sealed);
+        self.send(To::Peer(member), DOWN, message.kind(), &sealed);
     }
 
     /// Sends to all who may take over.
     pub fn among_heirs(&mut self, heirs: &mut HeirsSeal, message: &AmongHeirs) {
         let mut bytes = heirs.stream.to_le_bytes().to_vec();
         bytes.extend(heirs.seal.seal(&message.to_bytes()));
-        self.send(To::Heirs, HEIRS, &bytes);
+        self.send(To::Heirs, HEIRS, message.word.kind(), &bytes);
     }
 
     /// Appends a frame to the log and hands it over to be stepped.

@@ -55,7 +55,7 @@ impl HeldCheckpoint {
             let (index, bytes) = (self.index, bytes.to_vec());
             let chunk = FromHost::Chunk { index, number, last, bytes };
             let sealed = member.down.seal(&chunk.to_bytes());
-            core.send(To::Bulk(to), DOWN, &sealed);
+            core.send(To::Bulk(to), DOWN, chunk.kind(), &sealed);
         }
     }
 

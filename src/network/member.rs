@@ -14,7 +14,7 @@ use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::frame_codec::frames_from_bytes;
 use crate::wire::greeting::Greeting;
-use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Term};
+use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Nonce, Term};
 
 /// Between two greetings.
 const GREET_US: u64 = 200_000;
@@ -149,6 +149,11 @@ impl Member {
     /// Returns true if a message to the host and its answer take long.
     pub fn is_far(&self) -> bool {
         self.trip.is_long()
+    }
+
+    /// Returns true if this is the number of the greeting that it sends now.
+    pub fn greeted_with(&self, nonce: &Nonce) -> bool {
+        matches!(&self.phase, MemberPhase::Greets { hello, .. } if hello.is_answered_by(nonce))
     }
 
     /// Returns true if nobody has answered its greetings.

@@ -11,7 +11,7 @@
 //! **A word among the successors counts if it answers the receiver's own challenge.** A recorded
 //! one neither stops an election nor wins one.
 
-use crate::core::{Core, DOWN, Event, GREETING, HEIRS, LOST_US, OtherSculpture, To, UP};
+use crate::core::{Core, DOWN, Event, GREETING, HEIRS, LOST_US, OtherSculpture, Outgoing, UP};
 use crate::handshake::is_genuine;
 use crate::heirs::{Among, Election, better};
 use crate::host::Host;
@@ -358,6 +358,7 @@ impl Station {
 
     /// Who looks for a host hears of another who does: one of them hosts.
     fn greeted_while_looking(&mut self, from: Address, greeting: &Greeting, now_us: u64) {
+        let StationPhase::Follows(member) = &self.phase else { return };
         let (Some(look), core) = (&mut self.look, &mut self.core) else { return };
         match greeting {
             Greeting::Hello(hello) if !look.claimed => {
@@ -367,7 +368,9 @@ impl Station {
                     look.until_us = now_us + LOOK_US;
                 }
             }
-            Greeting::Refused { reason, .. } if reason == crate::door::NOT_IN_LIST => {
+            Greeting::Refused { to, reason }
+                if reason == crate::door::NOT_IN_LIST && member.greeted_with(to) =>
+            {
                 core.end(
                     "a sculpture of this name is shared on this network already, and the keys in \
                      the folder are not for it: choose another name, or join it with an invitation",
@@ -533,7 +536,7 @@ impl Station {
     }
 
     /// The next datagram to be sent, and whom it is for.
-    pub fn take_outgoing(&mut self) -> Option<(To, Vec<u8>)> {
+    pub fn take_outgoing(&mut self) -> Option<Outgoing> {
         self.core.outgoing.pop_front()
     }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-use crate::core::Event;
+use crate::core::{Event, Outgoing};
 use crate::executor::{Executor, HashView};
 use crate::keyring::OwnerFolder;
 use crate::loop_messages::{FromLoop, NumberedFrame, ToLoop, Told};
@@ -200,7 +200,8 @@ impl StationThread {
     }
 
     fn send(&mut self) {
-        while let Some((to, bytes)) = self.station.take_outgoing() {
+        while let Some(Outgoing { to, kind, bytes }) = self.station.take_outgoing() {
+            tracing::trace!(kind, bytes = bytes.len(), "sent");
             self.ends.transport.send(to, bytes);
         }
     }

@@ -192,7 +192,7 @@ fn visitor(n: u32) -> sculptd_geometry::PolyMesh {
     sculptd_geometry::shapes::uv_sphere(1.0, 4 + n, 8)
 }
 
-/// Keeps, marks and sends three visitors' sculptures, and prints each on standard output. The test
+/// Keeps and sends three visitors' sculptures, and prints each on standard output. The test
 /// below runs it in a separate process, whose disk fails.
 #[test]
 fn gallery_day() {
@@ -211,7 +211,7 @@ fn gallery_day() {
                 let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
                 println!("kept {n} {name}");
                 if let Ok(spool) = &spool {
-                    let _ = spool.offer(&name);
+                    spool.wake();
                 }
             }
             Err(e) => println!("refused {n}: {e}"),
@@ -231,7 +231,7 @@ fn gallery_day() {
     }
     let quiet = crossbeam_channel::never::<()>();
     for _ in 0..20 {
-        if sculptd_daemon::kiosk::spool::waiting(&here).is_empty() {
+        if sculptd_daemon::kiosk::spool::waiting(&here).is_ok_and(|all| all.is_empty()) {
             break;
         }
         let _ = quiet.recv_timeout(std::time::Duration::from_millis(10));
@@ -288,7 +288,9 @@ fn a_gallery_on_a_disk_that_fails_at_any_call_keeps_what_it_said_it_kept() {
             // The disk works again, and the program restarts.
             let spool = Spool::start(&here, &there.display().to_string());
             let spool = spool.unwrap_or_else(|e| panic!("{case}: {e}"));
-            crate::waiting::until("all is sent", || spool::waiting(&here).is_empty());
+            crate::waiting::until("all is sent", || {
+                spool::waiting(&here).is_ok_and(|all| all.is_empty())
+            });
             drop(spool);
             for line in said.lines().filter(|l| l.contains("refused ")) {
                 refused += 1;

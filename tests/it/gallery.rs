@@ -15,6 +15,30 @@ use sculptd_daemon::qr_code::Code;
 use sculptd_devices::Clock;
 use sculptd_geometry::shapes;
 
+fn waiting(folder: &Path) -> Vec<String> {
+    spool::waiting(folder).expect("listed")
+}
+
+/// A sender runs beside visitors who finish works as fast as they can.
+#[test]
+fn a_work_is_sent_once_with_its_picture_whenever_the_sender_looks() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (here, there) = (dir.path().join("works"), dir.path().join("store"));
+    let spool = Spool::start(&here, &there.display().to_string()).expect("a place");
+    for n in 1..=30 {
+        gallery::keep(&here, &shapes::uv_sphere(1.0, 4 + n, 8)).expect("kept");
+        spool.wake();
+    }
+    until("all is sent", || waiting(&here).is_empty());
+    let page = || std::fs::read(there.join("index.html")).ok();
+    let last = std::fs::read(here.join("index.html")).expect("the page");
+    until("the last page", || page().as_ref() == Some(&last));
+    assert_eq!(spool.stand.sent.load(Relaxed), 30);
+    for n in 1..=30 {
+        assert!(there.join(format!("work-{n:06}.png")).exists(), "the picture of work {n}");
+    }
+}
+
 #[test]
 fn a_dead_network_loses_nothing_and_the_order_is_kept() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -22,12 +46,9 @@ fn a_dead_network_loses_nothing_and_the_order_is_kept() {
     let place = there.display().to_string();
     let work = |n: u32| shapes::uv_sphere(1.0, 4 + n, 8);
     let keep = |n: u32, spool: Option<&Spool>| {
-        let path = gallery::keep(&here, &work(n)).expect("kept");
-        let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
-        match spool {
-            Some(spool) => spool.offer(&name).expect("offered"),
-            // The program is not running: the mark is there all the same.
-            None => spool::offer(&here, &name).expect("offered"),
+        gallery::keep(&here, &work(n)).expect("kept");
+        if let Some(spool) = spool {
+            spool.wake();
         }
     };
     let first = Spool::start(&here, &place).expect("a place");
@@ -40,14 +61,15 @@ fn a_dead_network_loses_nothing_and_the_order_is_kept() {
     keep(2, Some(&first));
     keep(3, Some(&first));
     until("the place refuses", || first.stand.refused.load(Relaxed) >= 2);
-    assert_eq!(spool::waiting(&here), ["work-000002.glb", "work-000003.glb"]);
+    assert_eq!(waiting(&here), ["work-000002.glb", "work-000003.glb"]);
     // The machine is switched off, and a work is finished before the network is back.
     drop(first);
     keep(4, None);
     std::fs::remove_file(&there).expect("removed");
     std::fs::rename(dir.path().join("moved"), &there).expect("back");
     let second = Spool::start(&here, &place).expect("a place");
-    until("all is sent", || spool::waiting(&here).is_empty());
+    let page = || std::fs::read_to_string(there.join("index.html")).unwrap_or_default();
+    until("all is sent", || waiting(&here).is_empty() && page().contains("4 works"));
     drop(second);
     let names: Vec<String> = (1..=4).map(|n| format!("work-{n:06}.glb")).collect();
     assert_eq!(gallery::works(&there).expect("listed"), names);
@@ -57,25 +79,23 @@ fn a_dead_network_loses_nothing_and_the_order_is_kept() {
         assert!(a.expect("here") == b.expect("there"), "{name} is another one there");
         let at = std::fs::metadata(there.join(name)).and_then(|m| m.modified()).expect("a time");
         assert!(at >= before, "{name} came before the one before it");
+        assert!(there.join(name.replace(".glb", ".png")).exists(), "the picture of {name}");
         before = at;
     }
-    let page = std::fs::read_to_string(there.join("index.html")).expect("the page");
-    assert!(page.contains("4 works"));
 }
 
 #[test]
-fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
+fn works_kept_while_nothing_is_sent_are_sent_and_no_number_is_given_twice() {
     let dir = tempfile::tempdir().expect("a folder");
     let (here, there) = (dir.path().join("works"), dir.path().join("store"));
     let place = there.display().to_string();
     let work = |n: u32| gallery::keep(&here, &shapes::uv_sphere(1.0, 4 + n, 8)).expect("kept");
-    // Kept, and killed before it was offered.
+    // Kept, and killed before they could be sent.
     work(1);
     work(2);
-    assert!(spool::waiting(&here).is_empty());
     let first = Spool::start(&here, &place).expect("a place");
     until("both are sent", || {
-        first.stand.sent.load(Relaxed) == 2 && spool::waiting(&here).is_empty()
+        first.stand.sent.load(Relaxed) == 2 && waiting(&here).is_empty()
     });
     drop(first);
     assert_eq!(spool::sent(&here), 2);
@@ -86,7 +106,7 @@ fn a_work_whose_mark_a_kill_prevented_is_sent_and_no_number_is_given_twice() {
     assert!(work(3).ends_with("work-000003.glb"));
     let second = Spool::start(&here, &place).expect("a place");
     until("the third is sent", || second.stand.sent.load(Relaxed) == 1 && spool::sent(&here) == 3);
-    assert!(spool::waiting(&here).is_empty());
+    assert!(waiting(&here).is_empty());
     drop(second);
     assert_eq!(gallery::works(&there).expect("listed").len(), 3);
 }

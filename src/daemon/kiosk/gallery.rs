@@ -38,7 +38,8 @@ b { display: block; padding: .75rem; font-weight: 500 }
 </style>
 "#;
 
-/// Adds a sculpture and rewrites the page. Each file is written under a temporary name and renamed.
+/// Adds a picture, its sculpture and rewrites the page, in this order: who finds a sculpture finds
+/// its picture too. Each file is written under a temporary name and renamed.
 /// The page lists the folder, so the next call repairs an interruption between the two.
 pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
@@ -48,10 +49,10 @@ pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
     let next = last.max(sent(folder)) + 1;
     let path = folder.join(format!("work-{next:06}.glb"));
     let work = SceneMesh { mesh: mesh.clone(), ..SceneMesh::default() };
-    write_scene(&path, &[work], &Job::default()).map_err(std::io::Error::other)?;
     if let Err(e) = draw(&path.with_extension("png"), mesh) {
         tracing::error!("{}: no picture of it is written: {e}", path.display());
     }
+    write_scene(&path, &[work], &Job::default()).map_err(std::io::Error::other)?;
     // The sculpture is kept, with or without the page that lists it.
     if let Err(e) = page(folder) {
         tracing::error!(

@@ -450,10 +450,8 @@ impl KioskThread {
 
     /// The work is in the gallery: on to where it is kept for good, and to the visitor.
     fn pass_on(&mut self, path: &std::path::Path) {
-        if let (Some(spool), Some(name)) = (&self.spool, path.file_name().and_then(|n| n.to_str()))
-            && let Err(e) = spool.offer(name)
-        {
-            self.figures.error(format!("{}: {e}", path.display()));
+        if let Some(spool) = &self.spool {
+            spool.wake();
         }
         #[cfg(unix)]
         if let Some(share) = &self.share {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-/// The folder of names that wait, within the gallery.
-pub const OUTGOING: &str = "outgoing";
+/// The folder within the gallery of what is noted about sending.
+pub(super) const OUTGOING: &str = "outgoing";
 /// The file in it that holds the number of the newest work that was sent.
 pub(super) const SENT: &str = "sent";
 /// Names of whole works in `folder`, in order. What a power cut left half-written has another name

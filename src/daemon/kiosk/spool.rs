@@ -2,11 +2,10 @@
 //! folder, or a bucket.
 //!
 //! Laws kept here:
-//! * A work is in the local folder before it is offered, and what is offered is a name in
-//!   `outgoing/`: nothing is lost by a dead network, nor by a restart.
-//! * Works arrive in the order in which they were made: the oldest that waits is tried until it is
-//!   there. So one number says which were sent; a work above it without a mark (the program was
-//!   killed between the two) gets its mark at the start.
+//! * A sculpture is in the local folder before it is sent, so a dead network or a restart loses
+//!   nothing.
+//! * Sculptures arrive in the order in which they were made: the oldest is tried until it is there.
+//!   So one number says which were sent, and every sculpture in the folder above it waits.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,8 +15,8 @@ use std::time::Duration;
 
 use crossbeam_channel as cc;
 
-pub use super::names::{OUTGOING, sent};
-use super::names::{SENT, number, works};
+pub use super::names::sent;
+use super::names::{OUTGOING, SENT, number, works};
 use sculptd_geometry::io::write_beside;
 
 /// The first wait after a refusal, and the longest.
@@ -35,34 +34,17 @@ pub struct Stand {
 /// The thread that sends.
 #[derive(Debug)]
 pub struct Spool {
-    folder: PathBuf,
     wake: cc::Sender<()>,
     pub stand: Arc<Stand>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Marks a work as waiting to be sent. It need not be running for that.
-pub fn offer(folder: &Path, name: &str) -> std::io::Result<()> {
-    let outgoing = folder.join(OUTGOING);
-    std::fs::create_dir_all(&outgoing)?;
-    write_beside(&outgoing.join(name), |_| Ok(()))
-}
-
 /// The names that wait, the oldest first.
-pub fn waiting(folder: &Path) -> Vec<String> {
-    works(&folder.join(OUTGOING)).unwrap_or_default()
-}
-
-/// Marks the works that have none and were never sent: a kill or a bad disk came between a work and
-/// its mark, or nothing was sent so far.
-fn catch_up(folder: &Path) -> std::io::Result<()> {
-    let (sent, marked) = (sent(folder), waiting(folder));
-    for name in works(folder).unwrap_or_default() {
-        if number(&name).is_some_and(|n| n > sent) && !marked.contains(&name) {
-            offer(folder, &name)?;
-        }
-    }
-    Ok(())
+pub fn waiting(folder: &Path) -> std::io::Result<Vec<String>> {
+    let sent = sent(folder);
+    let mut names = works(folder)?;
+    names.retain(|name| number(name).is_some_and(|n| n > sent));
+    Ok(names)
 }
 
 /// Destination of the sculptures.
@@ -111,7 +93,8 @@ impl Spool {
     /// In words, where `place` is nothing that can be sent to.
     pub fn start(folder: &Path, place: &str) -> Result<Spool, String> {
         let to = SpoolTarget::open(place)?;
-        catch_up(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        std::fs::create_dir_all(folder.join(OUTGOING))
+            .map_err(|e| format!("{}: {e}", folder.display()))?;
         let (wake, calls) = cc::bounded::<()>(1);
         let stand = Arc::new(Stand::default());
         let (shown, from) = (stand.clone(), folder.to_path_buf());
@@ -120,8 +103,9 @@ impl Spool {
             .name("sculptd-gallery".into())
             .spawn(move || {
                 let mut wait = WAIT;
+                let mut page = Vec::new();
                 while !shown.stop.load(Relaxed) {
-                    match send_next(&to, &from, &shown.stop) {
+                    match send_next(&to, &from, &mut page, &shown.stop) {
                         Ok(true) => {
                             shown.sent.fetch_add(1, Relaxed);
                             wait = WAIT;
@@ -148,18 +132,12 @@ impl Spool {
                 }
             })
             .map_err(|e| e.to_string())?;
-        Ok(Spool { folder: folder.to_path_buf(), wake, stand, thread: Some(thread) })
+        Ok(Spool { wake, stand, thread: Some(thread) })
     }
 
-    /// Offers a sculpture in the folder. If it cannot be marked, the sending thread still finds it
-    /// as long as the folder lists it.
-    ///
-    /// # Errors
-    /// Returns the system's error for the mark.
-    pub fn offer(&self, name: &str) -> std::io::Result<()> {
-        let marked = offer(&self.folder, name);
+    /// Says that the folder has a new sculpture and its page.
+    pub fn wake(&self) {
         let _ = self.wake.try_send(());
-        marked
     }
 }
 
@@ -175,33 +153,42 @@ impl Drop for Spool {
     }
 }
 
-/// Sends the oldest work that waits, and the page after it. False: none waits.
-fn send_next(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<bool, String> {
-    // A sculpture whose mark could not be made must not be passed over: the number of what was
-    // sent would then say that it was.
-    catch_up(folder).map_err(|e| e.to_string())?;
-    let all = waiting(folder);
-    let Some(name) = all.first() else { return Ok(false) };
-    let mark = folder.join(OUTGOING).join(name);
-    let bytes = match std::fs::read(folder.join(name)) {
-        Ok(bytes) => bytes,
-        // Staff has taken the work out of the gallery: there is nothing to send.
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            std::fs::remove_file(&mark).map_err(|e| e.to_string())?;
-            return Ok(true);
-        }
-        Err(e) => return Err(e.to_string()),
+/// Sends the oldest sculpture that waits. If none does, it sends the page if it is not `page`, the
+/// one that was sent last, and returns false.
+fn send_next(
+    to: &SpoolTarget,
+    folder: &Path,
+    page: &mut Vec<u8>,
+    stop: &AtomicBool,
+) -> Result<bool, String> {
+    let all = waiting(folder).map_err(|e| e.to_string())?;
+    let Some(name) = all.first() else {
+        let Some(now) = read(&folder.join("index.html"))?.filter(|now| now != page) else {
+            return Ok(false);
+        };
+        to.put("index.html", &now, stop)?;
+        *page = now;
+        return Ok(false);
     };
+    // Staff may have taken it out of the gallery since it was listed: then the next list has it not.
+    let bytes = read(&folder.join(name))?.ok_or_else(|| format!("{name} is not there any more"))?;
     to.put(name, &bytes, stop)?;
-    // Its picture and the page are there if they could be written.
-    for beside in [name.replace(".glb", ".png"), "index.html".into()] {
-        if let Ok(bytes) = std::fs::read(folder.join(&beside)) {
-            to.put(&beside, &bytes, stop)?;
-        }
+    // The picture was written before the sculpture, if it could be.
+    let picture = name.replace(".glb", ".png");
+    if let Some(bytes) = read(&folder.join(&picture))? {
+        to.put(&picture, &bytes, stop)?;
     }
     let number = number(name).unwrap_or(0).max(sent(folder));
-    let noted = write_beside(&folder.join(OUTGOING).join(SENT), |out| writeln!(out, "{number}"));
-    noted.map_err(|e| e.to_string())?;
-    std::fs::remove_file(&mark).map_err(|e| e.to_string())?;
+    write_beside(&folder.join(OUTGOING).join(SENT), |out| writeln!(out, "{number}"))
+        .map_err(|e| e.to_string())?;
     Ok(true)
+}
+
+/// A file's bytes; none if there is no such file.
+fn read(file: &Path) -> Result<Option<Vec<u8>>, String> {
+    match std::fs::read(file) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(format!("{}: {e}", file.display())),
+    }
 }

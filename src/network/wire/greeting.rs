@@ -102,6 +102,19 @@ impl Challenge {
 }
 
 impl Greeting {
+    /// All that [`Greeting::kind`] returns.
+    pub const KINDS: [&'static str; 3] = ["hello", "challenge", "greeting refused"];
+
+    /// What it is, in a word.
+    pub fn kind(&self) -> &'static str {
+        let at = match self {
+            Greeting::Hello(_) => 0,
+            Greeting::Challenge(_) => 1,
+            Greeting::Refused { .. } => 2,
+        };
+        Self::KINDS[at]
+    }
+
     /// As bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();

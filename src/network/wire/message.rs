@@ -211,7 +211,40 @@ pub enum HeirsWord {
     Who,
 }
 
+impl HeirsWord {
+    /// All that [`HeirsWord::kind`] returns.
+    pub const KINDS: [&'static str; 3] = ["host", "candidate", "who"];
+
+    /// What it is, in a word.
+    pub fn kind(&self) -> &'static str {
+        let at = match self {
+            HeirsWord::Host { .. } => 0,
+            HeirsWord::Candidate { .. } => 1,
+            HeirsWord::Who => 2,
+        };
+        Self::KINDS[at]
+    }
+}
+
 impl FromMember {
+    /// All that [`FromMember::kind`] returns.
+    pub const KINDS: [&'static str; 7] =
+        ["join", "up", "want", "hash", "leave", "members", "knows members"];
+
+    /// What it is, in a word.
+    pub fn kind(&self) -> &'static str {
+        let at = match self {
+            FromMember::Join { .. } => 0,
+            FromMember::Up { .. } => 1,
+            FromMember::Want { .. } => 2,
+            FromMember::Hash { .. } => 3,
+            FromMember::Leave => 4,
+            FromMember::Members(_) => 5,
+            FromMember::KnowsMembers(_) => 6,
+        };
+        Self::KINDS[at]
+    }
+
     /// As bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();
@@ -352,6 +385,23 @@ fn take_group(b: &mut ByteReader<'_>) -> Result<Option<[u8; 32]>, BadBytes> {
 }
 
 impl FromHost {
+    /// All that [`FromHost::kind`] returns.
+    pub const KINDS: [&'static str; 6] =
+        ["entry", "refused", "down", "chunk", "members and group", "differs"];
+
+    /// What it is, in a word.
+    pub fn kind(&self) -> &'static str {
+        let at = match self {
+            FromHost::Entry(_) => 0,
+            FromHost::Refused(_) => 1,
+            FromHost::Down { .. } => 2,
+            FromHost::Chunk { .. } => 3,
+            FromHost::Members { .. } => 4,
+            FromHost::Differs { .. } => 5,
+        };
+        Self::KINDS[at]
+    }
+
     /// As bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();

@@ -3,6 +3,7 @@
 
 #![allow(clippy::print_stdout)] // Traffic and times are told on standard output.
 
+mod attacks;
 mod echo;
 mod faults;
 mod fleet;

@@ -6,6 +6,7 @@ use sculptd_network::keyring::fresh;
 use sculptd_network::wire::frame::Role;
 use sculptd_network::wire::greeting::{Greeting, Hello, VERSION};
 
+use crate::attacks::Recorded;
 use crate::faults::long;
 use crate::simulated::{BAD, EPOCH_S, GOOD, Random, Simulation, undo};
 
@@ -217,13 +218,13 @@ fn recorded_messages_stop_no_election_and_change_nothing() {
         s.run(4.0, |_| true);
         assert!(s.replicas[back].station.follows(), "{}", told(&s, back));
         let tape = s.tape.take().unwrap_or_default();
-        let kinds: std::collections::BTreeSet<u8> = tape.iter().map(|t| t.1[0]).collect();
+        let kinds: std::collections::BTreeSet<u8> = tape.iter().map(|t| t.bytes[0]).collect();
         assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [0, 1, 2, 3], "every kind");
         s.replicas[first].alive = false;
         let (at, mut next, lively) = (s.now_us, 0, [1, 2, back]);
         while s.host().is_none() {
             for _ in 0..200 {
-                let (_, bytes) = &tape[next % tape.len()];
+                let bytes = &tape[next % tape.len()].bytes;
                 lively.iter().for_each(|i| s.inject(*i, bytes));
                 next += 1;
             }
@@ -232,7 +233,7 @@ fn recorded_messages_stop_no_election_and_change_nothing() {
         }
         for round in 0..1000 {
             for k in 0..20 {
-                let (_, bytes) = &tape[(round * 20 + k) % tape.len()];
+                let bytes = &tape[(round * 20 + k) % tape.len()].bytes;
                 lively.iter().for_each(|i| s.inject(*i, bytes));
             }
             s.run(0.004, |_| true);
@@ -252,7 +253,7 @@ fn forged_messages_change_nothing() {
     let tape = s.tape.take().unwrap_or_default();
     let mut random = Random(5);
     for round in 0..2000 {
-        let (to, bytes) = &tape[random.next() as usize % tape.len()];
+        let Recorded { to, bytes, .. } = &tape[random.next() as usize % tape.len()];
         let mut bytes = bytes.clone();
         match round % 3 {
             0 => {

@@ -14,7 +14,7 @@ use sculptd_engine::scene::KnownHashes;
 use sculptd_engine::world::{World, WorldOptions};
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
-use sculptd_network::core::{Event, To};
+use sculptd_network::core::{Event, Outgoing, To};
 use sculptd_network::executor::Executor;
 use sculptd_network::keyring::{Entropy, Invitation, fresh};
 use sculptd_network::local_echo::LocalEcho;
@@ -23,6 +23,8 @@ use sculptd_network::seal::Secret;
 use sculptd_network::station::{Identity, Station};
 use sculptd_network::wire::frame::{Batch, Frame, Mark, Role};
 use sculptd_network::wire::samples::rounded;
+
+use crate::attacks::{Attacker, Recorded};
 
 pub const RATE: u32 = 120;
 /// Seconds since 1970 at the beginning.
@@ -113,7 +115,9 @@ pub struct Simulation {
     air: BTreeMap<(u64, u64), (usize, Vec<u8>)>,
     sent: u64,
     /// Every datagram that was sent, and to whom, while it is `Some`.
-    pub tape: Option<Vec<(usize, Vec<u8>)>>,
+    pub tape: Option<Vec<Recorded>>,
+    /// Somebody on the network who has no key.
+    pub attacker: Option<Attacker>,
     /// Transitions that were stepped, by person, on the log of the first replica that stepped them.
     pub stroke_s: f64,
 }
@@ -149,6 +153,7 @@ impl Simulation {
             air: BTreeMap::new(),
             sent: 0,
             tape: None,
+            attacker: None,
             stroke_s: 0.8,
         };
         let identity = simulation.identity("person 0", Role::Sculptor, simulation.of_owner());
@@ -305,6 +310,7 @@ impl Simulation {
                     replica.station.receive(&bytes, self.now_us);
                 }
             }
+            self.attack();
             let tick = self.now_us / STEP_US % 2 == 0;
             for i in 0..self.replicas.len() {
                 if !self.replicas[i].alive {
@@ -319,8 +325,8 @@ impl Simulation {
                 if let (true, Some(echo), Some(world)) = (tick, &mut replica.echo, &replica.world) {
                     echo.advance(world);
                 }
-                while let Some((to, bytes)) = self.replicas[i].station.take_outgoing() {
-                    self.send(i, to, &bytes);
+                while let Some(outgoing) = self.replicas[i].station.take_outgoing() {
+                    self.send(i, outgoing);
                 }
             }
         }
@@ -405,7 +411,7 @@ impl Simulation {
         }
     }
 
-    fn send(&mut self, from: usize, to: To, bytes: &[u8]) {
+    fn send(&mut self, from: usize, Outgoing { to, kind, bytes }: Outgoing) {
         self.replicas[from].bytes.0 += bytes.len() as u64;
         let all: Vec<usize> = (0..self.replicas.len())
             .filter(|&k| k != from && self.replicas[k].part == self.replicas[from].part)
@@ -422,21 +428,33 @@ impl Simulation {
         }
         for to in all {
             if let Some(tape) = &mut self.tape {
-                tape.push((to, bytes.to_vec()));
+                tape.push(Recorded { to, kind, bytes: bytes.clone() });
             }
+            let late_us = self.attacker.as_mut().map_or(0, |a| a.hears(to, kind, &bytes));
             let copies = 1 + usize::from(self.random.share() < self.faults.twice);
             for _ in 0..copies {
                 if self.random.share() < self.faults.loss {
                     continue;
                 }
-                let mut at = self.now_us + self.faults.delay_us;
+                let mut at = self.now_us + self.faults.delay_us + late_us;
                 if self.random.share() < self.faults.reorder {
                     at += (self.random.share() * self.faults.delay_us.max(20_000) as f64) as u64;
                 }
                 self.sent += 1;
-                self.air.insert((at, self.sent), (to, bytes.to_vec()));
+                self.air.insert((at, self.sent), (to, bytes.clone()));
             }
         }
+    }
+
+    /// What the attacker sends in a step.
+    fn attack(&mut self) {
+        let Some(mut attacker) = self.attacker.take() else { return };
+        for (to, bytes) in attacker.step(&self.replicas) {
+            if self.replicas[to].alive && !self.replicas[to].cut_off {
+                self.inject(to, &bytes);
+            }
+        }
+        self.attacker = Some(attacker);
     }
 
     /// Bytes of somebody else on their way to a replica.
