@@ -345,6 +345,29 @@ fn half_open_clients_keep_nobody_out() {
     drop(server);
 }
 
+/// The socket at which [`owner_who_asks`] asks, and how many times.
+const OWNER: &str = "SCULPTD_TEST_OWNER";
+
+/// Connects, asks and reads the reply, many times, and prints how long each took. The test below
+/// runs it in a separate process, as the owner would be.
+#[test]
+fn owner_who_asks() {
+    let Ok(told) = std::env::var(OWNER) else {
+        println!("skipped: it is run beside a flood");
+        return;
+    };
+    let (path, rounds) = told.rsplit_once(' ').expect("a socket and a number");
+    let clock = Clock::monotonic();
+    for round in 0..rounds.parse::<usize>().expect("a number") {
+        let method = ["status", "cancel", "hash"][round % 3];
+        let line = format!(r#"{{"jsonrpc":"2.0","id":1,"method":"{method}"}}"#);
+        let begun = clock.now_us();
+        let reply = Client::new(Path::new(path)).ask(&line).expect("an answer");
+        println!("took {} us", clock.now_us() - begun);
+        assert!(reply["result"].is_object(), "{method} in round {round}: {reply}");
+    }
+}
+
 /// Processes that connect many times, or that flood, keep no other process waiting.
 #[test]
 fn idle_and_flooding_clients_keep_nobody_waiting() {
@@ -385,11 +408,24 @@ fn idle_and_flooding_clients_keep_nobody_waiting() {
         assert!(daemon.ctl(method, None).is_some(), "{method} is answered in round {round}");
         took.push(clock.now_us() - begun);
     }
+    let owner = std::process::Command::new(std::env::current_exe().expect("this program"))
+        .args(["--exact", "control::owner_who_asks", "--nocapture", "--test-threads", "1"])
+        .env(OWNER, format!("{} {}", path.display(), rounds * 5))
+        .output()
+        .expect("runs");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
     floods.into_iter().for_each(|f| f.join().expect("ends"));
-    took.sort_unstable();
-    let at = |share: usize| took[(took.len() - 1) * share / 100] as f64 * 1e-3;
-    println!("p50 {:.1} ms, p99 {:.1} ms, all {:.1} ms with a process", at(50), at(99), at(100));
+    let said = String::from_utf8_lossy(&owner.stdout);
+    assert!(owner.status.success(), "{said}{}", String::from_utf8_lossy(&owner.stderr));
+    let asked = said.lines().filter_map(|l| l.split_once("took ")?.1.strip_suffix(" us"));
+    let asked: Vec<u64> = asked.map(|us| us.parse().expect("a number")).collect();
+    assert_eq!(asked.len(), rounds * 5);
+    for (what, mut took) in [("and a reply", asked), ("a reply and a new process", took)] {
+        took.sort_unstable();
+        let at = |share: usize| took[(took.len() - 1) * share / 100] as f64 * 1e-3;
+        let (p50, p99, all) = (at(50), at(99), at(100));
+        println!("a connection {what}: p50 {p50:.1} ms, p99 {p99:.1} ms, all {all:.1} ms");
+    }
 }
 
 #[test]

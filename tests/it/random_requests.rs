@@ -28,22 +28,23 @@ fn region(r: &mut Random) -> Value {
 
 /// Parameters that mean something in the present state, mostly.
 pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
-    let mut one_of = |method: &str, list: &str| {
+    let mut one_of = |method: &str, list: &str, key: &str| {
         let all = ask(method, Value::Null).map(|reply| reply[list].clone());
         let all = all.as_ref().and_then(Value::as_array).map_or(&[][..], |a| a);
-        all.get(r.below(all.len().max(1) as u64) as usize).map_or(json!(0), |o| o["id"].clone())
+        all.get(r.below(all.len().max(1) as u64) as usize).map_or(json!(0), |o| o[key].clone())
     };
-    let any = one_of("scene.list", "objects");
-    let other = one_of("scene.list", "objects");
-    let layer = one_of("layers.list", "layers");
-    let set = 1 + r.below(2);
+    let any = one_of("scene.list", "objects", "id");
+    let other = one_of("scene.list", "objects", "id");
+    let layer = one_of("layers.list", "layers", "id");
+    let set = one_of("sets.list", "sets", "set");
+    let link = one_of("guests.list", "links", "key");
     let file = dir.join(r.of(&["ball.ply", "box.ply"]));
     let operation = r.of(&["union", "intersection", "difference", "reverse-difference"]);
     let node = || ask("history", Value::Null).map(|h| h["places"].clone());
     let turn = [0.0, 0.0, 0.0, 1.0];
     match method {
         "guests.invite" => json!({ "role": "viewer" }),
-        "guests.revoke" => json!({ "key": 1 }),
+        "guests.revoke" => json!({ "key": link }),
         "brush" => {
             json!({ "radius": 0.05 + 0.3 * r.part(), "kind": r.of(&["draw", "clay", "smooth"]) })
         }
@@ -103,7 +104,11 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
         "scene.snap" => {
             json!({ "id": any, "at": [0.0, 0.0, 1.0], "to": other, "to_at": [0.0, 1.0, 0.0] })
         }
-        "scene.boolean" => json!({ "operation": operation, "a": any, "b": other }),
+        "scene.boolean" => {
+            let live = r.below(4) == 0;
+            json!({ "operation": operation, "a": any, "b": other, "live": live })
+        }
+        "scene.apply" => json!({ "id": following(ask).unwrap_or(any) }),
         "scene.mirror" => json!({ "id": any, "axis": r.of(&["x", "y", "z"]) }),
         "scene.move" => json!({ "id": any, "to": r.below(3) }),
         "scene.group" => json!({ "ids": [any], "name": "group" }),
@@ -135,6 +140,13 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
     }
 }
 
+/// An object that is the result of a live Boolean.
+fn following(ask: Ask<'_>) -> Option<Value> {
+    let scene = ask("scene.list", Value::Null)?;
+    let objects = scene["objects"].as_array()?;
+    objects.iter().find(|o| !o["follows"].is_null()).map(|o| o["id"].clone())
+}
+
 /// Brings the sculpture into a state in which the method can be carried out, mostly.
 pub fn prepare(method: &str, ask: Ask<'_>, dir: &Path) {
     let triangles = ask("status", Value::Null).and_then(|s| s["triangles"].as_u64());
@@ -150,6 +162,18 @@ pub fn prepare(method: &str, ask: Ask<'_>, dir: &Path) {
         "join" => {
             ask("take-up", json!({ "path": dir.join("box.ply") }));
         }
+        "scene.apply" if following(&ask).is_none() => {
+            let add = || ask("scene.add", json!({ "path": dir.join("ball.ply") }));
+            if let (Some(a), Some(b)) = (add(), add()) {
+                let (a, b) = (&a["id"], &b["id"]);
+                let shift = json!({ "shift": [0.7, 0.1, 0.2], "turn": [0, 0, 0, 1], "scale": 1.0 });
+                ask("scene.transform", json!({ "id": b, "transform": shift }));
+                ask("scene.boolean", json!({ "operation": "union", "a": a, "b": b, "live": true }));
+            }
+        }
+        "guests.revoke" => {
+            ask("guests.invite", json!({ "role": "viewer" }));
+        }
         m if m.starts_with("layers.") => {
             for k in 0..2 {
                 ask("layers.add", json!({ "name": format!("layer {k}") }));
@@ -157,7 +181,15 @@ pub fn prepare(method: &str, ask: Ask<'_>, dir: &Path) {
         }
         m if m.starts_with("sets.") && m != "sets.make" => {
             ask("sets.show", json!({}));
-            ask("sets.make", json!({ "from": "visible" }));
+            ask("mask", json!({ "action": "clear" }));
+            ask("mask-region", json!({ "region": { "box": [0.3, 0.3, 0.5, 0.5] }, "mask": 1.0 }));
+            let made = ask("sets.make", json!({ "from": "mask" }));
+            if let (Some(made), "sets.show") = (made, m) {
+                ask("sets.hide", json!({ "set": made["set"] }));
+            }
+        }
+        "level" if triangles.is_some_and(|n| n < 5000) => {
+            ask("level", json!({ "to": "up" }));
         }
         _ => {}
     }

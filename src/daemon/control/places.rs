@@ -1,7 +1,8 @@
 //! The connected clients. Places are limited, and nobody can keep one from everybody else. When all
-//! are taken, these give way to a newcomer: a client that floods, one whose process holds several
-//! places while the newcomer's holds none, and one that has been silent. A client that waits for a
-//! reply or is subscribed to events keeps its place.
+//! are taken, these give way to a newcomer: a client that floods, unless the newcomer's process
+//! holds a place and has asked as much lately; one whose process holds several places while the
+//! newcomer's holds none; and one that has been silent. A client that waits for a reply or is
+//! subscribed to events keeps its place.
 
 use std::collections::BTreeMap;
 use std::net::Shutdown;
@@ -74,9 +75,10 @@ impl ClientPlaces {
     /// where it gives way. `pid`: its process.
     pub fn take(&self, stream: Option<UnixStream>, pid: i32) -> Option<ClientPlace> {
         let now = self.clock.now_us();
+        let lately = self.asked_lately();
         let mut clients = locked(&self.clients);
         if clients.len() >= self.most {
-            let at = who_gives_way(&clients, pid, now)?;
+            let at = who_gives_way(&clients, pid, now, lately)?;
             let gone = clients.swap_remove(at);
             if let Some(stream) = &gone.stream {
                 let _ = stream.shutdown(Shutdown::Both);
@@ -98,14 +100,19 @@ impl ClientPlaces {
 }
 
 /// Returns the place in the list of the client that gives way to one of process `pid`.
-fn who_gives_way(clients: &[Arc<ConnectedClient>], pid: i32, now: u64) -> Option<usize> {
+fn who_gives_way(
+    clients: &[Arc<ConnectedClient>],
+    pid: i32,
+    now: u64,
+    lately: impl Fn(i32) -> u64,
+) -> Option<usize> {
     let held = |pid: i32| clients.iter().filter(|c| c.pid == pid).count();
     let newcomer_has_none = held(pid) == 0;
     let may = |c: &ConnectedClient| {
         c.stream.is_some()
             && !c.is_busy.load(Relaxed)
             && !c.is_subscribed.load(Relaxed)
-            && (c.is_flooding.load(Relaxed)
+            && (c.is_flooding.load(Relaxed) && (newcomer_has_none || lately(pid) < lately(c.pid))
                 || now.saturating_sub(c.last_us.load(Relaxed)) >= SILENT_US
                 || newcomer_has_none && held(c.pid) > 1)
     };
@@ -205,6 +212,21 @@ mod tests {
         let _third = places.take(ends().1, 3).expect("of process 1");
         assert!(is_ended(&all[0].0) && !is_ended(&all[1].0) && !is_ended(&all[2].0));
         assert!(places.take(ends().1, 4).is_none(), "each process holds one");
+    }
+
+    /// Else a process that floods and connects again for each ended connection would keep the
+    /// daemon busy with nothing but that.
+    #[test]
+    fn a_flooding_process_does_not_take_its_own_places_from_itself() {
+        let (places, clock) = places(2);
+        let all = taken(&places, &clock, &[1, 2]);
+        all[0].1.set_busy(true);
+        all[0].1.set_busy(false);
+        all[0].1.set_flooding(true);
+        assert!(places.take(ends().1, 1).is_none());
+        assert!(!is_ended(&all[0].0));
+        assert!(places.take(ends().1, 2).is_some(), "of the process that floods");
+        assert!(is_ended(&all[0].0));
     }
 
     #[test]
