@@ -180,3 +180,66 @@ fn a_visit_to_any_exhibit_goes_on_after_a_kill() {
         assert_eq!(line["exhibit"], ["relief", "pot"][round - 1], "{line}");
     }
 }
+
+/// Bytes of the files in a folder and the folders in it, without this one.
+fn bytes(folder: &Path, without: &str) -> u64 {
+    let Ok(all) = std::fs::read_dir(folder) else { return 0 };
+    let all = all.filter_map(Result::ok).filter(|e| e.file_name() != without);
+    all.filter_map(|e| Some((e.path(), e.metadata().ok()?)))
+        .map(|(path, m)| if m.is_dir() { bytes(&path, without) } else { m.len() })
+        .sum()
+}
+
+/// Days of twenty visits; the last visit of each day is killed, goes on and is put away. A month by
+/// `SCULPTD_LONG`, which takes half an hour, or as many days as `SCULPTD_DAYS` says. Beside the
+/// gallery and the line of each visit the disk does not fill.
+#[test]
+fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
+    let told = std::env::var("SCULPTD_DAYS").ok().and_then(|d| d.parse().ok());
+    let long = std::env::var_os("SCULPTD_LONG").is_some();
+    let (days, visits) = if long || told.is_some() { (told.unwrap_or(30), 20) } else { (2, 3) };
+    let settings = "idle_s = 1\ncountdown_s = 1";
+    let clock = sculptd_devices::Clock::monotonic();
+    let mut daemon = installation(tempfile::tempdir().expect("a folder"), settings);
+    let (mut of_day, mut opened_us) = (Vec::new(), Vec::new());
+    for day in 0..days {
+        let mut most = 0;
+        for visit in 1..=visits {
+            let home = daemon.home.path();
+            let before = (audit(home).len(), hash(&daemon));
+            daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+            if visit == visits {
+                until("the visitor sculpts", || hash(&daemon) != before.1);
+                pause(400);
+                let home = ended(daemon, rustix::process::Signal::KILL);
+                let begun = clock.now_us();
+                daemon = installation(home, settings);
+                until("it says so", || daemon.has_told("the last visit was interrupted"));
+                opened_us.push(clock.now_us() - begun);
+            }
+            let home = daemon.home.path();
+            until("the visit is over", || audit(home).len() == before.0 + 1);
+            assert_eq!(works(home), before.0 + 1, "day {day}, visit {visit}");
+            most = most.max(bytes(home, "works") - bytes_of(&home.join("visits.log")));
+        }
+        of_day.push(most);
+    }
+    let lines = audit(daemon.home.path());
+    let interrupted = lines.iter().filter(|l| l["interrupted"] == json!(true)).count();
+    assert_eq!((lines.len(), interrupted), (days * visits, days), "each visit has its line");
+    opened_us.sort_unstable();
+    println!(
+        "{} visits, {} killed; most bytes of a day beside the gallery: {of_day:?}; back and open \
+         after {} ms in the middle, {} ms at most",
+        lines.len(),
+        days,
+        opened_us[opened_us.len() / 2] / 1000,
+        opened_us[opened_us.len() - 1] / 1000
+    );
+    let (first, last) = (of_day[0], of_day[of_day.len() - 1]);
+    assert!(last <= first + first / 10 + 65_536, "{first} bytes on the first day, {last} then");
+}
+
+fn bytes_of(file: &Path) -> u64 {
+    std::fs::metadata(file).map_or(0, |m| m.len())
+}

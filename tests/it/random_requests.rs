@@ -36,7 +36,8 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
     let any = one_of("scene.list", "objects", "id");
     let other = one_of("scene.list", "objects", "id");
     let layer = one_of("layers.list", "layers", "id");
-    let set = one_of("sets.list", "sets", "set");
+    // 0 are the vertices in no set.
+    let set = one_of("sets.list", "sets", "set").as_u64().unwrap_or(1).max(1);
     let link = one_of("guests.list", "links", "key");
     let file = dir.join(r.of(&["ball.ply", "box.ply"]));
     let operation = r.of(&["union", "intersection", "difference", "reverse-difference"]);
