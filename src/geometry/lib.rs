@@ -15,7 +15,7 @@
 //! | volume, area, projected area | [`measure`], [`projection`] |
 //! | sections by planes | [`section`] |
 //! | how far, inside or outside? | [`distance`], [`grid`], [`winding`], [`march`] |
-//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
+//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`]; how far apart the two are: [`deviation`] |
 //! | quads that follow the shape | [`quads`] |
 //! | a thicker, thinner or hollow solid | [`offset`] |
 //! | the surface of a function of space | [`implicit`] |
@@ -46,6 +46,7 @@ pub mod bvh;
 mod centred;
 pub mod check;
 pub mod decimate;
+pub mod deviation;
 pub mod disjoint_sets;
 pub mod distance;
 pub mod edges;

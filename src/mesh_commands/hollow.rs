@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, timed, warn};
-use super::remesh::{RemeshHow, finish, place};
+use super::remesh::{OldSurface, RemeshHow, finish, place};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -29,8 +29,10 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
     if !(args.wall > 0.0 && args.wall.is_finite()) {
         return Err(Fail::Usage("expected a wall thicker than nothing".into()));
     }
-    let Ready { part, solid, mut warnings } = solid(&args.mesh, &job)?;
-    let (made, seconds) = timed(|| hollow(&part.mesh, &solid, args.wall, args.how.side, &job));
+    let mut ready = solid(&args.mesh, &job)?;
+    let mut warnings = std::mem::take(&mut ready.warnings);
+    let Ready { part, solid, .. } = &ready;
+    let (made, seconds) = timed(|| hollow(&part.mesh, solid, args.wall, args.how.side, &job));
     let made = made?;
     if made.spacing > args.wall * 0.5 {
         warnings.push(format!(
@@ -45,7 +47,7 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
         ));
     }
     let cavity = &made.mesh.positions[part.mesh.positions.len()..];
-    if let Some(lost) = too_thin(&part.mesh, &solid, cavity, args.wall, args.how.side) {
+    if let Some(lost) = too_thin(&part.mesh, solid, cavity, args.wall, args.how.side) {
         warnings.push(format!(
             "{:.1} mm2 of the surface have no cavity beneath them, for instance at {}: the part is \
              thinner than twice the wall there and stays solid",
@@ -54,5 +56,6 @@ pub fn run(args: &HollowArgs, json: bool) -> Outcome {
         ));
     }
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made.mesh, part.centre, seconds, warnings, json)
+    let old = OldSurface::of(&ready, &args.how, false);
+    finish(&args.out, &made.mesh, part.centre, Some(old), seconds, warnings, json)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::distance::{Ready, solid, solid_about, timed, warn};
-use super::remesh::{RemeshHow, finish, place};
+use super::remesh::{OldSurface, RemeshHow, finish, place};
 use super::{Fail, Outcome};
 use sculptd_geometry::io::writable_format;
 use sculptd_geometry::job::Job;
@@ -37,17 +37,19 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
     if !args.radius.is_finite() || !args.distance.unwrap_or(0.0).is_finite() {
         return Err(Fail::Usage("expected lengths that are finite".into()));
     }
-    let Ready { part, solid: a, mut warnings } = solid(&args.mesh, &job)?;
+    let mut ready = solid(&args.mesh, &job)?;
+    let mut warnings = std::mem::take(&mut ready.warnings);
+    let Ready { part, solid: a, .. } = &ready;
     let (made, seconds) = match (&args.unite, args.distance) {
         (Some(other), _) => {
             let Ready { solid: b, warnings: more, .. } =
                 solid_about(other, Some(part.centre), &job)?;
             warnings.extend(more);
-            timed(|| smooth_union(&a, &b, args.radius, args.how.side, &job))
+            timed(|| smooth_union(a, &b, args.radius, args.how.side, &job))
         }
         (None, distance) => {
             let wanted = distance.unwrap_or(0.0);
-            let (made, seconds) = timed(|| offset(&a, wanted, args.how.side, &job));
+            let (made, seconds) = timed(|| offset(a, wanted, args.how.side, &job));
             let made = made?;
             if made.least < wanted.abs() {
                 warnings.push(format!(
@@ -59,7 +61,7 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
             }
             if wanted < 0.0
                 && let Some(lost) =
-                    too_thin(&part.mesh, &a, &made.mesh.positions, -wanted, args.how.side)
+                    too_thin(&part.mesh, a, &made.mesh.positions, -wanted, args.how.side)
             {
                 let before = measures(&part.mesh).volume;
                 warnings.push(format!(
@@ -75,5 +77,6 @@ pub fn run(args: &OffsetArgs, json: bool) -> Outcome {
     };
     let made = made?;
     warn(&args.mesh, &warnings);
-    finish(&args.out, &made, part.centre, seconds, warnings, json)
+    let old = args.unite.is_none().then(|| OldSurface::of(&ready, &args.how, false));
+    finish(&args.out, &made, part.centre, old, seconds, warnings, json)
 }

@@ -37,7 +37,7 @@ pub enum To {
 pub struct Outgoing {
     /// Whom it is for.
     pub to: To,
-    /// What is in it, for the log: the network sees only sealed bytes.
+    /// Kind of its message, for the log: the network sees only sealed bytes.
     pub kind: &'static str,
     /// The bytes.
     pub bytes: Vec<u8>,

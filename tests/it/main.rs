@@ -42,6 +42,7 @@ mod meanwhile;
 mod mesh_craft;
 #[cfg(unix)]
 mod mutations;
+mod new_surfaces;
 mod own_brushes;
 #[cfg(unix)]
 mod random_requests;

@@ -4,7 +4,7 @@
 //! Laws kept here:
 //! * A sculpture is in the local folder before it is sent, so a dead network or a restart loses
 //!   nothing.
-//! * Sculptures arrive in the order in which they were made: the oldest is tried until it is there.
+//! * Sculptures arrive in the order in which they were made: the oldest is tried until it is sent.
 //!   So one number says which were sent, and every sculpture in the folder above it waits.
 
 use std::path::{Path, PathBuf};

@@ -105,7 +105,7 @@ impl Greeting {
     /// All that [`Greeting::kind`] returns.
     pub const KINDS: [&'static str; 3] = ["hello", "challenge", "greeting refused"];
 
-    /// What it is, in a word.
+    /// Name of the kind.
     pub fn kind(&self) -> &'static str {
         let at = match self {
             Greeting::Hello(_) => 0,

@@ -215,7 +215,7 @@ impl HeirsWord {
     /// All that [`HeirsWord::kind`] returns.
     pub const KINDS: [&'static str; 3] = ["host", "candidate", "who"];
 
-    /// What it is, in a word.
+    /// Name of the kind.
     pub fn kind(&self) -> &'static str {
         let at = match self {
             HeirsWord::Host { .. } => 0,
@@ -231,7 +231,7 @@ impl FromMember {
     pub const KINDS: [&'static str; 7] =
         ["join", "up", "want", "hash", "leave", "members", "knows members"];
 
-    /// What it is, in a word.
+    /// Name of the kind.
     pub fn kind(&self) -> &'static str {
         let at = match self {
             FromMember::Join { .. } => 0,
@@ -389,7 +389,7 @@ impl FromHost {
     pub const KINDS: [&'static str; 6] =
         ["entry", "refused", "down", "chunk", "members and group", "differs"];
 
-    /// What it is, in a word.
+    /// Name of the kind.
     pub fn kind(&self) -> &'static str {
         let at = match self {
             FromHost::Entry(_) => 0,

@@ -18,7 +18,7 @@ pub struct Recorded {
     pub bytes: Vec<u8>,
 }
 
-/// What is done with the messages of one kind.
+/// An attack on the messages of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Attack {
     /// Each comes again later, to its receiver and to the others.
@@ -62,7 +62,7 @@ impl Attacker {
         0
     }
 
-    /// What he sends in a step, and to whom.
+    /// Returns the receivers and datagrams of a step.
     pub fn step(&mut self, replicas: &[Replica]) -> Vec<(usize, Vec<u8>)> {
         if self.heard.is_empty() {
             return Vec::new();
@@ -113,14 +113,14 @@ fn forged(mut bytes: Vec<u8>, replicas: &[Replica], random: &mut Random) -> Vec<
     bytes
 }
 
-/// What comes of an afternoon.
+/// The state after an afternoon.
 #[derive(Debug, PartialEq, Eq)]
 struct Outcome {
     /// The sculpture of each.
     hashes: Vec<Option<u64>>,
-    /// How much of each person's input each has.
+    /// The last applied batch of each person, at each station.
     applied: Vec<BTreeMap<PersonId, u64>>,
-    /// Who was sent away, and why.
+    /// The reason for each who was sent away.
     refused: Vec<Option<String>>,
     hosts: Vec<bool>,
     differed: Vec<usize>,
@@ -128,7 +128,7 @@ struct Outcome {
 }
 
 /// An afternoon in which every kind of message is sent: people come, are invited, withdrawn and
-/// refused, one differs and joins anew, one leaves, the host is killed, the owner comes back and
+/// refused, one differs and joins again, one leaves, the host is killed, the owner comes back and
 /// brings a new list. Returns the outcome, and the seconds for which nobody hosted.
 fn afternoon(s: &mut Simulation) -> (Outcome, f64) {
     let of_bob = s.invite("Bob", Role::Sculptor, None);
@@ -193,7 +193,7 @@ fn afternoon(s: &mut Simulation) -> (Outcome, f64) {
     (outcome, without_host_s)
 }
 
-/// What an attack did that it must not do.
+/// Compares the state after an attack with the expected one. Returns the faults.
 fn refusals(kind: &str, attack: Attack, got: &(Outcome, f64), expected: &Outcome) -> Vec<String> {
     let mut out = Vec::new();
     let (outcome, without_host_s) = got;
@@ -204,7 +204,7 @@ fn refusals(kind: &str, attack: Attack, got: &(Outcome, f64), expected: &Outcome
     if facts(outcome) != facts(expected) {
         out.push(format!("{kind} {attack:?}: {:?}", facts(outcome)));
     }
-    // What is late, held back or asked again moves input by a tick. All else changes no bit.
+    // Delays, and questions to the host, move input by a tick. Other attacks change no bit.
     let is_exact = matches!(attack, Attack::Replay | Attack::Forge) && kind != "host";
     if is_exact && outcome != expected {
         out.push(format!("{kind} {attack:?}: {outcome:?}"));
