@@ -136,13 +136,13 @@ fn what_is_said_of_a_new_surface_is_so_in_its_file() {
             let (least, most) = bounds(back);
             let seen = farthest(&old, &new, 100);
             assert!(seen <= most + room && least <= most, "{case}: {seen} beyond {most}, {said}");
-            // What is gone is told.
+            // What is gone is told; cells two apart still touch the ones between them.
             let (lo, hi) = old.bounds();
             let spacing =
                 f64::from((hi - lo).max_element()) / side.parse::<f64>().expect("a number");
             let warnings = said["warnings"].as_array().expect("warnings");
             assert!(
-                least <= 2.0 * spacing || !warnings.is_empty(),
+                least <= 3.5 * spacing || !warnings.is_empty(),
                 "{case}: {least} away without a word, spacing {spacing}"
             );
         }
