@@ -48,9 +48,9 @@ struct Other<'a> {
 }
 
 /// A distance and where it was found.
-type Found = (f64, DVec3);
+type FarPlace = (f64, DVec3);
 
-fn farther(a: Found, b: Found) -> Found {
+fn farther(a: FarPlace, b: FarPlace) -> FarPlace {
     if b.0 > a.0 { b } else { a }
 }
 
@@ -81,7 +81,7 @@ impl Other<'_> {
     }
 
     /// An upper bound by the middle, and the middle's distance.
-    fn by_middle(&self, piece: &Piece) -> (f64, Found) {
+    fn by_middle(&self, piece: &Piece) -> (f64, FarPlace) {
         let [a, b, c] = piece.corners;
         let middle = (a + b + c) / 3.0;
         let radius = piece.corners.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
@@ -94,7 +94,7 @@ impl Other<'_> {
     }
 
     /// The four quarters of a piece, and the farthest of their new corners.
-    fn quarters(&self, piece: &Piece) -> ([Piece; 4], Found) {
+    fn quarters(&self, piece: &Piece) -> ([Piece; 4], FarPlace) {
         let ([a, b, c], [na, nb, nc]) = (piece.corners, piece.near);
         let middles = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
         let found = middles.map(|p| (self.nearest(p), p));
@@ -114,9 +114,9 @@ impl Other<'_> {
 /// A piece that is not decided, and its upper bound.
 type Open = (Piece, f64);
 
-/// The distance of the farthest place of the surface `from` from the surface `to`, from which `tree`
-/// was built. The bounds differ by at most two per cent and `resolution` (in the meshes' unit), unless
-/// that takes more than a million pieces at a time. An empty `from` is nowhere, so 0 away;
+/// The distance of the farthest place of the surface `from` from the surface `to`. `tree` was built
+/// from `to`. The bounds differ by at most two per cent and `resolution` (in the meshes' unit),
+/// unless that takes more than a million pieces at a time. An empty `from` is nowhere, so 0 away;
 /// everything is infinitely far from an empty `to`.
 ///
 /// # Errors
@@ -149,7 +149,7 @@ pub fn deviation(
         .collect();
     for round in 0..=ROUNDS {
         let (limit, asked) = (goal(least.0), &other);
-        let looked: Vec<(Vec<Open>, f64, Found)> = open
+        let looked: Vec<(Vec<Open>, f64, FarPlace)> = open
             .par_chunks(CHUNK)
             .map(|pieces| {
                 job.check()?;
@@ -190,7 +190,7 @@ pub fn deviation(
             most = undecided.iter().fold(most, |m, (_, bound)| m.max(*bound));
             break;
         }
-        let quartered: Vec<([Piece; 4], Found)> =
+        let quartered: Vec<([Piece; 4], FarPlace)> =
             undecided.par_iter().map(|(piece, _)| other.quarters(piece)).collect();
         least = quartered.iter().map(|q| q.1).fold(least, farther);
         open = quartered.into_iter().flat_map(|q| q.0).collect();

@@ -15,7 +15,8 @@
 //! | volume, area, projected area | [`measure`], [`projection`] |
 //! | sections by planes | [`section`] |
 //! | how far, inside or outside? | [`distance`], [`grid`], [`winding`], [`march`] |
-//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`]; how far apart the two are: [`deviation`] |
+//! | another mesh of the same solid | [`remesh`], [`decimate`], [`subdivide`], [`triangulate`] |
+//! | how far two surfaces are apart | [`deviation`] |
 //! | quads that follow the shape | [`quads`] |
 //! | a thicker, thinner or hollow solid | [`offset`] |
 //! | the surface of a function of space | [`implicit`] |

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::core::{Core, Event, IDLE_US, LOST_US, RoundTrip, SEND_US, ms, short_number};
+use crate::door::NOT_IN_LIST;
 use crate::handshake::{HostOffer, OwnHello};
 use crate::host_limits::{BYTES, HERE_ALREADY, LARGE_SHARE, MEMBERS_US};
 use crate::membership::SignedMembership;
@@ -14,7 +15,7 @@ use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::frame_codec::frames_from_bytes;
 use crate::wire::greeting::Greeting;
-use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Nonce, Term};
+use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Term};
 
 /// Between two greetings.
 const GREET_US: u64 = 200_000;
@@ -151,9 +152,13 @@ impl Member {
         self.trip.is_long()
     }
 
-    /// Returns true if this is the number of the greeting that it sends now.
-    pub fn greeted_with(&self, nonce: &Nonce) -> bool {
-        matches!(&self.phase, MemberPhase::Greets { hello, .. } if hello.is_answered_by(nonce))
+    /// Returns true if a host refuses the present greeting because its key is in no list.
+    pub fn is_in_no_list(&self, greeting: &Greeting) -> bool {
+        matches!(
+            (&self.phase, greeting),
+            (MemberPhase::Greets { hello, .. }, Greeting::Refused { to, reason })
+                if reason == NOT_IN_LIST && hello.is_answered_by(to)
+        )
     }
 
     /// Returns true if nobody has answered its greetings.

@@ -368,9 +368,7 @@ impl Station {
                     look.until_us = now_us + LOOK_US;
                 }
             }
-            Greeting::Refused { to, reason }
-                if reason == crate::door::NOT_IN_LIST && member.greeted_with(to) =>
-            {
+            refusal if member.is_in_no_list(refusal) => {
                 core.end(
                     "a sculpture of this name is shared on this network already, and the keys in \
                      the folder are not for it: choose another name, or join it with an invitation",

@@ -94,9 +94,7 @@ fn works_kept_while_nothing_is_sent_are_sent_and_no_number_is_given_twice() {
     work(1);
     work(2);
     let first = Spool::start(&here, &place).expect("a place");
-    until("both are sent", || {
-        first.stand.sent.load(Relaxed) == 2 && waiting(&here).is_empty()
-    });
+    until("both are sent", || first.stand.sent.load(Relaxed) == 2 && waiting(&here).is_empty());
     drop(first);
     assert_eq!(spool::sent(&here), 2);
     // Sent sculptures are not sent again. Numbers of sculptures that staff removed from the folder

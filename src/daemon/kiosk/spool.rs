@@ -170,7 +170,7 @@ fn send_next(
         *page = now;
         return Ok(false);
     };
-    // Staff may have taken it out of the gallery since it was listed: then the next list has it not.
+    // Staff may have removed it since it was listed: then the next list does not have it.
     let bytes = read(&folder.join(name))?.ok_or_else(|| format!("{name} is not there any more"))?;
     to.put(name, &bytes, stop)?;
     // The picture was written before the sculpture, if it could be.
