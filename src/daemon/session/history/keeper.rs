@@ -539,3 +539,33 @@ pub(in crate::session) fn assemble(
     mesh.set_levels(levels.map(|id| store.side::<Levels>(id)).transpose()?.map(Arc::new));
     Ok(mesh)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_engine::answer::Answer;
+    use sculptd_engine::scene::SceneError;
+
+    fn sent() -> (cc::Sender<CommandAnswer>, SentJump) {
+        let (asked, answer) = cc::bounded(1);
+        (asked, SentJump { answer, by: None })
+    }
+
+    /// A loaded machine may take seconds for a tick: a jump that it carries out later must not be
+    /// reported as refused before.
+    #[test]
+    fn a_jump_is_waited_for_until_the_loop_has_answered() {
+        let patience = PATIENCE.as_micros() as u64;
+        let (asked, mut jump) = sent();
+        assert!(!jump.is_over(0) && !jump.is_over(60_000_000), "a slow loop");
+        asked.send(CommandAnswer { tick: 7, result: Ok(Answer::Done) }).expect("heard");
+        assert!(!jump.is_over(60_000_001), "its entry is still to come");
+        assert!(!jump.is_over(60_000_000 + patience) && jump.is_over(60_000_001 + patience));
+        let (asked, mut jump) = sent();
+        asked.send(CommandAnswer { tick: 7, result: Err(SceneError::Last) }).expect("heard");
+        assert!(jump.is_over(1), "refused");
+        let (asked, mut jump) = sent();
+        drop(asked);
+        assert!(!jump.is_over(1) && jump.is_over(1 + patience), "a loop that gives no answers");
+    }
+}
