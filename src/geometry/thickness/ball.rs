@@ -51,15 +51,20 @@ pub struct InscribedBall {
 impl Caster<'_> {
     /// The inscribed ball at a site. `None` where no wall is ahead and so nothing bounds it.
     pub fn ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
-        self.held_ball(site, false)
+        self.held_ball(site, false, f32::NEG_INFINITY)
+    }
+
+    /// The same, if its diameter is larger than `least`: sooner known where it is not.
+    pub fn ball_above(&self, site: &Site<'_>, least: f32) -> Option<InscribedBall> {
+        self.held_ball(site, false, least).filter(|ball| ball.diameter > least)
     }
 
     /// The ball between a site and the opposite side of its wall. `None` where no wall is ahead.
     pub(super) fn opposed_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
-        self.held_ball(site, true)
+        self.held_ball(site, true, f32::NEG_INFINITY)
     }
 
-    fn held_ball(&self, site: &Site<'_>, opposed: bool) -> Option<InscribedBall> {
+    fn held_ball(&self, site: &Site<'_>, opposed: bool, least: f32) -> Option<InscribedBall> {
         let mut touch = None;
         let first = self.hit(site, -site.away);
         let first = first.filter(|hit| {
@@ -95,6 +100,7 @@ impl Caster<'_> {
             away: site.away,
             r,
             touch,
+            least,
             from,
             opposed,
         };
@@ -118,6 +124,8 @@ struct BallSearch<'a, F> {
     r: f32,
     /// The point, besides `point`, where the ball of radius `r` touches.
     touch: Option<Vec3>,
+    /// The search ends as soon as the diameter is no larger.
+    least: f32,
     from: F,
     /// True to ignore touches beside the wall.
     opposed: bool,
@@ -143,7 +151,7 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
             &mut inline[..]
         };
         let mut top = 1;
-        while top > 0 {
+        while top > 0 && !(2.0 * ball.r <= self.least) {
             top -= 1;
             let at = stack[top].1;
             if at & LEAF != 0 {
