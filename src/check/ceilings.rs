@@ -82,3 +82,51 @@ impl Ceilings {
         })
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use sculptd_geometry::PolyMesh;
+    use sculptd_geometry::job::Job;
+    use sculptd_geometry::shapes::{cuboid, icosphere};
+
+    /// A lumpy ball, and a block with a long thin plate over it.
+    pub(crate) fn parts() -> Vec<PreparedPart> {
+        let mut lump = icosphere(10.0, 20).to_poly();
+        for p in &mut lump.positions {
+            *p *= 1.0 + 0.3 * ((p.x * 0.9).sin() * (p.y * 0.8).cos() * (p.z * 1.1).sin());
+        }
+        let mut block = cuboid(DVec3::ZERO, DVec3::new(30.0, 20.0, 5.0));
+        let plate = cuboid(DVec3::new(-40.0, 9.0, 8.0), DVec3::new(80.0, 9.5, 8.25));
+        let base = block.positions.len() as u32;
+        block.positions.extend(&plate.positions);
+        plate.faces().for_each(|f| {
+            block.push_face(&f.iter().map(|v| v + base).collect::<Vec<_>>());
+        });
+        let ready = |m: &PolyMesh| PreparedPart::new(m, 1.0, &Job::default()).expect("prepared");
+        [lump, block].iter().map(ready).collect()
+    }
+
+    #[test]
+    fn no_ray_from_an_open_place_is_blocked() {
+        for part in parts() {
+            let points = crate::columns::surface_points(&part, 3000);
+            for along in sculptd_geometry::projection::spread_directions(40) {
+                let ceilings = Ceilings::new(&part, along);
+                let (mut open, mut free) = (0, 0);
+                for &(p, t) in &points {
+                    let from = p + part.normals[t as usize] * (16.0 * part.rounding());
+                    let blocked = part.blocked(from, along, 0.0);
+                    assert!(!(ceilings.open_above(from) && blocked), "{from} {along}");
+                    // Only from faces that look that way rays are asked for.
+                    if part.normals[t as usize].dot(along) > 0.0 {
+                        open += usize::from(ceilings.open_above(from));
+                        free += usize::from(!blocked);
+                    }
+                }
+                let few = part.triangles() < 1000;
+                assert!(few || open * 2 > free, "{open} of {free} are known to be free");
+            }
+        }
+    }
+}

@@ -291,3 +291,42 @@ pub fn ring(d: DVec3, step: f64) -> impl Iterator<Item = DVec3> {
         (d * step.portable_cos() + side * step.portable_sin()).normalize()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ceilings::tests::parts;
+
+    #[test]
+    fn the_best_directions_are_those_of_an_exhaustive_search() {
+        let job = Job::default();
+        for part in parts() {
+            let count = |d: DVec3, points: &[(DVec3, u32)]| {
+                let blocked = |from, way| part.blocked(from, way, 0.0);
+                points.iter().filter(|&&p| hidden(&part, d, p, blocked)).count()
+            };
+            for keep in [1, 5] {
+                let mut points = HidingPoints::new(&part, 1000);
+                let mut best: Vec<TriedDirection> = Vec::new();
+                let mut all: Vec<TriedDirection> = Vec::new();
+                // A second set is compared with the first, as refined directions are.
+                for tried in spread_directions(120).chunks(60) {
+                    points.rate(tried, &mut best, keep, &job).expect("not cancelled");
+                    let counted = |&direction: &DVec3| TriedDirection {
+                        hidden: count(direction, &points.points),
+                        direction,
+                    };
+                    all.extend(tried.iter().map(counted));
+                    for list in [&mut best, &mut all] {
+                        list.sort_by_key(|t| t.hidden);
+                    }
+                    let kept = |list: &[TriedDirection]| -> Vec<(usize, DVec3)> {
+                        list.iter().take(keep).map(|t| (t.hidden, t.direction)).collect()
+                    };
+                    assert_eq!(kept(&best), kept(&all));
+                }
+                assert!(best.len() < all.len(), "none was left out");
+            }
+        }
+    }
+}

@@ -7,6 +7,7 @@ use sculptd_geometry::bvh::Ray;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::thickness::ray::{Caster, Site};
+use sculptd_geometry::thickness::side_cones::SideCones;
 use sculptd_geometry::thickness::worst::ThinRegion;
 use sculptd_geometry::thickness::{Cone, Correction, MeasuredSide, Outliers, Weights, walls_below};
 
@@ -177,6 +178,7 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
         correction: Correction::None,
         acute: None,
     };
+    let cones = SideCones::new(part.tree(), &normals);
     let ball = |p: DVec3, t: u32, least: f64| {
         let corners = part.corners(t)?;
         let site = Site {
@@ -186,7 +188,7 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
             own: &[t],
             clear: f32::INFINITY,
         };
-        let found = caster.ball_above(&site, least as f32);
+        let found = caster.ball_above(&site, least as f32, &cones);
         found.map(|b| f64::from(b.diameter)).filter(|d| d.is_finite())
     };
     let points = surface_points(part, BALLS);
