@@ -5,8 +5,8 @@
 //!
 //! A hollow ball of VERTICES (500,000: a million triangles) is sculpted at 120 ticks a second, a
 //! dab of about 5,000 vertices each, out and in by turns. The map's thread gets each tick's
-//! snapshot, the newest wins, as in the viewer. The map is of walls, or with `gap` of gaps: the rays
-//! of half of the vertices then hit nothing.
+//! snapshot, the newest wins, as in the viewer. The map is of walls, or with `gap` of gaps: the
+//! rays of half of the vertices then hit nothing.
 
 use std::io::Write;
 use std::sync::Arc;

@@ -18,13 +18,10 @@ use glam::Vec3;
 
 use super::ray::{Caster, Site};
 use super::sharp_edges::{AcuteEdges, OPPOSED};
-use super::side_cones::SideCones;
+use super::side_cones::{SAME_SIDE, SideCones};
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, nearest_on_triangle, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
-/// wall.
-pub(super) const SAME_SIDE: f32 = 0.94;
 /// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
 /// a wall.
 const CORNER: f32 = -(OPPOSED as f32);

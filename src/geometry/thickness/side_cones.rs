@@ -3,11 +3,13 @@
 
 use glam::Vec3;
 
-use super::ball::SAME_SIDE;
 use super::opposed::NormalCone;
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE};
 use crate::portable::PortableMath;
 
+/// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
+/// wall.
+pub(super) const SAME_SIDE: f32 = 0.94;
 /// Room for the rounding of angles, radians.
 const ROUNDING: f32 = 2e-3;
 /// More than the cosine of any angle.

@@ -205,7 +205,7 @@ impl WindowState {
                 }
                 TaskReport::Used(path) => self.ui_state.prefs.used(path),
                 TaskReport::Walls(WallReport::Map(side, ..))
-                    if side != self.ui_state.look.map.side() => {}
+                    if self.asked_map.is_some_and(|asked| asked.side != side) => {}
                 TaskReport::Walls(WallReport::Map(_, values, about)) => {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);

@@ -34,8 +34,8 @@ pub(super) struct ThicknessRequest {
     pub(super) earlier: Option<DistanceReference>,
 }
 
-/// A request in short: the clay, the side, the limit, its transform, the place under the pointer, and the
-/// form that it is compared with, by its revision and its place.
+/// A request in short: the clay, the side, the limit, its transform, the place under the pointer,
+/// and the form that it is compared with, by its revision and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AskedWalls {
     pub(super) clay: (u32, u64),

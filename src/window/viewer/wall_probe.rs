@@ -1,5 +1,6 @@
 //! The wall or the gap under the pointer, by the definition *ray*: where the ray along the normal
-//! leaves the clay again, or meets it. Looked up in the clay itself, not in the map, so it holds between vertices too.
+//! leaves the clay again, or meets it. Looked up in the clay itself, not in the map, so it holds
+//! between vertices too.
 
 use glam::Vec3;
 
