@@ -1,11 +1,12 @@
 //! Ticks of a stroke with and without the live thickness map beside them, and how long after pen-up
 //! the map is right.
 //!
-//!     cargo run --release --no-default-features --example live [-- SECONDS [VERTICES]]
+//!     cargo run --release --no-default-features --example live [-- SECONDS [VERTICES [gap]]]
 //!
 //! A hollow ball of VERTICES (500,000: a million triangles) is sculpted at 120 ticks a second, a
 //! dab of about 5,000 vertices each, out and in by turns. The map's thread gets each tick's
-//! snapshot, the newest wins, as in the viewer.
+//! snapshot, the newest wins, as in the viewer. The map is of walls, or with `gap` of gaps: the
+//! rays of half of the vertices then hit nothing.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -20,6 +21,7 @@ use sculptd_clay::{Clay, Reach, Snapshot, Workers};
 use sculptd_daemon::pacer::Pacer;
 use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::{TriMesh, shapes};
 
 const HZ: u32 = 120;
@@ -72,7 +74,12 @@ fn follow(
     }
 }
 
-fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<Ticks> {
+fn stroke(
+    plain: &TriMesh,
+    seconds: f64,
+    clock: &Clock,
+    beside: Option<MeasuredSide>,
+) -> Option<Ticks> {
     let job = Job::default();
     let mut mesh = Clay::build(plain, &job).ok()?;
     let workers = Workers::new(1);
@@ -83,8 +90,8 @@ fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<
     let (send, newest) = cc::bounded(1);
     let (right, rights) = cc::unbounded();
     let stop = Arc::new(AtomicBool::new(false));
-    let thread = if beside {
-        let mut map = LiveMap::new(&mesh.snapshot(), &job).ok()?;
+    let thread = if let Some(side) = beside {
+        let mut map = LiveMap::new(&mesh.snapshot(), side, &job).ok()?;
         map.work(Vec3::ZERO, usize::MAX, &job).ok()?;
         let (stop, drain) = (stop.clone(), newest.clone());
         Some(std::thread::spawn(move || follow(map, &drain, &right, &stop)))
@@ -119,7 +126,7 @@ fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: bool) -> Option<
         // One place: what was not taken yet is old.
         let _ = newest.try_recv();
         let _ = send.try_send((snapshot, centre));
-        if last && beside {
+        if last && beside.is_some() {
             let up = clock.now_us();
             let done = rights.iter().find(|r| *r >= revision);
             out.right_ms.extend(done.map(|_| (clock.now_us() - up) as f64 * 1e-3));
@@ -139,9 +146,11 @@ fn main() {
     let (seconds, vertices) = (number(1, 10.0), number(2, 500_000.0) as usize);
     let plain = hollow(vertices);
     let clock = Clock::monotonic();
+    let gap = args.get(3).is_some_and(|a| a == "gap");
+    let side = if gap { MeasuredSide::Gap } else { MeasuredSide::Wall };
     // In turns, so that a busy machine is busy for both.
     for _ in 0..3 {
-        for beside in [false, true] {
+        for beside in [None, Some(side)] {
             let Some(Ticks { mut us, mut right_ms }) = stroke(&plain, seconds, &clock, beside)
             else {
                 return;
@@ -153,7 +162,7 @@ fn main() {
                 std::io::stdout(),
                 "{} map: tick p50 {} us, p90 {}, p99 {}, max {}; right after pen-up in ms: \
                     {right_ms:.1?}",
-                if beside { "with   " } else { "without" },
+                if beside.is_some() { "with   " } else { "without" },
                 at(0.5),
                 at(0.9),
                 at(0.99),

@@ -1,11 +1,9 @@
 //! The checks that processes ask for: each measures, compares with the limits, and says what to do.
 
-use std::sync::OnceLock;
-
 use glam::DVec3;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::projected_area;
-use sculptd_geometry::thickness::{MeasuredSide, WeldedSurface};
+use sculptd_geometry::thickness::MeasuredSide;
 
 use crate::answer::PartFacts;
 use crate::columns::{CELLS, cell_area};
@@ -20,7 +18,7 @@ use crate::part::{PreparedPart, Standing};
 use crate::preset::BuildMethod;
 use crate::repair::rounding_volume;
 use crate::settings::CheckSettings;
-use crate::walls::{WallLimits, thin_places, wall_spread, welded};
+use crate::walls::{WallLimits, thin_places, wall_spread};
 
 /// One check's findings and facts.
 pub(crate) type Outcome = (Vec<Finding>, PartFacts);
@@ -43,14 +41,6 @@ pub(crate) struct CheckView<'a> {
     pub stand: &'a Standing,
     pub settings: &'a CheckSettings,
     pub job: &'a Job,
-    pub welded: OnceLock<WeldedSurface>,
-}
-
-impl CheckView<'_> {
-    /// The surface for the search for thin walls, made by the first check that needs it.
-    fn surface(&self) -> &WeldedSurface {
-        self.welded.get_or_init(|| welded(self.part))
-    }
 }
 
 /// A check's name, its name in a sentence, and what it does.
@@ -102,7 +92,7 @@ fn walls(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         round: p.pin,
         resolution: p.resolution,
     };
-    let found = thin_places(c.part, c.surface(), MeasuredSide::Wall, &limits, c.job)?;
+    let found = thin_places(c.part, MeasuredSide::Wall, &limits, c.job)?;
     Ok((found, PartFacts::default()))
 }
 
@@ -114,7 +104,7 @@ fn gaps(c: &CheckView<'_>) -> Result<Outcome, Stopped> {
         round: p.hole.or(p.gap),
         resolution: p.resolution.filter(|_| p.gap.is_some()),
     };
-    let found = thin_places(c.part, c.surface(), MeasuredSide::Gap, &limits, c.job)?;
+    let found = thin_places(c.part, MeasuredSide::Gap, &limits, c.job)?;
     Ok((found, PartFacts::default()))
 }
 

@@ -68,13 +68,19 @@ pub fn over_cells(
     corners: [DVec3; 3],
     area: f64,
     cell: f64,
-    mut value: impl FnMut(DVec3) -> f64,
+    value: impl FnMut(DVec3) -> f64,
 ) -> CellSum {
-    let values: Vec<f64> = cells(corners, area, cell).map(&mut value).collect();
-    let own = area / values.len() as f64;
-    let total = values.iter().sum::<f64>() * own;
-    let differences = values.chunks_exact(2).map(|w| (w[0] - w[1]) * (w[0] - w[1]));
-    CellSum { total, variance: differences.sum::<f64>() * own * own }
+    let (mut count, mut sum, mut squares, mut last) = (0usize, 0.0, 0.0, 0.0);
+    for value in cells(corners, area, cell).map(value) {
+        count += 1;
+        sum += value;
+        if count % 2 == 0 {
+            squares += (last - value) * (last - value);
+        }
+        last = value;
+    }
+    let own = area / count as f64;
+    CellSum { total: sum * own, variance: squares * own * own }
 }
 
 /// The volume of support under each of `faces` (triangles that look down): the column from each

@@ -24,6 +24,7 @@
 #![warn(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
 
 mod answer;
+mod ceilings;
 mod checks;
 pub mod columns;
 pub mod estimates;

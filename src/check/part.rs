@@ -1,6 +1,8 @@
 //! A part made ready for all checks: triangles about the centre, in millimetres, with a tree for
 //! rays, the triangles across each edge, and the normals in double precision.
 
+use std::sync::OnceLock;
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sculptd_geometry::bvh::{Bvh8, REACH, Ray};
@@ -8,7 +10,8 @@ use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::distance::topology::{NO_PARTNER, Topology};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::measure::{Measures, measures};
-use sculptd_geometry::{CentredMesh, PolyMesh};
+use sculptd_geometry::thickness::{ThicknessSettings, WeldedSurface};
+use sculptd_geometry::{CentredMesh, PolyMesh, TriMesh};
 
 /// Rounding errors of a coordinate within which two heights are one.
 const ERRORS: f64 = 8.0;
@@ -20,6 +23,7 @@ pub struct PreparedPart {
     pub centred: CentredMesh,
     /// The tree over the triangles, and the winding number.
     pub solid: DistanceSolid,
+    surface: OnceLock<WeldedSurface>,
     /// The welded vertices of [`Topology`], in double precision, about the centre.
     pub places: Vec<DVec3>,
     /// Of each triangle, outwards, of unit length; zero without area.
@@ -53,8 +57,22 @@ impl PreparedPart {
     /// # Errors
     /// Returns an error if `job` was cancelled.
     pub fn new(poly: &PolyMesh, scale: f64, job: &Job) -> Result<PreparedPart, Cancelled> {
+        PreparedPart::with_surface(poly, scale, false, job)
+    }
+
+    /// The same; with `walls` the surface for the search for thin walls as well.
+    pub(crate) fn with_surface(
+        poly: &PolyMesh,
+        scale: f64,
+        walls: bool,
+        job: &Job,
+    ) -> Result<PreparedPart, Cancelled> {
         let centred = CentredMesh::new(poly, scale);
-        let solid = DistanceSolid::build(&centred.mesh, job)?;
+        let (solid, surface) = rayon::join(
+            || DistanceSolid::build(&centred.mesh, job),
+            || if walls { OnceLock::from(welded(&centred.mesh)) } else { OnceLock::new() },
+        );
+        let solid = solid?;
         let topology = &solid.topology;
         let mut places: Vec<DVec3> = topology.positions.iter().map(|p| p.as_dvec3()).collect();
         for (own, of) in centred.mesh.triangles.iter().zip(&topology.triangles) {
@@ -80,7 +98,12 @@ impl PreparedPart {
         let reach = places.iter().fold(0f64, |r, p| r.max(p.abs().max_element()));
         let tolerance = ERRORS * (centred.grain + reach * 2f64.powi(-40));
         let sizes = measures(&centred.mesh);
-        Ok(PreparedPart { centred, solid, places, normals, areas, tolerance, sizes })
+        Ok(PreparedPart { centred, solid, surface, places, normals, areas, tolerance, sizes })
+    }
+
+    /// The surface for the search for thin walls.
+    pub fn surface(&self) -> &WeldedSurface {
+        self.surface.get_or_init(|| welded(&self.centred.mesh))
     }
 
     /// The tree for rays.
@@ -144,7 +167,7 @@ impl PreparedPart {
     /// Returns true if a face that looks against the ray blocks it from `least` on.
     pub fn blocked(&self, from: DVec3, along: DVec3, least: f64) -> bool {
         let ray = Ray { t_min: least as f32, ..Ray::new(from.as_vec3(), along.as_vec3()) };
-        self.tree().closest_hit(ray, |t| self.normals[t as usize].dot(along) < 0.0).is_some()
+        self.tree().any_hit(ray, |t| self.normals[t as usize].dot(along) < 0.0)
     }
 
     /// Returns true if all triangles are near enough for the tree, and some have an area.
@@ -183,6 +206,10 @@ impl PreparedPart {
             slack: slack.max(self.tolerance),
         })
     }
+}
+
+fn welded(mesh: &TriMesh) -> WeldedSurface {
+    WeldedSurface::new(mesh, ThicknessSettings::default().crease.to_radians())
 }
 
 impl Standing {

@@ -1,7 +1,6 @@
 //! All checks of one part, one after the other or beside each other.
 
 use std::borrow::Cow;
-use std::sync::OnceLock;
 
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::{Cancelled, Job};
@@ -38,9 +37,12 @@ pub fn check_part(
     let began = seconds();
     // Nearly every mesh is a solid as it is: it is made ready while that is found out.
     let finite = mesh.positions.iter().all(|p| p.is_finite());
+    let asked = asked(settings);
+    let walls = asked.iter().any(|a| ["walls", "gaps"].contains(&a.0));
+    let prepared = |mesh: &PolyMesh| PreparedPart::with_surface(mesh, scale, walls, job);
     let (sound, early) = rayon::join(
         || soundness(mesh, scale, settings.process.sliver, job),
-        || finite.then(|| PreparedPart::new(mesh, scale, job)).transpose(),
+        || finite.then(|| prepared(mesh)).transpose(),
     );
     let (sound, early) = (sound?, early?);
     let ended = || request.progress.into_iter().for_each(CheckProgress::add);
@@ -49,14 +51,13 @@ pub fn check_part(
     let mut warnings = sound.warnings;
     let mut checks = vec![RanCheck { name: "mesh", ran: true, seconds: seconds() - began }];
     let mut facts = PartFacts::default();
-    let asked = asked(settings);
     let mut search = None;
     let mut kept = None;
     let ready = match &sound.solid {
         Ok(solid) => {
             let part = match (solid, early) {
                 (Cow::Borrowed(_), Some(part)) => part,
-                _ => PreparedPart::new(solid, scale, job)?,
+                _ => prepared(solid)?,
             };
             let stand = part.standing(settings.up, settings.layer());
             let whole = part.within_reach();
@@ -74,8 +75,7 @@ pub fn check_part(
         }
         Ok((part, stand)) => {
             general(&part, &stand, settings, &mut facts);
-            let welded = OnceLock::new();
-            let view = CheckView { part: &part, stand: &stand, settings, job, welded };
+            let view = CheckView { part: &part, stand: &stand, settings, job };
             let one = |check: &AskedCheck| {
                 let from = seconds();
                 let done = (check.2)(&view);

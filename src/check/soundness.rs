@@ -56,8 +56,9 @@ pub fn soundness<'a>(
     if facts.faces == 0 {
         return done(findings, warnings, facts, "the mesh has no faces");
     }
+    let (mut triangles, _) = mesh.triangles();
     if let Some(limit) = sliver {
-        findings.extend(slivers(mesh, scale, limit));
+        findings.extend(slivers(mesh, &triangles, scale, limit));
     }
     let broken = facts.boundary_edges + facts.nonmanifold_edges;
     if broken > 0 {
@@ -73,6 +74,7 @@ pub fn soundness<'a>(
     let mut solid = Cow::Borrowed(mesh);
     if facts.misoriented_edges > 0 {
         let turned = orient_shells(solid.to_mut()).turned;
+        (triangles, _) = solid.triangles();
         let place = misoriented(mesh).unwrap_or(facts.bounds.centre()) * scale;
         let message = format!(
             "the faces disagree on the outside at {} edges; turn them with sculptd convert --mend",
@@ -85,7 +87,6 @@ pub fn soundness<'a>(
     if broken > 0 && !balanced(&solid) {
         return done(findings, warnings, facts, "the surface is not closed");
     }
-    let (triangles, _) = solid.triangles();
     let volume = signed_volume(&solid, &triangles);
     if volume < 0.0 {
         if facts.misoriented_edges == 0 {
@@ -96,9 +97,9 @@ pub fn soundness<'a>(
             warnings.push("the faces were turned outwards for the other checks".into());
         }
         flip(solid.to_mut());
+        (triangles, _) = solid.triangles();
     }
     job.check()?;
-    let (triangles, _) = solid.triangles();
     let crossed = self_intersection::pairs(&solid.positions, &triangles, job)?;
     if let Some(&(first, _)) = crossed.first() {
         let place = middle(&solid, &triangles[first as usize]) * scale;
@@ -178,8 +179,7 @@ fn balanced(mesh: &PolyMesh) -> bool {
 
 /// Triangles whose height is below `limit` times their longest side, as one warning at the
 /// narrowest.
-fn slivers(mesh: &PolyMesh, scale: f64, limit: f64) -> Option<Finding> {
-    let (triangles, _) = mesh.triangles();
+fn slivers(mesh: &PolyMesh, triangles: &[[u32; 3]], scale: f64, limit: f64) -> Option<Finding> {
     let ratio = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());

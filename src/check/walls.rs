@@ -7,11 +7,9 @@ use sculptd_geometry::bvh::Ray;
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
 use sculptd_geometry::thickness::ray::{Caster, Site};
+use sculptd_geometry::thickness::side_cones::SideCones;
 use sculptd_geometry::thickness::worst::ThinRegion;
-use sculptd_geometry::thickness::{
-    Cone, Correction, MeasuredSide, Outliers, ThicknessSettings, Weights, WeldedSurface,
-    walls_below,
-};
+use sculptd_geometry::thickness::{Cone, Correction, MeasuredSide, Outliers, Weights, walls_below};
 
 use crate::columns::surface_points;
 use crate::finding::{Finding, FindingKind, MOST_OF_A_KIND};
@@ -47,22 +45,16 @@ impl WallLimits {
     }
 }
 
-/// The surface of a part as the search for thin walls needs it.
-pub fn welded(part: &PreparedPart) -> WeldedSurface {
-    WeldedSurface::new(&part.centred.mesh, ThicknessSettings::default().crease.to_radians())
-}
-
 /// The walls (or the gaps) below the limits, the thinnest first.
 pub fn thin_places(
     part: &PreparedPart,
-    surface: &WeldedSurface,
     side: MeasuredSide,
     limits: &WallLimits,
     job: &Job,
 ) -> Result<Vec<Finding>, Cancelled> {
     let Some(largest) = limits.largest() else { return Ok(Vec::new()) };
     let grain = part.centred.grain;
-    let found = walls_below(surface, part.tree(), side, largest, grain, job)?;
+    let found = walls_below(part.surface(), part.tree(), side, largest, grain, job)?;
     let slack = 4.0 * (grain + part.rounding());
     let mut out = Vec::new();
     for region in found.regions(0.0, MOST_OF_A_KIND + 1) {
@@ -186,7 +178,8 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
         correction: Correction::None,
         acute: None,
     };
-    let ball = |p: DVec3, t: u32| {
+    let cones = SideCones::new(part.tree(), &normals);
+    let ball = |p: DVec3, t: u32, least: f64| {
         let corners = part.corners(t)?;
         let site = Site {
             point: p.as_vec3(),
@@ -195,12 +188,13 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
             own: &[t],
             clear: f32::INFINITY,
         };
-        caster.ball(&site).map(|b| f64::from(b.diameter)).filter(|d| d.is_finite())
+        let found = caster.ball_above(&site, least as f32, &cones);
+        found.map(|b| f64::from(b.diameter)).filter(|d| d.is_finite())
     };
     let points = surface_points(part, BALLS);
     let found: Vec<Option<f64>> = points
         .par_iter()
-        .map(|&(p, t)| job.check().map(|()| ball(p, t)))
+        .map(|&(p, t)| job.check().map(|()| ball(p, t, f64::NEG_INFINITY)))
         .collect::<Result<_, Cancelled>>()?;
     let mut balls: Vec<(f64, DVec3, u32)> =
         points.iter().zip(found).filter_map(|(&(p, t), d)| Some((d?, p, t))).collect();
@@ -220,9 +214,9 @@ pub fn wall_spread(part: &PreparedPart, job: &Job) -> Result<Option<WallSpread>,
                     let turn = std::f64::consts::FRAC_PI_4 * f64::from(i);
                     let side = u * turn.portable_cos() + v * turn.portable_sin();
                     let near = part.tree().nearest(p + side * step, 2.0 * step)?;
-                    Some((ball(near.point, near.triangle)?, near.point, near.triangle))
+                    Some((ball(near.point, near.triangle, d)?, near.point, near.triangle))
                 });
-                match around.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|n| n.0 > d) {
+                match around.max_by(|a, b| a.0.total_cmp(&b.0)) {
                     Some(better) => (d, p, t) = better,
                     None => step *= 0.5,
                 }

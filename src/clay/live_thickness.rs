@@ -1,12 +1,13 @@
-//! Thickness of clay that is being sculpted, by the definition *ray*: after each change only what
-//! could have changed is measured again.
+//! Walls or gaps of clay that is being sculpted, by the definition *ray*: after each change only
+//! what could have changed is measured again.
 //!
 //! The bound: a vertex's value depends on nothing outside the box around the vertex and its ray's
 //! hit. Its own normal comes from triangles that touch it; a triangle that is hit, passed through
 //! or newly in the way meets that box, before the change or after it. So the vertices whose box
 //! meets a box of changed triangles, as they were or as they are, are measured again, and no others
 //! can differ: the map equals a full recomputation bit for bit once nothing is stale. A ray that
-//! hits nothing has no end, and its vertex is measured again after every change.
+//! hits nothing has no end: its vertex is measured again where the ray itself meets such a box, as
+//! a triangle that is newly in its way does. Most rays through air are of this kind.
 
 use std::sync::Arc;
 
@@ -17,6 +18,7 @@ use crate::{Ranks, Snapshot};
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::bvh::{Bvh8, Parents, Ray};
 use sculptd_geometry::job::{Cancelled, Job};
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::thickness::changes::EarlierVersion;
 use sculptd_geometry::thickness::cone::{Cone, Outliers, Weights};
 use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
@@ -24,10 +26,14 @@ use sculptd_geometry::thickness::ray::{Caster, Correction, Site};
 /// Boxes grow by this share of the largest coordinate, more than a hit's rounding.
 const MARGIN: f32 = 1e-5;
 
+/// The box of a ray that hits nothing: of everything.
+const OPEN: (Vec3, Vec3) = (Vec3::NEG_INFINITY, Vec3::INFINITY);
+
 /// The map and all that keeps it up to date.
 #[derive(Debug)]
 pub struct LiveMap {
     snapshot: Snapshot,
+    side: MeasuredSide,
     /// From the clay's numbers to the mesh's.
     ranks: Ranks,
     mesh: TriMesh,
@@ -39,7 +45,7 @@ pub struct LiveMap {
     normals: Vec<Vec3>,
     axis: Cone,
     values: Vec<f32>,
-    /// Around each vertex and its hits.
+    /// Around each vertex and its hit; [`OPEN`] where its ray hits nothing.
     reach: Vec<(Vec3, Vec3)>,
     stale: Vec<u32>,
     is_stale: Vec<bool>,
@@ -52,7 +58,7 @@ pub struct Rebuild;
 
 impl LiveMap {
     /// Prepares the map of a snapshot; every vertex is stale.
-    pub fn new(snapshot: &Snapshot, job: &Job) -> Result<LiveMap, Cancelled> {
+    pub fn new(snapshot: &Snapshot, side: MeasuredSide, job: &Job) -> Result<LiveMap, Cancelled> {
         let mesh = snapshot.to_tri();
         let tree = Bvh8::build(&mesh, job)?;
         let (n, triangles) = (mesh.positions.len(), mesh.triangles.len());
@@ -73,6 +79,7 @@ impl LiveMap {
         let parents = tree.parents(triangles);
         let mut map = LiveMap {
             snapshot: snapshot.clone(),
+            side,
             ranks: snapshot.ranks(),
             tree,
             parents,
@@ -159,18 +166,20 @@ impl LiveMap {
         let all = boxes
             .iter()
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let (reach, is_stale) = (&self.reach, &self.is_stale);
-        let mut fresh: Vec<u32> = (0..reach.len() as u32)
+        let is_stale = &self.is_stale;
+        let met = |v: u32, by: (Vec3, Vec3)| {
+            let (v, own) = (v as usize, self.reach[v as usize]);
+            if own == OPEN {
+                ray_meets(self.mesh.positions[v], self.ray_direction(v), by)
+            } else {
+                boxes_intersect(own, by)
+            }
+        };
+        let mut fresh: Vec<u32> = (0..self.reach.len() as u32)
             .into_par_iter()
-            .filter(|&v| {
-                let own = reach[v as usize];
-                !is_stale[v as usize]
-                    && boxes_intersect(own, all)
-                    && boxes.iter().any(|&b| boxes_intersect(own, b))
-            })
+            .filter(|&v| !is_stale[v as usize] && met(v, all) && boxes.iter().any(|&b| met(v, b)))
             .collect();
-        // A vertex beside a changed triangle has a new normal; its box holds it, so it is among
-        // them, unless it has none.
+        // A vertex beside a changed triangle has a new normal and a new ray.
         fresh.extend(touched.iter().filter(|&&v| !is_stale[v as usize]));
         fresh.sort_unstable();
         fresh.dedup();
@@ -216,6 +225,11 @@ impl LiveMap {
         &self.values
     }
 
+    /// Returns the outward normal of each vertex, along which it is measured; zero without one.
+    pub fn normals(&self) -> &[Vec3] {
+        &self.normals
+    }
+
     /// Returns a flag for each value, true if it was measured on an older state of the clay.
     pub fn is_stale(&self) -> &[bool] {
         &self.is_stale
@@ -226,12 +240,18 @@ impl LiveMap {
         self.stale.len()
     }
 
+    /// Returns the side on which the map measures.
+    pub fn side(&self) -> MeasuredSide {
+        self.side
+    }
+
     /// Returns the diameter of the largest ball between the place of the surface that is nearest to
     /// `place` and the side opposite, by the definition *sphere*; `None` where nothing holds one.
     pub fn ball(&self, place: Vec3) -> Option<f32> {
         let near = self.tree.nearest(place.as_dvec3(), f64::INFINITY)?;
         let own = [near.triangle];
-        let (point, away) = (near.point.as_vec3(), self.face_normals[near.triangle as usize]);
+        let (point, normal) = (near.point.as_vec3(), self.face_normals[near.triangle as usize]);
+        let away = normal * self.sign();
         let site = Site { point, away, along: Vec3::ZERO, own: &own, clear: f32::INFINITY };
         self.caster().wall_ball(&site).map(|ball| ball.diameter)
     }
@@ -264,12 +284,22 @@ impl LiveMap {
         self.snapshot.revision()
     }
 
+    /// 1 where normals point out of the measured side, -1 where into it.
+    fn sign(&self) -> f32 {
+        if self.side == MeasuredSide::Wall { 1.0 } else { -1.0 }
+    }
+
+    /// The direction of a vertex's ray; zero where it has none.
+    fn ray_direction(&self, v: usize) -> Vec3 {
+        -(self.normals[v] * self.sign())
+    }
+
     fn caster(&self) -> Caster<'_> {
         Caster {
             tree: &self.tree,
             face_normals: &self.face_normals,
             corner_normals: &[],
-            sign: 1.0,
+            sign: self.sign(),
             cone: &self.axis,
             outliers: Outliers::Keep,
             correction: Correction::None,
@@ -279,7 +309,7 @@ impl LiveMap {
 
     fn measure(&self, caster: &Caster<'_>, v: usize) -> (f32, (Vec3, Vec3)) {
         let point = self.mesh.positions[v];
-        let away = self.normals[v];
+        let away = -self.ray_direction(v);
         if away == Vec3::ZERO {
             return (f32::NAN, (point, point));
         }
@@ -290,7 +320,7 @@ impl LiveMap {
                 let end = point - away * hit.t;
                 (hit.t, (point.min(end), point.max(end)))
             }
-            None => (f32::NAN, (Vec3::NEG_INFINITY, Vec3::INFINITY)),
+            None => (f32::NAN, OPEN),
         }
     }
 
@@ -319,6 +349,25 @@ fn bounds(mesh: &TriMesh, t: u32) -> (Vec3, Vec3) {
 
 fn boxes_intersect(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     a.0.cmple(b.1).all() && b.0.cmple(a.1).all()
+}
+
+/// Returns true if a ray meets a box. The box is larger than what is in it by more than the
+/// rounding of the ray's distances.
+fn ray_meets(from: Vec3, dir: Vec3, (lo, hi): (Vec3, Vec3)) -> bool {
+    let (mut enters, mut leaves) = (0.0f32, f32::INFINITY);
+    for axis in 0..3 {
+        let (low, high) = (lo[axis] - from[axis], hi[axis] - from[axis]);
+        if dir[axis] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low / dir[axis], high / dir[axis]);
+        enters = enters.max(a.min(b));
+        leaves = leaves.min(a.max(b));
+    }
+    enters <= leaves
 }
 
 /// At most 32 boxes that hold all: cut by the longest side of the whole, each part's union.

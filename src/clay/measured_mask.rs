@@ -15,6 +15,7 @@ use crate::{Clay, Kernel, Page, PageIn, PageOut, Snapshot};
 use sculptd_geometry::bvh::{Bvh8, Ray};
 use sculptd_geometry::job::{Cancelled, Job};
 use sculptd_geometry::portable::PortableMath;
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::thickness::cone::frame;
 
 /// Directions in which a vertex looks for light, spread by the cosine to its normal.
@@ -125,7 +126,7 @@ fn by_page(
 }
 
 fn thin(snapshot: &Snapshot, below: f32, job: &Job) -> Result<Vec<(u32, Vec<u8>)>, Cancelled> {
-    let mut map = LiveMap::new(snapshot, job)?;
+    let mut map = LiveMap::new(snapshot, MeasuredSide::Wall, job)?;
     let all = map.values().len().max(1);
     while map.work(Vec3::ZERO, BLOCK, job)? > 0 {
         job.progress(1.0 - map.stale() as f32 / all as f32);

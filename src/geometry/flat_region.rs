@@ -6,6 +6,7 @@
 //! region, the smaller the tilt that rounding can explain.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::TriMesh;
 use crate::disjoint_sets::DisjointSets;
@@ -88,20 +89,35 @@ impl TriangleNeighbours {
 
     fn of(mesh: &TriMesh) -> TriangleNeighbours {
         let side = |t: &[u32; 3], k: usize| (t[k], t[(k + 1) % 3]);
-        let mut all: Vec<(u32, u32, u32, u8)> = Vec::with_capacity(mesh.triangles.len() * 3);
+        // The sides by their lower vertex: counted, then filled.
+        let mut starts = vec![0u32; mesh.positions.len() + 1];
+        for t in &mesh.triangles {
+            (0..3).map(|k| side(t, k)).for_each(|(a, b)| starts[a.min(b) as usize + 1] += 1);
+        }
+        for v in 0..mesh.positions.len() {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        // The upper vertex and the side: three times the triangle, and which of its sides.
+        let mut all = vec![(0u32, 0u32); mesh.triangles.len() * 3];
         for (i, t) in mesh.triangles.iter().enumerate() {
             for k in 0..3 {
                 let (a, b) = side(t, k);
-                all.push((a.min(b), a.max(b), i as u32, k as u8));
+                let slot = &mut next[a.min(b) as usize];
+                all[*slot as usize] = (a.max(b), (i * 3 + k) as u32);
+                *slot += 1;
             }
         }
-        all.sort_unstable();
         let mut beyond = vec![[TriangleNeighbours::NONE; 3]; mesh.triangles.len()];
-        for group in all.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
-            // Of an edge with more than two triangles none is a way.
-            if let [a, b] = group {
-                beyond[a.2 as usize][a.3 as usize] = b.2;
-                beyond[b.2 as usize][b.3 as usize] = a.2;
+        for v in 0..mesh.positions.len() {
+            let around = &mut all[starts[v] as usize..starts[v + 1] as usize];
+            around.sort_unstable();
+            for group in around.chunk_by(|x, y| x.0 == y.0) {
+                // Of an edge with more than two triangles none is a way.
+                if let [(_, a), (_, b)] = *group {
+                    beyond[a as usize / 3][a as usize % 3] = b / 3;
+                    beyond[b as usize / 3][b as usize % 3] = a / 3;
+                }
             }
         }
         TriangleNeighbours { beyond }
@@ -114,13 +130,17 @@ impl FlatRegion {
     /// no area.
     pub fn around(mesh: &TriMesh, triangle: u32) -> Option<FlatRegion> {
         mesh.triangles.get(triangle as usize)?;
+        FlatRegion::with(mesh, &TriangleNeighbours::of(mesh), triangle)
+    }
+
+    /// The same, with the neighbours at hand.
+    fn with(mesh: &TriMesh, table: &TriangleNeighbours, triangle: u32) -> Option<FlatRegion> {
         let reach = mesh.positions.iter().fold(0f32, |r, p| r.max(p.abs().max_element()));
         let allowed = ERRORS * rounding(f64::from(reach));
-        let table = TriangleNeighbours::of(mesh);
         let mut taken = vec![triangle];
         let mut fit = Fit::of(mesh, &taken)?;
         for _ in 0..TURNS {
-            let grown = grow(mesh, &table, triangle, &fit, allowed);
+            let grown = grow(mesh, table, triangle, &fit, allowed);
             let same = grown == taken;
             // A region that shrinks around a seed that does not fit is none.
             let Some(better) = Fit::of(mesh, &grown) else { break };
@@ -131,7 +151,7 @@ impl FlatRegion {
         }
         let off = taken.iter().flat_map(|t| corners(mesh, *t)).map(|p| fit.height(p).abs());
         let off = off.fold(0.0, f64::max);
-        let outline = outline(mesh, &table, &taken);
+        let outline = outline(mesh, table, &taken);
         let Fit { normal, middle, area } = fit;
         Some(FlatRegion { triangles: taken, normal, middle, area, off, outline })
     }
@@ -224,33 +244,37 @@ fn outline(mesh: &TriMesh, table: &TriangleNeighbours, taken: &[u32]) -> Vec<[DV
 /// The largest flat face of each part of a mesh that hangs together, and every other of at least
 /// `share` of the mesh's area, the largest first: what one solid can be put down on.
 pub fn large_faces(mesh: &TriMesh, share: f64) -> Vec<FlatRegion> {
-    let area = |t: u32| area_vector(corners(mesh, t)).length() * 0.5;
-    let all: f64 = (0..mesh.triangles.len() as u32).map(area).sum();
+    let (areas, normals): (Vec<f64>, Vec<DVec3>) = (0..mesh.triangles.len() as u32)
+        .into_par_iter()
+        .map(|t| area_vector(corners(mesh, t)))
+        .map(|vector| (vector.length() * 0.5, vector.normalize_or_zero()))
+        .unzip();
+    let all: f64 = areas.iter().sum();
     let mut sets = DisjointSets::new(mesh.triangles.len());
     let table = TriangleNeighbours::of(mesh);
     for (t, beyond) in table.beyond.iter().enumerate() {
-        let normal = area_vector(corners(mesh, t as u32)).try_normalize();
-        for &b in beyond.iter().filter(|b| **b != TriangleNeighbours::NONE) {
-            let other = area_vector(corners(mesh, b)).try_normalize();
-            // Candidates only; each region is grown again from its largest triangle.
-            if normal.zip(other).is_some_and(|(a, b)| a.dot(b) > 0.9999) {
+        // Candidates only; each region is grown again from its largest triangle.
+        for &b in beyond.iter().filter(|b| (**b as usize) < t) {
+            if normals[t].dot(normals[b as usize]) > 0.9999 {
                 sets.join(t as u32, b);
             }
         }
     }
-    let mut largest: std::collections::BTreeMap<u32, (f64, u32, f64)> = Default::default();
-    for t in 0..mesh.triangles.len() as u32 {
-        let own = area(t);
-        let group = largest.entry(sets.root(t)).or_insert((own, t, 0.0));
-        group.2 += own;
-        if own > group.0 {
-            (group.0, group.1) = (own, t);
+    // Of each group, by its root: its largest triangle and its area.
+    let mut groups = vec![(0u32, 0.0f64); mesh.triangles.len()];
+    for (t, &own) in areas.iter().enumerate() {
+        let root = sets.root(t as u32);
+        let (largest, sum) = &mut groups[root as usize];
+        if root as usize == t || own > areas[*largest as usize] {
+            *largest = t as u32;
         }
+        *sum += own;
     }
-    let mut out: Vec<FlatRegion> = largest
-        .into_values()
-        .filter(|(_, _, sum)| *sum >= share * all)
-        .filter_map(|(_, t, _)| FlatRegion::around(mesh, t))
+    let mut out: Vec<FlatRegion> = groups
+        .into_iter()
+        .enumerate()
+        .filter(|(root, (_, sum))| sets.root(*root as u32) as usize == *root && *sum >= share * all)
+        .filter_map(|(_, (largest, _))| FlatRegion::with(mesh, &table, largest))
         .filter(|r| r.area >= share * all)
         .collect();
     out.sort_by(|a, b| b.area.total_cmp(&a.area).then(a.triangles[0].cmp(&b.triangles[0])));

@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 use sculptd_clay::Ray;
+use sculptd_geometry::thickness::MeasuredSide;
 
 /// A material, lit from the eye's own frame. Colours are linear, 0 to 1.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +85,8 @@ pub enum Map {
     Mask,
     /// Wall thickness in the mesh's unit.
     Thickness,
+    /// Width of the gap in front of the surface, in the mesh's unit.
+    Gap,
     /// Distance to another form, in the mesh's unit: negative within it, positive outside.
     Distance,
     /// Wall thickness less that of an earlier form, in the mesh's unit.
@@ -155,14 +158,19 @@ impl Map {
         matches!(self, Map::Overhang | Map::Draft)
     }
 
-    /// Returns true for a map of walls.
+    /// Returns true for a map of walls or of gaps.
     pub fn is_of_walls(self) -> bool {
-        matches!(self, Map::Thickness | Map::WallChange)
+        matches!(self, Map::Thickness | Map::Gap | Map::WallChange)
+    }
+
+    /// Returns the side of the surface on which a map of walls or of gaps measures.
+    pub fn side(self) -> MeasuredSide {
+        if self == Map::Gap { MeasuredSide::Gap } else { MeasuredSide::Wall }
     }
 
     /// Returns true for a map of lengths, which can be shown in steps.
     pub fn has_bands(self) -> bool {
-        matches!(self, Map::Thickness | Map::Distance | Map::WallChange)
+        matches!(self, Map::Thickness | Map::Gap | Map::Distance | Map::WallChange)
     }
 
     /// The colour of an angle: `x` from 0 to 1 below the limit, or above it.
@@ -178,7 +186,7 @@ impl Map {
     /// The colour of a value between the scale's ends; sRGB.
     pub fn colour(self, value: f32, low: f32, high: f32) -> [u8; 3] {
         match self {
-            Map::None | Map::Thickness => {
+            Map::None | Map::Thickness | Map::Gap => {
                 sculptd_geometry::thickness::colour::colour(value, low, high)
             }
             Map::Mask => {
@@ -218,6 +226,7 @@ impl Map {
             Map::None => "map-none",
             Map::Mask => "map-mask",
             Map::Thickness => "map-thickness",
+            Map::Gap => "map-gap",
             Map::Distance => "map-distance",
             Map::WallChange => "map-wall-change",
             Map::Overhang => "map-overhang",
@@ -418,9 +427,15 @@ mod tests {
 
     #[test]
     fn a_scale_runs_from_its_low_to_its_high_colour() {
-        for map in
-            [Map::Mask, Map::Thickness, Map::Distance, Map::WallChange, Map::Overhang, Map::Draft]
-        {
+        for map in [
+            Map::Mask,
+            Map::Thickness,
+            Map::Gap,
+            Map::Distance,
+            Map::WallChange,
+            Map::Overhang,
+            Map::Draft,
+        ] {
             assert_eq!(map.scale()[0], linear(map.colour(0.0, 0.0, 1.0)));
             assert_eq!(map.scale()[SCALE - 1], linear(map.colour(1.0, 0.0, 1.0)));
             assert_ne!(map.scale()[0], map.scale()[SCALE - 1]);

@@ -3,7 +3,8 @@
 //! cargo run --release -p sculptd-check --example check_seconds -- 1000000 config
 //!
 //! The first argument is the number of triangles, the second the folder of the presets, which has
-//! `check` and `thickness` in it.
+//! `check` and `thickness` in it. Processes after these replace the list of all four with and
+//! without a search for the orientation.
 #![allow(clippy::disallowed_methods, clippy::print_stdout)] // It measures, and prints.
 
 use std::time::Instant;
@@ -37,8 +38,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("{} triangles", mesh.face_count());
     let (job, clock) = (Job::default(), Instant::now());
-    for process in ["fdm", "sla", "sls", "moulding"] {
-        for orient in [false, true] {
+    let named: Vec<String> = arguments.collect();
+    let all = ["fdm", "sla", "sls", "moulding"].map(String::from).to_vec();
+    for process in if named.is_empty() { &all } else { &named } {
+        for &orient in if named.is_empty() { &[false, true][..] } else { &[false] } {
             let process = library.process(process)?;
             let settings = CheckSettings::new(&library, process, None, None, DVec3::Z)?;
             let seconds = || clock.elapsed().as_secs_f64();

@@ -3,13 +3,19 @@
 mod common;
 
 use common::*;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use sculptd_check::FindingKind::{
     Contact, Gap, Hole, NestedShell, NotChecked, Open, Orientation, SelfIntersection, Size, Sliver,
     ThinPin, ThinWall, Tipping,
 };
 use sculptd_check::{CheckSettings, Severity};
 use sculptd_geometry::PolyMesh;
+use sculptd_geometry::bvh::Bvh8;
+use sculptd_geometry::job::Job;
+use sculptd_geometry::shapes::{cuboid, icosphere};
+use sculptd_geometry::thickness::ray::{Caster, Site};
+use sculptd_geometry::thickness::side_cones::SideCones;
+use sculptd_geometry::thickness::{Cone, Correction, Outliers, Weights};
 
 /// A base with a fin of this thickness on it.
 fn fin(thick: f64) -> PolyMesh {
@@ -257,4 +263,57 @@ fn slivers_are_a_warning() {
     let found = of(&answer, Sliver);
     assert!(found.len() == 1 && answer.ok, "{:#?}", answer.findings);
     assert!(DVec3::from(found[0].position.expect("a place")).distance(middle) < 10.0);
+}
+
+#[test]
+fn a_ball_is_the_same_with_and_without_cones() {
+    let mut lump = icosphere(10.0, 24);
+    for p in &mut lump.positions {
+        *p *= 1.0 + 0.3 * ((p.x * 0.9).sin() * (p.y * 0.8).cos() * (p.z * 1.1).sin());
+    }
+    // A triangle without area has no normal, and yet holds balls.
+    lump.triangles.push([0, 0, 5]);
+    let block = cuboid(DVec3::ZERO, DVec3::new(9.0, 4.0, 2.0)).triangulate().0;
+    for mesh in [lump, block] {
+        let tree = Bvh8::build(&mesh, &Job::default()).expect("built");
+        let normals: Vec<Vec3> = (0..mesh.triangles.len())
+            .map(|t| {
+                let [a, b, c] = mesh.corners(t);
+                (b - a).cross(c - a).normalize_or_zero()
+            })
+            .collect();
+        let cones = SideCones::new(&tree, &normals);
+        for sign in [1.0, -1.0] {
+            let caster = Caster {
+                tree: &tree,
+                face_normals: &normals,
+                corner_normals: &[],
+                sign,
+                cone: &Cone::new(1, 0.0, Weights::Plain),
+                outliers: Outliers::Keep,
+                correction: Correction::None,
+                acute: None,
+            };
+            let mut balls = 0;
+            for t in (0..mesh.triangles.len()).filter(|&t| normals[t] != Vec3::ZERO) {
+                let [a, b, c] = mesh.corners(t);
+                let site = Site {
+                    point: (a + b + c) / 3.0,
+                    away: normals[t] * sign,
+                    along: b - a,
+                    own: &[t as u32],
+                    clear: f32::INFINITY,
+                };
+                let plain = caster.ball(&site);
+                assert_eq!(caster.ball_above(&site, f32::NEG_INFINITY, &cones), plain);
+                if let Some(ball) = plain {
+                    balls += 1;
+                    let d = ball.diameter;
+                    assert_eq!(caster.ball_above(&site, d, &cones), None);
+                    assert_eq!(caster.ball_above(&site, d.next_down(), &cones), plain);
+                }
+            }
+            assert!(balls > 0 || sign < 0.0);
+        }
+    }
 }

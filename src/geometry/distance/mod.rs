@@ -8,6 +8,8 @@
 
 pub mod topology;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -35,7 +37,8 @@ pub enum Sign {
 pub struct DistanceSolid {
     /// The tree over the triangles.
     pub tree: Bvh8,
-    winding: Winding,
+    /// Made by the first question that needs it.
+    winding: OnceLock<Winding>,
     /// The triangles at each edge, and the pseudonormals.
     pub topology: Topology,
     sign: Sign,
@@ -53,8 +56,7 @@ impl DistanceSolid {
         let (tree, topology) = rayon::join(|| Bvh8::build(mesh, job), || Topology::build(mesh));
         let tree = tree?;
         job.check()?;
-        let winding = Winding::build(&tree);
-        let sign = Sign::default();
+        let (winding, sign) = (OnceLock::new(), Sign::default());
         Ok(DistanceSolid { tree, winding, topology, sign, corners: Vec::new() })
     }
 
@@ -99,7 +101,7 @@ impl DistanceSolid {
 
     /// The generalised winding number of `p`.
     pub fn winding(&self, p: DVec3) -> f64 {
-        self.winding.at(&self.tree, p)
+        self.winding.get_or_init(|| Winding::build(&self.tree)).at(&self.tree, p)
     }
 
     /// Whether `p` is inside. `nearest` is the mesh's nearest point, where the caller has it.

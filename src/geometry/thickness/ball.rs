@@ -18,12 +18,10 @@ use glam::Vec3;
 
 use super::ray::{Caster, Site};
 use super::sharp_edges::{AcuteEdges, OPPOSED};
+use super::side_cones::{SAME_SIDE, SideCones};
 use crate::bvh::{Bvh8, LEAF, NO_TRIANGLE, Pack, WideNode, nearest_on_triangle, push_children};
 use crate::simd::wide::{self, Wide, WideWork};
 
-/// cos 20 degrees: a touch at a smaller angle seen from the ball's centre is the same side of the
-/// wall.
-const SAME_SIDE: f32 = 0.94;
 /// cos 140 degrees: two touches nearer to each other, seen from the centre, sit in a corner, not in
 /// a wall.
 const CORNER: f32 = -(OPPOSED as f32);
@@ -51,15 +49,33 @@ pub struct InscribedBall {
 impl Caster<'_> {
     /// The inscribed ball at a site. `None` where no wall is ahead and so nothing bounds it.
     pub fn ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
-        self.held_ball(site, false)
+        self.held_ball(site, false, f32::NEG_INFINITY, None)
+    }
+
+    /// The same, if its diameter is larger than `least`: sooner known where it is not. `cones` are
+    /// those of the caster's tree and normals; with them a large ball takes a fraction of the time.
+    pub fn ball_above(
+        &self,
+        site: &Site<'_>,
+        least: f32,
+        cones: &SideCones,
+    ) -> Option<InscribedBall> {
+        let ball = self.held_ball(site, false, least, Some(cones));
+        ball.filter(|ball| ball.diameter > least)
     }
 
     /// The ball between a site and the opposite side of its wall. `None` where no wall is ahead.
     pub(super) fn opposed_ball(&self, site: &Site<'_>) -> Option<InscribedBall> {
-        self.held_ball(site, true)
+        self.held_ball(site, true, f32::NEG_INFINITY, None)
     }
 
-    fn held_ball(&self, site: &Site<'_>, opposed: bool) -> Option<InscribedBall> {
+    fn held_ball(
+        &self,
+        site: &Site<'_>,
+        opposed: bool,
+        least: f32,
+        cones: Option<&SideCones>,
+    ) -> Option<InscribedBall> {
         let mut touch = None;
         let first = self.hit(site, -site.away);
         let first = first.filter(|hit| {
@@ -95,6 +111,8 @@ impl Caster<'_> {
             away: site.away,
             r,
             touch,
+            least,
+            cones: cones.map(|c| (c, site.away * self.sign)),
             from,
             opposed,
         };
@@ -118,6 +136,10 @@ struct BallSearch<'a, F> {
     r: f32,
     /// The point, besides `point`, where the ball of radius `r` touches.
     touch: Option<Vec3>,
+    /// The search ends as soon as the diameter is no larger.
+    least: f32,
+    /// The cones of the tree, with the normal that they are compared with.
+    cones: Option<(&'a SideCones, Vec3)>,
     from: F,
     /// True to ignore touches beside the wall.
     opposed: bool,
@@ -143,7 +165,7 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
             &mut inline[..]
         };
         let mut top = 1;
-        while top > 0 {
+        while top > 0 && !(2.0 * ball.r <= self.least) {
             top -= 1;
             let at = stack[top].1;
             if at & LEAF != 0 {
@@ -182,6 +204,9 @@ impl<F: Fn(u32) -> Option<f32>> WideWork for BallSearch<'_, F> {
             let node = &nodes[at as usize];
             let mut near = [0.0f32; 8];
             let mut inside = wide.near_boxes(ball.centre.to_array(), node, ball.bound, &mut near);
+            if let Some((cones, away)) = self.cones {
+                inside &= cones.others(at as usize, away);
+            }
             if self.opposed {
                 inside &= boxes_ahead(node, self.point, self.away);
             }

@@ -41,6 +41,7 @@ mod rolled;
 pub mod samples;
 mod shaft;
 pub mod sharp_edges;
+pub mod side_cones;
 pub mod summary;
 pub mod surface;
 mod valley;

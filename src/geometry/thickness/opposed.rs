@@ -19,16 +19,16 @@ const CHUNK: usize = 64;
 
 /// Directions within an angle of an axis; a negative angle: none.
 #[derive(Debug, Clone, Copy)]
-struct NormalCone {
-    axis: Vec3,
-    angle: f32,
+pub(super) struct NormalCone {
+    pub axis: Vec3,
+    pub angle: f32,
 }
 
 impl NormalCone {
-    const NONE: NormalCone = NormalCone { axis: Vec3::ZERO, angle: -1.0 };
+    pub const NONE: NormalCone = NormalCone { axis: Vec3::ZERO, angle: -1.0 };
 
     /// A cone around other cones.
-    fn around(cones: &[NormalCone]) -> NormalCone {
+    pub fn around(cones: &[NormalCone]) -> NormalCone {
         let all = cones.iter().filter(|c| c.angle >= 0.0);
         let sum: Vec3 = all.clone().map(|c| c.axis).sum();
         if all.clone().next().is_none() {

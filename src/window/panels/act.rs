@@ -71,6 +71,7 @@ pub fn act(
         Action::Wireframe => ui_state.look.wireframe = !ui_state.look.wireframe,
         Action::Grid => ui_state.look.grid = !ui_state.look.grid,
         Action::Thickness => toggle(&mut ui_state.look.map, Map::Thickness),
+        Action::Gap => toggle(&mut ui_state.look.map, Map::Gap),
         Action::Distance => toggle(&mut ui_state.look.map, Map::Distance),
         Action::Overhang => toggle(&mut ui_state.look.map, Map::Overhang),
         Action::DraftAngle => toggle(&mut ui_state.look.map, Map::Draft),

@@ -2,11 +2,12 @@
 
 use super::cut;
 use super::rows;
-use super::state::{Action, ThicknessSummary, ThinSpot, UiRequest, UiState, View};
+use super::state::{Action, ThicknessSummary, ThinSpot, UiRequest, UiState, View, WallsPage};
 use super::theme;
 use crate::language::text_of;
 use crate::language::tr;
 use crate::look::{Look, Map};
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::thickness::preset::Preset;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
@@ -16,15 +17,27 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
 
 fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut Vec<UiRequest>) {
     let quiet = theme::quiet(ui);
-    ui.strong(tr!("walls-heading"));
+    let side = ui_state.look.map.side();
+    let name = |wall: &'static str, gap: &'static str| match side {
+        MeasuredSide::Wall => tr!(wall),
+        MeasuredSide::Gap => tr!(gap),
+    };
+    ui.strong(name("walls-heading", "map-gap"));
     let mut on = ui_state.look.map.is_of_walls();
     if ui.checkbox(&mut on, tr!("walls-live")).on_hover_text(view.tip(Action::Thickness)).changed()
     {
-        // From the change of walls the map is closed too.
+        // From gaps and from the change of walls the map is closed too.
         ui_state.look.map = if on { ui_state.look.map } else { Map::Thickness };
         super::act::act(Action::Thickness, &ui.ctx().clone(), view, ui_state, out);
     }
-    if on && changes(ui, ui_state, out) {
+    if on {
+        let mut gaps = side == MeasuredSide::Gap;
+        let checkbox = ui.checkbox(&mut gaps, tr!("map-gap"));
+        if checkbox.on_hover_text(view.tip(Action::Gap)).changed() {
+            ui_state.look.map = if gaps { Map::Gap } else { Map::Thickness };
+        }
+    }
+    if on && side == MeasuredSide::Wall && changes(ui, ui_state, out) {
         return;
     }
     let walls = &mut ui_state.walls;
@@ -32,26 +45,27 @@ fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     let preset = walls.preset.and_then(|i| walls.presets.get(i));
     let title = preset.map_or(own.clone(), |p| p.name.clone());
     let mut chosen = walls.preset;
-    rows::list(ui, &tr!("walls-process"), title, |ui| {
-        ui.selectable_value(&mut chosen, None, own);
-        for (i, p) in walls.presets.iter().enumerate() {
-            ui.selectable_value(&mut chosen, Some(i), process(p)).on_hover_text(&p.source);
-        }
-    });
+    if side == MeasuredSide::Wall {
+        rows::list(ui, &tr!("walls-process"), title, |ui| {
+            ui.selectable_value(&mut chosen, None, own);
+            for (i, p) in walls.presets.iter().enumerate() {
+                ui.selectable_value(&mut chosen, Some(i), process(p)).on_hover_text(&p.source);
+            }
+        });
+    }
     if chosen != walls.preset {
         walls.preset = chosen;
         if let Some(p) = chosen.and_then(|i| walls.presets.get(i)) {
             walls.limit = p.fail_below;
         }
     }
+    let mut limit = walls.limit_of(side);
     rows::flow(ui, |ui| {
-        let drag =
-            egui::DragValue::new(&mut walls.limit).range(0.0..=1e6).speed(0.01).suffix(" mm");
-        let label = ui.label(tr!("walls-too-thin-below"));
-        if ui.add(drag).labelled_by(label.id).changed() {
-            walls.preset = None;
-        }
+        let drag = egui::DragValue::new(&mut limit).range(0.0..=1e6).speed(0.01).suffix(" mm");
+        let label = ui.label(name("walls-too-thin-below", "gaps-too-narrow-below"));
+        ui.add(drag).labelled_by(label.id);
     });
+    set_limit(walls, side, limit);
     let Some(found) = walls.found.as_ref().filter(|_| on) else {
         ui.colored_label(quiet, tr!("walls-note", keys = view.keys.text(Action::Thickness)));
         return;
@@ -59,39 +73,50 @@ fn walls(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut V
     ui.add_space(6.0);
     let auto = (found.min, found.high);
     let shown = walls.scale.unwrap_or(auto);
-    let mut marks = [walls.limit, shown.0, shown.1];
+    let mut marks = [limit, shown.0, shown.1];
     if histogram(ui, found, &ui_state.look, &mut marks) {
-        if marks[0] != walls.limit {
-            (walls.limit, walls.preset) = (marks[0].max(0.0), None);
-        }
+        limit = marks[0].max(0.0);
         if (marks[1], marks[2]) != shown {
             walls.scale = Some((marks[1], marks[2].max(marks[1] + LEAST_SPAN)));
         }
     }
-    scale(ui, &mut walls.scale, auto, walls.limit);
+    scale(ui, &mut walls.scale, auto, limit);
     ui.checkbox(&mut ui_state.look.bands, tr!("walls-bands")).on_hover_text(tr!("walls-bands.tip"));
-    let row = |ui: &mut egui::Ui, name: &str, value: String| {
-        ui.colored_label(quiet, tr!(name));
+    let row = |ui: &mut egui::Ui, name: String, value: String| {
+        ui.colored_label(quiet, name);
         ui.monospace(value);
         ui.end_row();
     };
+    let narrowest = name("walls-thinnest", "gaps-narrowest");
+    let (widest, narrow) =
+        (name("walls-thickest", "gaps-widest"), name("walls-too-thin", "gaps-too-narrow"));
     egui::Grid::new("walls").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-        row(ui, "walls-thinnest", tr!("length-mm", value = format!("{:.3}", found.min)));
-        row(ui, "walls-usual", tr!("length-mm", value = format!("{:.3}", found.usual())));
-        row(ui, "walls-median", tr!("length-mm", value = format!("{:.3}", found.median)));
-        row(ui, "walls-thickest", tr!("length-mm", value = format!("{:.3}", found.max)));
+        row(ui, narrowest, tr!("length-mm", value = format!("{:.3}", found.min)));
+        row(ui, tr!("walls-usual"), tr!("length-mm", value = format!("{:.3}", found.usual())));
+        row(ui, tr!("walls-median"), tr!("length-mm", value = format!("{:.3}", found.median)));
+        row(ui, widest, tr!("length-mm", value = format!("{:.3}", found.max)));
         let below = format!("{:.1}", found.below * 100.0);
-        row(ui, "walls-too-thin", tr!("percent", value = below));
+        row(ui, narrow, tr!("percent", value = below));
         let share = found.measured as f32 / found.vertices.max(1) as f32;
         let share = format!("{:.0}", share * 100.0);
-        row(ui, "walls-measured", tr!("percent", value = share));
+        row(ui, tr!("walls-measured"), tr!("percent", value = share));
     });
     ui.add_space(6.0);
-    ui.strong(tr!("walls-spots"));
+    ui.strong(name("walls-spots", "gaps-spots"));
     if found.spots.is_empty() {
         ui.colored_label(quiet, tr!("walls-none"));
     }
     spots(ui, &found.spots, out);
+    set_limit(walls, side, limit);
+}
+
+/// Sets the limit of a side. A limit of walls that differs from the process's is the person's own.
+fn set_limit(walls: &mut WallsPage, side: MeasuredSide, limit: f32) {
+    match side {
+        MeasuredSide::Gap => walls.gap_limit = limit,
+        MeasuredSide::Wall if limit != walls.limit => (walls.limit, walls.preset) = (limit, None),
+        MeasuredSide::Wall => {}
+    }
 }
 
 /// The comparison with an earlier form; returns true if its map is shown.

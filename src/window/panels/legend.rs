@@ -13,7 +13,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
         return;
     }
     let known = match map {
-        Map::Thickness => ui_state.walls.found.is_some(),
+        Map::Thickness | Map::Gap => ui_state.walls.found.is_some(),
         Map::Distance => ui_state.sizes.distances.is_some(),
         Map::WallChange => ui_state.walls.changes.is_some(),
         Map::None | Map::Mask | Map::Overhang | Map::Draft => true,
@@ -47,7 +47,7 @@ pub fn ui(ctx: &egui::Context, ui_state: &UiState, free: Rect) {
                 return;
             }
             if let Some(here) = ui_state.walls.here.filter(|_| map.is_of_walls()) {
-                if map == Map::Thickness {
+                if map != Map::WallChange {
                     mark(ui, bar, (here - low) / (high - low).max(1e-12));
                 }
                 ui.label(tr!("walls-here", value = format!("{here:.3}")));

@@ -30,6 +30,7 @@ pub fn ui(ui: &mut egui::Ui, ui_state: &mut UiState, out: &mut Vec<UiRequest>, v
             (Map::None, tr!("map-none.tip")),
             (Map::Mask, view.tip(Action::Mask)),
             (Map::Thickness, view.tip(Action::Thickness)),
+            (Map::Gap, view.tip(Action::Gap)),
             (Map::Distance, view.tip(Action::Distance)),
             (Map::Overhang, view.tip(Action::Overhang)),
             (Map::Draft, view.tip(Action::DraftAngle)),

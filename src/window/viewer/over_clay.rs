@@ -120,13 +120,13 @@ impl WindowState {
         }
     }
 
-    /// The wall under the pointer while the map of thickness is shown.
+    /// The wall or the gap under the pointer while a map of them is shown.
     pub(super) fn wall_here(&self, state: &Published) -> Option<ProbedWall> {
         let at = self.pointer.at;
         let on_clay = self.pointer.inside && self.is_in_view(at) && !self.over_panel(at);
         let shown = on_clay && self.ui_state.look.map.is_of_walls();
         let ray = shown.then(|| self.camera.ray(self.view_point(at)))?;
         let seen = self.ui_state.look.cut.map_or(Some(ray), |cut| cut.seen(ray))?;
-        wall_on(state, seen)
+        wall_on(state, seen, self.ui_state.look.map.side())
     }
 }

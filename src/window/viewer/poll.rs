@@ -204,7 +204,9 @@ impl WindowState {
                     self.ui_state.retopology.under_way = None;
                 }
                 TaskReport::Used(path) => self.ui_state.prefs.used(path),
-                TaskReport::Walls(WallReport::Map(values, about)) => {
+                TaskReport::Walls(WallReport::Map(side, ..))
+                    if self.asked_map.is_some_and(|asked| asked.side != side) => {}
+                TaskReport::Walls(WallReport::Map(_, values, about)) => {
                     self.values = Some(values);
                     self.ui_state.walls.found = Some(about);
                 }
@@ -276,7 +278,7 @@ impl WindowState {
                 &self.ui_state.walls.found,
                 self.ui_state.sizes.distances,
             ) {
-                (Map::Thickness, Some(found), _) => {
+                (Map::Thickness | Map::Gap, Some(found), _) => {
                     self.ui_state.walls.scale.unwrap_or((found.min, found.high))
                 }
                 (Map::WallChange, ..) => {

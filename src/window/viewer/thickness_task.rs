@@ -1,4 +1,4 @@
-//! The thread that keeps the live thickness map of the newest clay.
+//! The thread that keeps the live map of walls or of gaps of the newest clay.
 
 use std::sync::Arc;
 
@@ -15,17 +15,18 @@ use sculptd_clay::live_thickness::LiveMap;
 use sculptd_engine::hand::Similarity;
 use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::job::Job;
-use sculptd_geometry::thickness::ThicknessSettings;
 use sculptd_geometry::thickness::changes::EarlierVersion;
+use sculptd_geometry::thickness::{MeasuredSide, ThicknessSettings};
 
-/// Request to the thickness thread: the newest clay, the position of the brush, and the thickness
-/// below which a wall is too thin.
+/// Request to the thickness thread: the newest clay, the position of the brush, and the limit below
+/// which a wall is too thin or a gap too narrow.
 #[derive(Debug, Clone)]
 pub(super) struct ThicknessRequest {
     pub(super) mesh: Snapshot,
     /// Transform from the clay to the world, in whose unit walls are measured.
     pub(super) transform: ObjectTransform,
     pub(super) near: Vec3,
+    pub(super) side: MeasuredSide,
     pub(super) limit: f32,
     /// The place and the normal, in the world, where the ball in the wall is wanted.
     pub(super) probe: Option<(Vec3, Vec3)>,
@@ -33,11 +34,12 @@ pub(super) struct ThicknessRequest {
     pub(super) earlier: Option<DistanceReference>,
 }
 
-/// A request in short: the clay, the limit, its transform, the place under the pointer, and the
-/// form that it is compared with, by its revision and its place.
+/// A request in short: the clay, the side, the limit, its transform, the place under the pointer,
+/// and the form that it is compared with, by its revision and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AskedWalls {
     pub(super) clay: (u32, u64),
+    pub(super) side: MeasuredSide,
     pub(super) limit: f32,
     pub(super) transform: ObjectTransform,
     pub(super) probe: Option<Vec3>,
@@ -47,8 +49,8 @@ pub(super) struct AskedWalls {
 /// Report of the thread.
 #[derive(Debug)]
 pub enum WallReport {
-    /// The map as far as it is known.
-    Map(MapValues, Box<ThicknessSummary>),
+    /// The map of a side as far as it is known.
+    Map(MeasuredSide, MapValues, Box<ThicknessSummary>),
     /// The ball that was asked for.
     Ball(Option<WallBall>),
     /// The change of walls.
@@ -76,8 +78,11 @@ pub(super) fn follow(
     let mut said = None;
     while let Ok((mut wanted, _)) = requests.recv() {
         loop {
-            if map.as_mut().is_none_or(|m| pool.install(|| m.advance(&wanted.mesh)).is_err()) {
-                map = pool.install(|| LiveMap::new(&wanted.mesh, &job)).ok();
+            let follows = |m: &mut LiveMap| {
+                m.side() == wanted.side && pool.install(|| m.advance(&wanted.mesh)).is_ok()
+            };
+            if !map.as_mut().is_some_and(follows) {
+                map = pool.install(|| LiveMap::new(&wanted.mesh, wanted.side, &job)).ok();
                 (pages, said) = (Vec::new(), None);
             }
             let Some(map) = &mut map else { return };
@@ -88,7 +93,8 @@ pub(super) fn follow(
             if left > 0 || said != now {
                 gather(&wanted.mesh, map.values(), unit, &mut pages);
                 let about = Box::new(about(&wanted, map, left));
-                if !say(WallReport::Map(MapValues { pages: pages.clone() }, about)) {
+                let values = MapValues { pages: pages.clone() };
+                if !say(WallReport::Map(map.side(), values, about)) {
                     return;
                 }
                 said = now.filter(|_| left == 0);

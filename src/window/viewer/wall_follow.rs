@@ -1,4 +1,4 @@
-//! Requests to the thread that measures walls, and the wall under the pointer.
+//! Requests to the thread that measures walls and gaps, and the one under the pointer.
 
 use super::distance_reference::DistanceReference;
 use super::state::WindowState;
@@ -32,7 +32,13 @@ impl WindowState {
         if !map.is_of_walls() {
             return changed;
         }
-        let (limit, transform) = (self.ui_state.walls.limit, state.transform());
+        let (side, transform) = (map.side(), state.transform());
+        let limit = self.ui_state.walls.limit_of(side);
+        if self.asked_map.is_some_and(|asked| asked.side != side) {
+            // Values of the other side are not shown as this one's.
+            let walls = &mut self.ui_state.walls;
+            (walls.found, walls.scale, self.values) = (None, None, None);
+        }
         let earlier = (map == Map::WallChange).then(|| self.earlier_form(state)).flatten();
         let of_earlier = |to: &DistanceReference| match to {
             DistanceReference::Before(b) => ((b.object_id(), b.revision()), to.place()),
@@ -40,6 +46,7 @@ impl WindowState {
         };
         let asked = AskedWalls {
             clay: (state.mesh.object_id(), state.mesh.revision()),
+            side,
             limit,
             transform,
             probe: wall.map(|w| w.place),
@@ -51,6 +58,7 @@ impl WindowState {
                 mesh: state.mesh.clone(),
                 transform,
                 near: transform.inverse().point(self.camera.target),
+                side,
                 limit,
                 probe: wall.map(|w| (w.place, w.normal)),
                 earlier,

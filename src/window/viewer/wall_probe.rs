@@ -1,21 +1,23 @@
-//! The wall under the pointer, by the definition *ray*: where the ray along the normal leaves the
-//! clay again. Looked up in the clay itself, not in the map, so it holds between vertices too.
+//! The wall or the gap under the pointer, by the definition *ray*: where the ray along the normal
+//! leaves the clay again, or meets it. Looked up in the clay itself, not in the map, so it holds
+//! between vertices too.
 
 use glam::Vec3;
 
 use sculptd_clay::{Hit, Ray};
 use sculptd_daemon::Published;
+use sculptd_geometry::thickness::MeasuredSide;
 
 /// The ray begins this far below the surface, of the largest coordinate: beyond the rounding of the
 /// point where it begins.
 const BELOW: f32 = 2e-6;
 
-/// A wall at a place of the surface, in the world.
+/// A wall or a gap at a place of the surface, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProbedWall {
     /// On the surface.
     pub place: Vec3,
-    /// Outward.
+    /// Away from the measured side: outward at a wall, inward at a gap.
     pub normal: Vec3,
     /// Along the normal to the opposite side.
     pub thickness: f32,
@@ -28,7 +30,7 @@ pub struct ProbedWall {
 pub struct WallBall {
     /// On the surface.
     pub place: Vec3,
-    /// Outward.
+    /// Away from the ball.
     pub normal: Vec3,
     /// Its diameter.
     pub diameter: f32,
@@ -41,9 +43,10 @@ impl WallBall {
     }
 }
 
-/// Returns the wall behind the surface that is seen on a ray, along the normal of the triangle that
-/// is hit; `None` if nothing is hit, if it is hit from inside, or if there is no surface behind.
-pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
+/// Returns the wall behind the surface that is seen on a ray, or the gap in front of it, along the
+/// normal of the triangle that is hit; `None` if nothing is hit, if it is hit from inside, or if
+/// there is no surface on that side.
+pub fn wall_on(state: &Published, ray: Ray, side: MeasuredSide) -> Option<ProbedWall> {
     let to_world = state.transform();
     let own = to_world.inverse().ray(ray);
     // Vertex normals of a hard-edged part are no face's.
@@ -58,6 +61,7 @@ pub fn wall_on(state: &Published, ray: Ray) -> Option<ProbedWall> {
         return None;
     }
     let (lo, hi) = state.mesh.bounds();
+    let normal = if side == MeasuredSide::Wall { normal } else { -normal };
     let below = lo.abs().max(hi.abs()).max_element() * BELOW;
     let far = state.mesh.pick(Ray { origin: near.position - normal * below, dir: -normal })?;
     Some(ProbedWall {

@@ -6,6 +6,7 @@ use sculptd_clay::Snapshot;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_clay::measured_mask::{MaskMeasure, MeasuredMask};
 use sculptd_geometry::TriMesh;
+use sculptd_geometry::thickness::MeasuredSide;
 
 use super::*;
 use crate::thickness_shapes::{ribbed, shell, slab, tube, wedge};
@@ -115,7 +116,7 @@ fn one_part_has_one_thickness_in_the_command_the_protocol_the_live_map_and_the_m
         command(&["--method", "ray", "--spacing", "0", "--ply", &ply_path]);
         let snapshot = run.live.published.load().mesh.clone();
         let job = Job::default();
-        let mut map = LiveMap::new(&snapshot, &job).expect("not cancelled");
+        let mut map = LiveMap::new(&snapshot, MeasuredSide::Wall, &job).expect("not cancelled");
         assert_eq!(map.work(Vec3::ZERO, usize::MAX, &job), Ok(0));
         let of_file = map_of(&ply, map.values().len());
         assert_eq!(of_file.len(), map.values().len());

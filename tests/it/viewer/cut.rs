@@ -8,6 +8,7 @@ use sculptd_clay::{Clay, Ray, Reach, Workers};
 use sculptd_engine::camera::Camera;
 use sculptd_engine::scene::ObjectTransform;
 use sculptd_geometry::job::Job;
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::{TriMesh, shapes};
 use sculptd_window::look::{CutPlane, Look};
 use sculptd_window::panels::state::Tab;
@@ -120,7 +121,7 @@ fn the_wall_under_the_pointer_is_that_which_the_cut_shows() {
     let mut world = world_of(&hollow());
     let state = super::published(&mut world);
     let down = |x: f32| Ray { origin: Vec3::new(x, 60.0, 1.0), dir: Vec3::NEG_Y };
-    let wall = |ray: Ray| wall_on(&state, ray);
+    let wall = |ray: Ray| wall_on(&state, ray, MeasuredSide::Wall);
     // The lid from outside, and the floor through the cut.
     let lid = wall(down(5.0)).expect("a wall");
     assert!((lid.thickness - 2.0).abs() < 1e-4 && lid.place.y > 14.9);

@@ -538,6 +538,8 @@ fn a_step_is_gone_to_by_its_picture() {
 fn a_view_is_kept_under_a_number_shown_again_and_forgotten() {
     let mut h = harness(Tab::Look);
     let before = h.state().published.camera;
+    h.get_by_label("Keep view").scroll_to_me();
+    h.run_steps(4);
     h.get_by_label("Keep view").click();
     h.run_steps(2);
     assert_eq!(h.state().ui_state.prefs.kept_views, [before]);

@@ -9,6 +9,7 @@ use sculptd_clay::Ray;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::{ObjectTransform, SceneCommand};
 use sculptd_geometry::shapes;
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_window::look::{Look, Map};
 use sculptd_window::panels::state::{
     Tab, ThicknessSummary, ThinSpot, UiRequest, WallChangeSummary,
@@ -84,6 +85,44 @@ fn the_change_of_walls_is_chosen_and_its_worst_place_flown_to() {
     h.get_by_role_and_label(Role::CheckBox, "Change of walls").click();
     h.run_steps(2);
     assert_eq!(h.state().ui_state.look.map, Map::Thickness);
+}
+
+#[test]
+fn gaps_have_their_own_limit_and_words() {
+    let mut h = page();
+    h.get_by_role_and_label(Role::CheckBox, "Gaps").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.look.map, Map::Gap);
+    h.get_by_label("narrowest");
+    h.get_by_label("Narrow gaps");
+    let walls = &h.state().ui_state.walls;
+    assert_eq!((walls.limit, walls.limit_of(MeasuredSide::Gap)), (1.0, 0.4));
+    h.get_by_label("About the limit").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.walls.scale, Some((0.0, 0.8)));
+    h.get_by_role_and_label(Role::CheckBox, "Gaps").click();
+    h.run_steps(2);
+    assert_eq!(h.state().ui_state.look.map, Map::Thickness);
+    h.get_by_label("thinnest");
+}
+
+#[test]
+fn the_gap_under_the_pointer_is_in_front_of_the_surface() {
+    let mut two = shapes::cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 4.0));
+    let over = shapes::cuboid(DVec3::new(0.0, 0.0, 6.5), DVec3::new(40.0, 30.0, 9.0));
+    let base = two.positions.len() as u32;
+    two.positions.extend(&over.positions);
+    over.faces().for_each(|f| two.push_face(&f.iter().map(|v| v + base).collect::<Vec<_>>()));
+    let state = super::published(&mut world_of(&two.triangulate().0));
+    // From between the two, onto the lower one.
+    let ray = Ray { origin: Vec3::new(11.0, 9.0, 5.0), dir: Vec3::NEG_Z };
+    let gap = wall_on(&state, ray, MeasuredSide::Gap).expect("a gap");
+    assert!((gap.thickness - 2.5).abs() < 1e-4 && (gap.place.z - 4.0).abs() < 1e-4, "{gap:?}");
+    assert_eq!((gap.normal, gap.opposite), (Vec3::NEG_Z, Vec3::NEG_Z), "away from the gap");
+    let wall = wall_on(&state, ray, MeasuredSide::Wall).expect("a wall");
+    assert!((wall.thickness - 4.0).abs() < 1e-4 && wall.normal == Vec3::Z, "{wall:?}");
+    let above = Ray { origin: Vec3::new(11.0, 9.0, 30.0), dir: Vec3::NEG_Z };
+    assert!(wall_on(&state, above, MeasuredSide::Gap).is_none(), "nothing is above");
 }
 
 /// Drags within the histogram, from and to shares of its width.
@@ -174,13 +213,13 @@ fn the_wall_under_the_pointer_is_that_of_the_part_wherever_it_stands() {
         ];
         for (origin, dir, wall) in cases {
             let ray = Ray { origin: transform.point(origin), dir: transform.direction(dir) };
-            let found = wall_on(&state, ray).expect("a wall");
+            let found = wall_on(&state, ray, MeasuredSide::Wall).expect("a wall");
             let off = (found.thickness - wall * scale).abs();
             assert!(off < 1e-3 * scale, "{} for {}", found.thickness, wall * scale);
             let outward = found.normal.dot(found.opposite);
             assert!((outward + 1.0).abs() < 1e-5, "the sides face away from each other");
         }
         let beside = Ray { origin: transform.point(Vec3::splat(500.0)), dir: Vec3::X };
-        assert!(wall_on(&state, beside).is_none());
+        assert!(wall_on(&state, beside, MeasuredSide::Wall).is_none());
     }
 }

@@ -1,6 +1,7 @@
 //! What the thickness page shows: the live map's summary, the limit and where it comes from.
 
 use glam::Vec3;
+use sculptd_geometry::thickness::MeasuredSide;
 use sculptd_geometry::thickness::preset::Preset;
 
 /// A place where the wall is thin.
@@ -59,12 +60,21 @@ pub struct WallsPage {
     /// Index into `presets`; `None`: the person's own limit.
     pub preset: Option<usize>,
     pub limit: f32,
+    /// The width below which a gap is too narrow.
+    pub gap_limit: f32,
     /// The ends of the scale, set by hand; `None`: they follow the map.
     pub scale: Option<(f32, f32)>,
     /// The wall under the pointer, along the normal.
     pub here: Option<f32>,
     /// The diameter of the largest ball in that wall.
     pub ball: Option<f32>,
+}
+
+impl WallsPage {
+    /// Returns the limit of walls or of gaps.
+    pub fn limit_of(&self, side: MeasuredSide) -> f32 {
+        if side == MeasuredSide::Wall { self.limit } else { self.gap_limit }
+    }
 }
 
 impl Default for WallsPage {
@@ -75,6 +85,7 @@ impl Default for WallsPage {
             presets: Vec::new(),
             preset: None,
             limit: 1.0,
+            gap_limit: 0.4,
             scale: None,
             here: None,
             ball: None,
