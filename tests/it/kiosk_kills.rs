@@ -195,9 +195,9 @@ fn bytes(folder: &Path, without: &str) -> u64 {
 /// gallery and the line of each visit the disk does not fill.
 #[test]
 fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
-    let told = std::env::var("SCULPTD_DAYS").ok().and_then(|d| d.parse().ok());
+    let asked = std::env::var("SCULPTD_DAYS").ok().and_then(|d| d.parse().ok());
     let long = std::env::var_os("SCULPTD_LONG").is_some();
-    let (days, visits) = if long || told.is_some() { (told.unwrap_or(30), 20) } else { (2, 3) };
+    let (days, visits) = if long || asked.is_some() { (asked.unwrap_or(30), 20) } else { (2, 3) };
     let settings = "idle_s = 1\ncountdown_s = 1";
     let clock = sculptd_devices::Clock::monotonic();
     let mut daemon = installation(tempfile::tempdir().expect("a folder"), settings);
