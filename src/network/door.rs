@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use crate::core::{Core, OtherSculpture, To};
-use crate::handshake::{OwnHello, answer, is_genuine};
+use crate::handshake::{OwnHello, answer, is_genuine, refusal};
 use crate::host_limits::{CHECKS, GONE_US, LOOK_US, MAX_MEMBERS, REFUSALS};
 use crate::membership::MemberKey;
 use crate::rate_limit::RateLimit;
@@ -103,8 +103,8 @@ impl Door {
     fn refuse(&mut self, core: &mut Core, from: Address, hello: &Hello, reason: &str, now_us: u64) {
         if self.refusals.take(1.0, now_us) {
             core.note(format!("{from:016x} was not let in: {reason}"));
-            let (to, reason) = (hello.nonce, reason.into());
-            core.greet(To::Peer(from), &Greeting::Refused { to, reason });
+            let refusal = Box::new(refusal(core, hello, reason));
+            core.greet(To::Peer(from), &Greeting::Refused(refusal));
         }
     }
 
@@ -154,7 +154,10 @@ impl Door {
         let is_answer = self.look.as_ref().is_some_and(|own| own.is_answered_by(to));
         if is_answer && !self.told_strangers {
             self.told_strangers = true;
-            core.note("somebody else shares another sculpture under this name on this network");
+            core.note(
+                "another host under this name does not know this key: it shares another sculpture, \
+                 or the key was withdrawn",
+            );
         }
     }
 }

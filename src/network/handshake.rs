@@ -4,12 +4,13 @@
 use crate::core::{Core, OtherSculpture, To};
 use crate::membership::{MemberKey, SignedMembership};
 use crate::seal::{Agreement, Seal};
-use crate::wire::greeting::{Challenge, Greeting, Hello, VERSION};
+use crate::wire::greeting::{Challenge, Greeting, Hello, Refusal, VERSION};
 use crate::wire::keys::PublicValue;
 use crate::wire::message::{Address, Nonce, Term};
 
 const HELLO: &str = "sculptd hello 2";
 const CHALLENGE: &str = "sculptd challenge 2";
+const REFUSAL: &str = "sculptd refusal 1";
 
 /// The own greeting.
 #[derive(Debug)]
@@ -82,6 +83,16 @@ impl OwnHello {
         proved.then_some(HostOffer { from, about, term, members, value })
     }
 
+    /// Returns true if a host that is known by its key, the owner or one of the own list, refuses
+    /// this greeting.
+    pub fn is_refused(&self, core: &Core, from: Address, refusal: &Refusal, now_us: u64) -> bool {
+        let now_s = core.now_s(now_us);
+        let may = |members: &SignedMembership| members.list().may_host(&refusal.host, now_s);
+        self.is_answered_by(&refusal.to)
+            && (refusal.host == core.invitation.owner || core.members.as_ref().is_some_and(may))
+            && refusal.host.has_signed(REFUSAL, &refusal.signed(from), &refusal.signature)
+    }
+
     /// The keys of an answer.
     pub fn accept(self, offer: &HostOffer) -> Option<(Seal, Seal)> {
         let (own, theirs) = (self.hello.value, offer.value);
@@ -92,6 +103,15 @@ impl OwnHello {
 /// Returns true if the holder of the key signed the greeting, from this address.
 pub fn is_genuine(hello: &Hello, from: Address, by: &MemberKey) -> bool {
     by.key.has_signed(HELLO, &hello.signed(from), &hello.signature)
+}
+
+/// A host's refusal of a greeting.
+pub fn refusal(core: &Core, hello: &Hello, reason: &str) -> Refusal {
+    let secret = &core.invitation.secret;
+    let (to, reason, host) = (hello.nonce, reason.into(), secret.public());
+    let mut refusal = Refusal { to, reason, host, signature: [0; 64] };
+    refusal.signature = secret.sign(REFUSAL, &refusal.signed(core.address));
+    refusal
 }
 
 /// The host's answer to a greeting, and the keys. `None`: the greeting's value is none, or the host

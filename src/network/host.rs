@@ -133,8 +133,8 @@ impl Host {
             Greeting::Challenge(challenge) => {
                 self.door.other_host(core, from, challenge, self.term, now_us)
             }
-            Greeting::Refused { to, .. } => {
-                self.door.strangers_host(core, to);
+            Greeting::Refused(refusal) => {
+                self.door.strangers_host(core, &refusal.to);
                 false
             }
         }

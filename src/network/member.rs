@@ -14,7 +14,7 @@ use crate::replica_log::ReplicaLog;
 use crate::seal::{Seal, Secret};
 use crate::wire::frame::{Frame, Role};
 use crate::wire::frame_codec::frames_from_bytes;
-use crate::wire::greeting::Greeting;
+use crate::wire::greeting::{Greeting, Refusal};
 use crate::wire::message::{Address, Entry, FromHost, FromMember, NOT_ENTERED, Term};
 
 /// Between two greetings.
@@ -152,13 +152,11 @@ impl Member {
         self.trip.is_long()
     }
 
-    /// Returns true if a host refuses the present greeting because its key is in no list.
-    pub fn is_in_no_list(&self, greeting: &Greeting) -> bool {
-        matches!(
-            (&self.phase, greeting),
-            (MemberPhase::Greets { hello, .. }, Greeting::Refused { to, reason })
-                if reason == NOT_IN_LIST && hello.is_answered_by(to)
-        )
+    /// Returns true if a host, known by its key, refuses the present greeting because its key is
+    /// in no list.
+    pub fn is_in_no_list(&self, core: &Core, from: Address, said: &Refusal, now_us: u64) -> bool {
+        let MemberPhase::Greets { hello, .. } = &self.phase else { return false };
+        said.reason == NOT_IN_LIST && hello.is_refused(core, from, said, now_us)
     }
 
     /// Returns true if nobody has answered its greetings.
@@ -215,9 +213,9 @@ impl Member {
                 *decide_us = if continues { 0 } else { (*decide_us).min(now_us + COLLECT_US) };
                 self.decide(core, now_us);
             }
-            // Not sealed: anybody may have said it, so the greetings go on.
-            Greeting::Refused { to, reason } if hello.is_answered_by(to) => {
-                self.not_let_in(core, reason);
+            // Anybody may have said it, so the greetings go on.
+            Greeting::Refused(refusal) if hello.is_answered_by(&refusal.to) => {
+                self.not_let_in(core, &refusal.reason);
             }
             _ => {}
         }

@@ -368,10 +368,10 @@ impl Station {
                     look.until_us = now_us + LOOK_US;
                 }
             }
-            refusal if member.is_in_no_list(refusal) => {
+            Greeting::Refused(refusal) if member.is_in_no_list(core, from, refusal, now_us) => {
                 core.end(
-                    "a sculpture of this name is shared on this network already, and the keys in \
-                     the folder are not for it: choose another name, or join it with an invitation",
+                    "this sculpture is shared on this network already, and its host says that the \
+                     key in the folder was withdrawn: ask its owner for an invitation",
                 );
             }
             _ => {}

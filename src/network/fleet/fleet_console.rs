@@ -43,15 +43,17 @@ impl FleetConsole {
         link: StaffLink,
         key: FleetKey,
         known: Vec<InstallationState>,
-        entropy: Entropy,
+        mut entropy: Entropy,
     ) -> FleetConsole {
+        let mut first_probe = [0; 8];
+        entropy(&mut first_probe);
         FleetConsole {
             link,
             key,
             clock: Clock::monotonic(),
             entropy,
             registry: FleetRegistry::remembering(known),
-            requester: Requester::default(),
+            requester: Requester::new(u64::from_le_bytes(first_probe)),
             seals: BTreeMap::new(),
             forged: 0,
         }
@@ -127,7 +129,11 @@ impl FleetConsole {
                 let secret = self.key.secret_of(&name);
                 let plain = secret.and_then(|s| open_sealed(&s, FleetWay::Answer, &sealed));
                 match plain.as_deref().map(from_json) {
-                    Some(Ok(answer)) => self.requester.answer(&name, answer),
+                    Some(Ok(answer)) => {
+                        if let Some(run) = self.requester.answer(&name, answer) {
+                            self.registry.prove(&name, &run, now_us);
+                        }
+                    }
                     _ => self.forged += 1,
                 }
             }

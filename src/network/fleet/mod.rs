@@ -16,7 +16,8 @@
 //! Laws kept here:
 //! * State says nothing of visitors. Anybody on the network can read it; only a holder of the
 //!   installation's key can publish an accepted one.
-//! * Whether an installation is online follows from its signed states alone.
+//! * Whether an installation is online follows from its signed states alone, of a run that has
+//!   answered a question which the list drew: what was recorded shows nobody.
 //! * Only holders of the staff's key can send requests, and no request is carried out twice.
 //! * A lost network stops no installation. The installation itself reverts settings on trial unless
 //!   a request keeps them.

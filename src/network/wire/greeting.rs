@@ -5,7 +5,7 @@ use super::keys::{MAX_MEMBERSHIP, PublicKey, PublicValue, Signature};
 use super::message::{Address, MAX_REASON, Nonce, Term};
 
 /// The version of the messages; a host refuses others by name.
-pub const VERSION: u16 = 5;
+pub const VERSION: u16 = 6;
 
 /// A greeting: somebody wants to join, or to know who hosts.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,12 +55,35 @@ pub enum Greeting {
     /// To who greeted.
     Challenge(Box<Challenge>),
     /// The host refuses the greeting.
-    Refused {
-        /// Of the greeting that is answered.
-        to: Nonce,
-        /// For a person.
-        reason: String,
-    },
+    Refused(Box<Refusal>),
+}
+
+/// A host's refusal. Who knows the host's key can tell it from a stranger's.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// Of the greeting that is answered.
+    pub to: Nonce,
+    /// For a person.
+    pub reason: String,
+    /// The host's key.
+    pub host: PublicKey,
+    /// Of all of this and the host's address, by the host's key.
+    pub signature: Signature,
+}
+
+impl Refusal {
+    /// The bytes that are signed.
+    pub fn signed(&self, from: Address) -> Vec<u8> {
+        let mut out = from.to_le_bytes().to_vec();
+        self.put(&mut out);
+        out
+    }
+
+    fn put(&self, out: &mut Vec<u8>) {
+        out.extend(self.to);
+        put_bytes(out, self.reason.as_bytes());
+        out.extend(self.host.0);
+    }
 }
 
 impl Hello {
@@ -110,7 +133,7 @@ impl Greeting {
         let at = match self {
             Greeting::Hello(_) => 0,
             Greeting::Challenge(_) => 1,
-            Greeting::Refused { .. } => 2,
+            Greeting::Refused(_) => 2,
         };
         Self::KINDS[at]
     }
@@ -129,10 +152,10 @@ impl Greeting {
                 challenge.put(&mut out);
                 out.extend(challenge.signature);
             }
-            Greeting::Refused { to, reason } => {
+            Greeting::Refused(refusal) => {
                 out.push(2);
-                out.extend(to);
-                put_bytes(&mut out, reason.as_bytes());
+                refusal.put(&mut out);
+                out.extend(refusal.signature);
             }
         }
         out
@@ -178,7 +201,12 @@ impl Greeting {
                 host: PublicKey(b.array()?),
                 signature: b.array()?,
             })),
-            2 => Greeting::Refused { to: b.array()?, reason: b.text(MAX_REASON)? },
+            2 => Greeting::Refused(Box::new(Refusal {
+                to: b.array()?,
+                reason: b.text(MAX_REASON)?,
+                host: PublicKey(b.array()?),
+                signature: b.array()?,
+            })),
             _ => return Err(BadBytes),
         };
         b.end()?;
@@ -212,8 +240,13 @@ mod tests {
             host: PublicKey([10; 32]),
             signature: [11; 64],
         };
-        let refused = Greeting::Refused { to: [1; 16], reason: "no".into() };
-        let all = [Greeting::Hello(hello), Greeting::Challenge(Box::new(challenge)), refused];
+        let (to, reason, host) = ([1; 16], "no".to_owned(), PublicKey([10; 32]));
+        let refusal = Refusal { to, reason, host, signature: [11; 64] };
+        let all = [
+            Greeting::Hello(hello),
+            Greeting::Challenge(Box::new(challenge)),
+            Greeting::Refused(Box::new(refusal)),
+        ];
         for greeting in all {
             let bytes = greeting.to_bytes();
             assert_eq!(Greeting::from_bytes(&bytes), Ok(greeting));

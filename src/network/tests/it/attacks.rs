@@ -4,8 +4,9 @@
 use std::collections::BTreeMap;
 
 use sculptd_network::wire::frame::{PersonId, Role};
-use sculptd_network::wire::greeting::Greeting;
-use sculptd_network::wire::message::{FromHost, FromMember, HeirsWord};
+use sculptd_network::wire::greeting::{Greeting, Refusal};
+use sculptd_network::wire::keys::PublicKey;
+use sculptd_network::wire::message::{Address, FromHost, FromMember, HeirsWord, Nonce};
 
 use crate::faults::long;
 use crate::simulated::{EPOCH_S, GOOD, Random, Replica, Simulation, ball};
@@ -25,11 +26,15 @@ enum Attack {
     Replay,
     /// Each is held back at random, so that later ones overtake it.
     Reorder,
-    /// With a bit changed, under another name, cut, or with other content.
+    /// With a bit changed, under another name, cut, or with other content; and each greeting is
+    /// refused at once in the host's name.
     Forge,
     /// All of these, some thousands a second.
     Flood,
 }
+
+/// The kind of a refused greeting: see [`Greeting::KINDS`].
+const REFUSED: &str = Greeting::KINDS[2];
 
 const ATTACKS: [Attack; 4] = [Attack::Replay, Attack::Reorder, Attack::Forge, Attack::Flood];
 
@@ -39,17 +44,26 @@ pub struct Attacker {
     kind: Option<&'static str>,
     attack: Attack,
     heard: Vec<(usize, Vec<u8>)>,
+    /// Greetings that he has not refused yet: from whom, and their nonces.
+    greeted: Vec<(Address, Nonce)>,
+    /// The key of a host, from its answers.
+    host: PublicKey,
     random: Random,
     injected: usize,
 }
 
 impl Attacker {
     fn new(kind: Option<&'static str>, attack: Attack, seed: u64) -> Attacker {
-        Attacker { kind, attack, heard: Vec::new(), random: Random(seed), injected: 0 }
+        let (heard, greeted, host) = (Vec::new(), Vec::new(), PublicKey([0; 32]));
+        Attacker { kind, attack, heard, greeted, host, random: Random(seed), injected: 0 }
     }
 
     /// Hears a datagram that is sent. Returns for how long he holds it back.
     pub fn hears(&mut self, to: usize, kind: &'static str, bytes: &[u8]) -> u64 {
+        let forges = matches!(self.attack, Attack::Forge | Attack::Flood);
+        if forges && self.kind.is_none_or(|own| own == REFUSED) {
+            self.hears_greeting(bytes);
+        }
         if self.kind.is_some_and(|own| own != kind) {
             return 0;
         }
@@ -62,13 +76,42 @@ impl Attacker {
         0
     }
 
+    fn hears_greeting(&mut self, bytes: &[u8]) {
+        let Some((&[0, from @ ..], greeting)) = bytes.split_first_chunk::<9>() else { return };
+        match Greeting::from_bytes(greeting) {
+            Ok(Greeting::Hello(hello)) => {
+                self.greeted.push((Address::from_le_bytes(from), hello.nonce));
+            }
+            Ok(Greeting::Challenge(challenge)) => self.host = challenge.host,
+            _ => {}
+        }
+    }
+
+    /// Refuses all greetings that he has heard, in the host's name.
+    fn refuse(&mut self, replicas: &[Replica]) -> Vec<(usize, Vec<u8>)> {
+        let mut out = Vec::new();
+        for (from, to) in std::mem::take(&mut self.greeted) {
+            let reason = "the key is not one of this sculpture, or was withdrawn".into();
+            let mut signature = [0; 64];
+            signature.iter_mut().for_each(|b| *b = self.random.next() as u8);
+            let refusal = Refusal { to, reason, host: self.host, signature };
+            let forged = Greeting::Refused(Box::new(refusal)).to_bytes();
+            let sender = replicas[self.random.next() as usize % replicas.len()].station.address();
+            let bytes = [&[0][..], &sender.to_le_bytes(), &forged].concat();
+            let receiver = replicas.iter().position(|r| r.alive && r.station.address() == from);
+            out.extend(receiver.map(|receiver| (receiver, bytes)));
+        }
+        out
+    }
+
     /// Returns the receivers and datagrams of a step.
     pub fn step(&mut self, replicas: &[Replica]) -> Vec<(usize, Vec<u8>)> {
+        let mut out = self.refuse(replicas);
+        self.injected += out.len();
         if self.heard.is_empty() {
-            return Vec::new();
+            return out;
         }
-        let count = if self.attack == Attack::Flood { 12 } else { 2 };
-        let mut out = Vec::new();
+        let (count, refused) = (if self.attack == Attack::Flood { 12 } else { 2 }, out.len());
         for k in 0..count {
             let (to, bytes) = &self.heard[self.random.next() as usize % self.heard.len()];
             let forges = match self.attack {
@@ -85,7 +128,7 @@ impl Attacker {
                 out.push((other, bytes.clone()));
             }
         }
-        self.injected += out.len();
+        self.injected += out.len() - refused;
         out
     }
 }

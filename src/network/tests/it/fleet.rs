@@ -4,8 +4,9 @@
 use crate::fleet_simulated::{Fleet, HOUR, InAir, S};
 use crate::simulated::Random;
 use sculptd_network::fleet::access::{FleetKey, FleetSeal, FleetWay};
+use sculptd_network::fleet::registry::FleetRegistry;
 use sculptd_network::fleet::request::{FleetAction, to_json};
-use sculptd_network::fleet::requester::RequestEnd;
+use sculptd_network::fleet::requester::{RequestEnd, Requester};
 use sculptd_network::fleet::rollout::RolloutEnd;
 
 /// Hours that are simulated: a month by `SCULPTD_LONG`, which takes half an hour, or as many as
@@ -119,6 +120,40 @@ fn an_installation_that_is_cut_off_in_its_trial_takes_the_settings_back_by_itsel
     fleet.run(20 * S);
     fleet.check(3);
     assert!(fleet.registry.get("hall-0003").is_some_and(|e| !e.state.settings.trial));
+}
+
+#[test]
+fn recorded_states_show_nobody_to_a_list_that_knows_them_nor_to_one_that_restarts() {
+    let mut fleet = Fleet::new(60, 37);
+    fleet.tape = Some(Vec::new());
+    fleet.run(HOUR / 4);
+    // Each begins a second run, and a third of them end for good.
+    (0..60).for_each(|i| fleet.stop(i, fleet.now_us + S));
+    fleet.run(HOUR / 4);
+    fleet.troubles = false;
+    (0..60).step_by(3).for_each(|i| fleet.stop(i, fleet.now_us + 10 * HOUR));
+    fleet.run(60 * S);
+    let tape = fleet.tape.take().expect("recorded");
+    let mut random = Random(38);
+    for restarts in [false, true] {
+        if restarts {
+            let known: Vec<_> = fleet.registry.all().map(|(_, e)| (*e.state).clone()).collect();
+            fleet.registry = FleetRegistry::remembering(known);
+            fleet.requester = Requester::new(39);
+        }
+        for second in 0..300 {
+            for _ in 0..300 {
+                let state = tape[random.next() as usize % tape.len()].clone();
+                fleet.deliver(InAir::State(state));
+            }
+            fleet.run(S);
+            for i in (0..60).filter(|i| second > 20 || i % 3 == 0) {
+                fleet.check(i);
+            }
+        }
+        let here = fleet.registry.all().filter(|(_, e)| e.is_here()).count();
+        assert_eq!(here, 40);
+    }
 }
 
 #[test]

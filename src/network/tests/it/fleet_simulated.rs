@@ -173,6 +173,8 @@ pub struct Fleet {
     pub cut_us: u64,
     pub heals: BTreeMap<u64, Vec<usize>>,
     pub troubles: bool,
+    /// Every state that was published, while it is `Some`: what anybody can record.
+    pub tape: Option<Vec<Arc<InstallationState>>>,
     /// Counts: changes of the truth, received publications, cuts, crashes.
     pub counts: [u64; 4],
 }
@@ -189,11 +191,12 @@ impl Fleet {
             air: BTreeMap::new(),
             count: 0,
             registry: FleetRegistry::default(),
-            requester: Requester::default(),
+            requester: Requester::new(seed),
             seals: BTreeMap::new(),
             cut_us: u64::MAX,
             heals: BTreeMap::new(),
             troubles: true,
+            tape: None,
             counts: [0; 4],
         };
         fleet.cut_us = fleet.now_us + fleet.after(CUT_EVERY_US);
@@ -289,8 +292,9 @@ impl Fleet {
         unit.publish_us = next_us;
         let cut = unit.cut;
         self.at(next_us, i, Befalls::Publish);
-        if let Some(state) = state.filter(|_| !cut) {
-            self.send(InAir::State(Arc::new(state)));
+        if let Some(state) = state.filter(|_| !cut).map(Arc::new) {
+            self.tape.iter_mut().for_each(|tape| tape.push(state.clone()));
+            self.send(InAir::State(state));
         }
         if restarts {
             self.stop(i, now_us + 3 * S);
@@ -458,7 +462,10 @@ impl Fleet {
                 let name = self.units[i].name.clone();
                 let secret = self.staff.secret_of(&name).expect("staff make all keys");
                 let plain = open_sealed(&secret, FleetWay::Answer, &bytes).expect("sealed");
-                self.requester.answer(&name, from_json(&plain).expect("an answer"));
+                let answer = from_json(&plain).expect("an answer");
+                if let Some(run) = self.requester.answer(&name, answer) {
+                    self.registry.prove(&name, &run, self.now_us);
+                }
             }
         }
     }
