@@ -4,18 +4,24 @@ use glam::{DQuat, DVec3};
 
 use super::known_walls::drawn_out;
 use super::probe::WallProber;
+use super::ready::ReadyPart;
 use super::{ThicknessMethod, ThicknessSettings};
 use crate::job::Job;
 use crate::{PolyMesh, TriMesh, shapes};
 
-/// Random places of the triangles.
-fn places(mesh: &TriMesh, count: usize, seed: u64) -> Vec<DVec3> {
+/// Numbers from 0 to 1.
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
-    let mut random = || {
+    move || {
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1u64 << 53) as f64
-    };
+    }
+}
+
+/// Random places of the triangles.
+fn places(mesh: &TriMesh, count: usize, seed: u64) -> Vec<DVec3> {
+    let mut random = numbers(seed);
     let corner = |v: u32| mesh.positions[v as usize].as_dvec3();
     (0..count)
         .map(|_| {
@@ -137,4 +143,51 @@ fn a_rib_is_as_thick_as_it_is_wide_also_on_its_top() {
     // Under the rib the ball is larger than the plate: it reaches into the root.
     let root = at(20.0, 0.0, 25.0);
     assert!(root > 6.2 && root < 7.5, "{root}");
+}
+
+/// The ball begins as large as the distance from the edge, down to what single precision tells.
+#[test]
+fn a_place_very_near_an_edge_says_what_the_plate_says() {
+    let size = DVec3::new(40.0, 20.0, 5.0);
+    let settings =
+        ThicknessSettings { method: ThicknessMethod::Sphere, ..ThicknessSettings::default() };
+    for shift in [DVec3::ZERO, size * -0.5] {
+        let mesh = shapes::cuboid(shift, shift + size).triangulate().0;
+        let prober = WallProber::new(&mesh, &settings, &Job::default()).expect("measurable");
+        let mut random = numbers(17);
+        for _ in 0..2000 {
+            let from_edge = 1e-4 * 200f64.powf(random());
+            let at = DVec3::new(size.x - from_edge, 0.0, size.z * random());
+            let found = prober.at(shift + at).and_then(|p| p.thickness).expect("a ball");
+            assert!((found - 5.0).abs() < 1e-3, "{found} at {at}");
+        }
+    }
+}
+
+/// Tens of thousands of places on each plate.
+#[test]
+fn no_place_of_a_plate_is_thinner_or_thicker_than_the_plate() {
+    let mut random = numbers(17);
+    let rounds = if std::env::var_os("SCULPTD_LONG").is_some() { 400 } else { 20 };
+    let settings =
+        ThicknessSettings { method: ThicknessMethod::Sphere, ..ThicknessSettings::default() };
+    let mut bad = Vec::new();
+    for round in 0..rounds {
+        let wall = 1.0 + 9.0 * random();
+        let size = DVec3::new(wall * (2.0 + 8.0 * random()), wall * (1.5 + 3.0 * random()), wall);
+        let mut part = shapes::cuboid(size * -0.5, size * 0.5);
+        let way = DVec3::new(random(), random(), random()).normalize();
+        let turned = DQuat::from_axis_angle(way, if round % 2 == 0 { 0.0 } else { 3.0 * random() });
+        part.positions.iter_mut().for_each(|p| *p = turned * *p);
+        let ready = ReadyPart::new(&part, 1.0, None, settings.crease, &Job::default());
+        let found = ready.expect("a part").measure(&settings, None, &Job::default());
+        let found = found.expect("measured");
+        let least = found.least.expect("a wall");
+        let most = found.samples.iter().map(|s| s.value).fold(0.0, f32::max);
+        if [least.value, f64::from(most)].iter().any(|found| (found / wall - 1.0).abs() > 1e-3) {
+            let at = turned.inverse() * DVec3::from(least.position);
+            bad.push(format!("{round}: {size} has {} to {most}, at {at}", least.value));
+        }
+    }
+    assert!(bad.is_empty(), "{} of {rounds}: {bad:#?}", bad.len());
 }

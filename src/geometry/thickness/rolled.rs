@@ -36,6 +36,8 @@ const STEP: f32 = 0.5;
 const LEAST_STEP: f32 = 0.01;
 /// Above 1 by more than single precision loses.
 const ABOVE: f64 = 1.001;
+/// The rounding of a place, as a share of the largest coordinate: that of three coordinates.
+const ROUNDING: f32 = 2.0 * f32::EPSILON;
 /// Below this share of the mesh's size nothing is known of a ball: single precision.
 const LEAST: f32 = 1e-5;
 /// The move of a settled ball, in radii: out of the reach of other sides.
@@ -67,6 +69,7 @@ impl Caster<'_> {
         let mut r = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.distance() as f32;
         let (lo, hi) = self.tree.bounds();
         let largest = (hi - lo).length();
+        let rounding = lo.abs().max(hi.abs()).max_element() * ROUNDING;
         if r < largest * LEAST {
             // On the surface, as far as single precision goes: a little into the solid.
             let facet = self.tree.nearest(centre.as_dvec3(), f64::INFINITY)?.triangle;
@@ -79,7 +82,8 @@ impl Caster<'_> {
             }
             let touches = self.touches(centre, r);
             let way = steepest(&touches);
-            let next = if way.length() <= HELD { None } else { self.step(centre, r, way) };
+            let next =
+                if way.length() <= HELD { None } else { self.step(centre, r, way, rounding) };
             let Some(next) = next else {
                 return Some(self.settled(centre, r));
             };
@@ -88,15 +92,16 @@ impl Caster<'_> {
         None
     }
 
-    /// Returns a larger ball on the way, and its radius; `None` where there is none.
-    fn step(&self, centre: Vec3, r: f32, way: Vec3) -> Option<(Vec3, f32)> {
+    /// Returns a larger ball on the way, and its radius; `None` where there is none. `rounding`: so
+    /// far is a place from where it was meant to be.
+    fn step(&self, centre: Vec3, r: f32, way: Vec3, rounding: f32) -> Option<(Vec3, f32)> {
         let growth = way.length();
         let way = way / growth;
         let mut step = STEP * r;
         while step > LEAST_STEP * r {
             let next = centre + way * step;
             // No distance changes faster than its place.
-            let within = f64::from(r + step) * ABOVE;
+            let within = f64::from(r + step) * ABOVE + f64::from(rounding);
             let found = self.tree.nearest(next.as_dvec3(), within)?.distance() as f32;
             if found >= r + 0.4 * growth * step {
                 return Some((next, found));
