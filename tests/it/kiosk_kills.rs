@@ -1,5 +1,8 @@
 //! Visits that a kill interrupts, in real processes.
 
+#[cfg(target_os = "linux")]
+pub mod service;
+
 use std::path::Path;
 
 use serde_json::json;
