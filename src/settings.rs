@@ -5,6 +5,8 @@
 pub const DAEMON: &str = include_str!("../config/sculptd.toml");
 /// Every setting of an installation (`config/kiosk.toml`).
 pub const KIOSK: &str = include_str!("../config/kiosk.toml");
+/// Rules by which the person at the machine may read pen tablets.
+pub const TABLET_RULES: &str = include_str!("../config/70-sculptd.rules");
 /// Texts of an installation's screen, by language code.
 pub const LANGUAGES: &[(&str, &str)] = &[
     ("en", include_str!("../config/languages/en.toml")),

@@ -1,9 +1,13 @@
-//! `sculptd kiosk`: exhibits of an installation: make one, look at it, try it, score a work.
+//! `sculptd kiosk`: set an installation up; make, try and pack its exhibits, and score a work.
 
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+#[cfg(unix)]
+use super::kiosk_setup;
+#[cfg(target_os = "linux")]
+use super::kiosk_trial;
 use super::run::{self as run_command, RunArgs};
 use super::{Fail, Outcome, answer};
 use sculptd_daemon::kiosk::exhibit::create::{NewExhibit, create, goal_of};
@@ -14,6 +18,16 @@ use sculptd_geometry::job::Job;
 
 #[derive(Debug, clap::Subcommand)]
 pub enum KioskCommand {
+    /// Set this computer up as an installation: user, service, screen, devices, log, settings.
+    #[cfg(unix)]
+    Install(kiosk_setup::InstallArgs),
+    /// Remove what `install` wrote. Works, gallery, audit and changed files stay.
+    #[cfg(unix)]
+    Uninstall(kiosk_setup::UninstallArgs),
+    /// Cause faults on the running installation (kill, lost screen, full disk, clock) and print
+    /// what happened.
+    #[cfg(target_os = "linux")]
+    Try(kiosk_trial::TryArgs),
     /// Make an exhibit from a mesh: visitors carve it out of a block, and see how near they are.
     NewExhibit(NewExhibitArgs),
     /// Check an exhibit and print its facts.
@@ -98,6 +112,12 @@ struct StepFacts {
 pub fn run(command: &KioskCommand, json: bool) -> Outcome {
     let job = Job::default();
     match command {
+        #[cfg(unix)]
+        KioskCommand::Install(args) => return kiosk_setup::install(args, json),
+        #[cfg(unix)]
+        KioskCommand::Uninstall(args) => return kiosk_setup::uninstall(args, json),
+        #[cfg(target_os = "linux")]
+        KioskCommand::Try(args) => return kiosk_trial::run(args, json),
         KioskCommand::NewExhibit(args) => {
             let settings = settings(args)?;
             let loaded = read_in_millimetres(&args.goal, MAX_FILE, &job)?;

@@ -34,6 +34,10 @@ pub mod fleet_part;
 pub mod invite;
 mod kiosk;
 mod kiosk_settings;
+#[cfg(unix)]
+mod kiosk_setup;
+#[cfg(target_os = "linux")]
+mod kiosk_trial;
 pub mod library;
 mod live;
 #[cfg(feature = "network")]
@@ -106,7 +110,7 @@ pub enum Command {
         #[command(subcommand)]
         command: camera::CameraCommand,
     },
-    /// Exhibits of an installation: make one, try it, score a work.
+    /// An installation: set it up, try its faults, make exhibits.
     Kiosk {
         #[command(subcommand)]
         command: kiosk::KioskCommand,

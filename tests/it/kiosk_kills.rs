@@ -1,5 +1,10 @@
 //! Visits that a kill interrupts, in real processes.
 
+#[cfg(target_os = "linux")]
+mod random_kills;
+#[cfg(target_os = "linux")]
+pub mod service;
+
 use std::path::Path;
 
 use serde_json::json;
@@ -140,6 +145,23 @@ fn each_visit_has_a_file_of_its_own_and_the_one_that_was_interrupted_goes_on() {
     assert_eq!((works(home.path()), audit(home.path()).len()), (4, 4));
     let left = std::fs::read_dir(home.path().join("sculptd/kiosk")).expect("a folder").count();
     assert_eq!(left, 0, "files of visits");
+}
+
+#[test]
+fn every_visitor_begins_with_the_brush_of_the_settings() {
+    let settings = "idle_s = 2\ncountdown_s = 1\nbrush = \"inflate\"\nradius = 0.3";
+    let daemon = installation(tempfile::tempdir().expect("a folder"), settings);
+    let brush = || daemon.ctl("status", None).expect("an answer")["brush"].clone();
+    for n in 1..=2 {
+        visit(&daemon);
+        let begun = brush();
+        assert_eq!(begun["kind"], "inflate", "visit {n}: {begun}");
+        let radius = begun["radius"].as_f64().expect("a number");
+        assert!((radius - 0.3).abs() < 1e-6, "visit {n}: {begun}");
+        daemon.ctl("brush", Some(r#"{"kind": "grab"}"#)).expect("another brush");
+        until("it is in the hand", || brush()["kind"] == "grab");
+        until("the visit is over", || audit(daemon.home.path()).len() == n);
+    }
 }
 
 /// Exhibits take turns in the attract loop, so each visit begins with another clay than the one

@@ -38,6 +38,10 @@ mod io_files;
 mod kiosk;
 #[cfg(unix)]
 mod kiosk_kills;
+#[cfg(unix)]
+mod kiosk_setup;
+#[cfg(target_os = "linux")]
+mod kiosk_trial;
 mod meanwhile;
 mod mesh_craft;
 #[cfg(unix)]

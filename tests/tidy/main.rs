@@ -1,6 +1,7 @@
 //! What the compiler does not guard: circles inside a crate, the words, the style, the map.
 
 mod claims;
+mod guide_promises;
 mod languages;
 mod map;
 mod picture;

@@ -1,5 +1,5 @@
-//! An installation as the guide sets it up, whose X server is killed again and again: `xinit` and
-//! the guide's own start file bring it back, and the visit goes on.
+//! An installation as `sculptd kiosk install` sets it up, whose X server is killed repeatedly:
+//! loops as those of systemd start server and program again, and the visit goes on.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -9,41 +9,49 @@ use serde_json::{Value, json};
 
 use super::stage::{Ended, alone, long, pause, wait};
 
-/// The text of a file that the guide's chapter writes with `cat >NAME <<'EOF'`.
-fn of_the_guide(name: &str) -> String {
-    let chapter = include_str!("../../config/guide/src/kiosk.md");
-    let begin = format!("cat >{name} <<'EOF'\n");
-    let text = chapter.split_once(&begin).expect("the guide writes it").1;
-    text.split_once("EOF\n").expect("its end").0.to_owned()
-}
+/// Visits that nobody sends away while a test runs.
+const SETTINGS: &str =
+    "idle_s = 3600\nstaff_pin = \"4711\"\ngallery = \"gallery\"\naudit = \"visits.log\"\n";
 
 struct Installation {
     home: PathBuf,
     display: u32,
-    _login: Ended,
+    _services: [Ended; 2],
 }
 
 impl Installation {
-    /// A login that starts X and the installation, and again when they have ended.
+    /// The two services, each as a loop in place of systemd: the screen starts again whenever it
+    /// has ended, the program whenever it has failed.
     #[allow(clippy::disallowed_methods)] // Settings of a test.
     fn begin(home: &Path) -> Installation {
-        let closed = home.join("closed").display().to_string();
-        let start = of_the_guide("~/sculptd.xinit").replace("/tmp/sculptd-closed", &closed);
-        std::fs::write(home.join("sculptd.xinit"), start).expect("written");
-        std::fs::write(home.join("kiosk.toml"), of_the_guide("~/kiosk.toml")).expect("written");
-        let executable = Command::new("chmod").arg("+x").arg(home.join("sculptd.xinit")).status();
-        assert!(executable.is_ok_and(|s| s.success()));
+        std::fs::write(home.join("kiosk.toml"), SETTINGS).expect("written");
         let taken = |n: &u32| Path::new(&format!("/tmp/.X{n}-lock")).exists();
         let display = (90..200).find(|n| !taken(n)).expect("a free display");
-        let server = format!("Xvfb :{display} -screen 0 1280x720x24 -nolisten tcp");
-        let login = format!(
-            "while [ ! -e '{closed}' ]; do xinit ./sculptd.xinit -- $(command -v Xvfb) {}; done",
-            server.trim_start_matches("Xvfb ")
+        let screen = format!(
+            "while [ ! -e closed ]; do \
+             Xvfb :{display} -screen 0 1280x720x24 -nolisten tcp -noreset; sleep 1; done"
         );
+        let screen = Command::new("sh")
+            .args(["-c", &screen])
+            .current_dir(home)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("a shell");
+        let socket = format!("/tmp/.X11-unix/X{display}");
+        wait("the X server listens", || Path::new(&socket).exists().then_some(()));
+        let service = include_str!("../../src/daemon/kiosk/setup/files/sculptd-kiosk.service");
+        let command = service.lines().find_map(|line| line.strip_prefix("ExecStart="));
+        let command = command.expect("a command").split(" --metrics").next().unwrap_or_default();
+        let command = command.replace("/etc/sculptd/kiosk.toml", "kiosk.toml");
+        let service =
+            format!("while [ ! -e closed ]; do {command} && touch closed || sleep 0.5; done");
         let program = Path::new(env!("CARGO_BIN_EXE_sculptd")).parent().expect("a folder");
         let path = std::env::var("PATH").unwrap_or_default();
-        let login = Command::new("sh")
-            .args(["-c", &login])
+        let service = Command::new("sh")
+            .args(["-c", &service])
+            .env("DISPLAY", format!(":{display}"))
             .current_dir(home)
             .env("PATH", format!("{}:{path}", program.display()))
             .env("XDG_RUNTIME_DIR", home)
@@ -58,7 +66,7 @@ impl Installation {
             .stderr(std::fs::File::create(home.join("log")).expect("a file"))
             .spawn()
             .expect("a shell");
-        Installation { home: home.into(), display, _login: Ended(login) }
+        Installation { home: home.into(), display, _services: [Ended(service), Ended(screen)] }
     }
 
     fn ask(&self, method: &str, params: &Value) -> Option<Value> {
@@ -113,12 +121,10 @@ impl Drop for Installation {
 
 #[test]
 fn an_installation_comes_back_each_time_its_screen_is_lost() {
-    for tool in ["Xvfb", "xinit"] {
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        if !std::env::split_paths(&path).any(|folder| folder.join(tool).exists()) {
-            println!("skipped: {tool} is not installed");
-            return;
-        }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    if !std::env::split_paths(&path).any(|folder| folder.join("Xvfb").exists()) {
+        println!("skipped: Xvfb is not installed");
+        return;
     }
     let _alone = alone();
     let dir = tempfile::tempdir().expect("a folder");
@@ -145,6 +151,17 @@ fn an_installation_comes_back_each_time_its_screen_is_lost() {
         }
         assert_eq!(installation.hash(), hash, "after loss {loss}: {}", installation.log());
     }
+    // The same by the command that staff run before opening day.
+    let out = Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .args(["kiosk", "try", "--only", "kill", "--only", "screen", "--runtime"])
+        .arg(dir.path())
+        .output()
+        .expect("runs");
+    let said = String::from_utf8_lossy(&out.stdout).into_owned();
+    println!("{said}");
+    let promised = |line: &str| line.starts_with("as promised") && line.contains("window: open");
+    assert!(out.status.success() && said.lines().all(promised), "{said}");
+    assert_eq!(said.lines().count(), 2, "{said}");
     installation.ask("shutdown", &Value::Null).expect("an answer");
     wait("it stays closed", || dir.path().join("closed").exists().then_some(()));
     let visits = std::fs::read_to_string(dir.path().join("visits.log")).unwrap_or_default();

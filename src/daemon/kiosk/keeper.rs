@@ -29,6 +29,7 @@ use crate::adaptors::ATTRACT_IDS;
 use crate::command_queue::CommandSender;
 use crate::disk_space::free_bytes;
 use crate::local_time::{LocalClock, LocalTime};
+use crate::session::Health;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_devices::queue::{Sender, SenderFactory};
 use sculptd_devices::{Clock, DeviceId};
@@ -65,6 +66,8 @@ struct KioskThread {
     cleaning: bool,
     looked_us: u64,
     figures: VisitFigures,
+    /// It is known that the visit is not stored.
+    unstored: bool,
     /// Takes the goal that the newest clay is scored against; `None`: no exhibit has a goal.
     goals: Option<cc::Sender<Option<WantedScore>>>,
     /// Results of exports.
@@ -153,6 +156,7 @@ pub fn start(
         cleaning: false,
         looked_us: 0,
         figures: VisitFigures::default(),
+        unstored: false,
         goals,
         exported: cc::unbounded(),
         published,
@@ -294,6 +298,11 @@ impl KioskThread {
         self.wall = self.calendar.as_ref().and_then(LocalClock::now);
         let open = self.wall.is_none_or(|wall| self.hours.is_open(wall));
         cycle.set_closed(self.cleaning || !open);
+        let fault = self.start.health.as_ref().and_then(Health::trouble);
+        if let (false, Some(why)) = (self.unstored, &fault) {
+            self.figures.error(format!("the visit is not stored: {why}"));
+        }
+        self.unstored = fault.is_some();
         if !cycle.view().staff {
             return;
         }

@@ -22,11 +22,15 @@ pub mod names;
 pub mod recovery;
 pub mod settings;
 #[cfg(unix)]
+pub mod setup;
+#[cfg(unix)]
 pub mod share;
 mod speech;
 pub mod spool;
 pub mod staff;
 pub mod start;
+#[cfg(target_os = "linux")]
+pub mod trial;
 pub mod unrecorded;
 pub mod visit_journal;
 

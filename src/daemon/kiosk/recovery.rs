@@ -47,6 +47,7 @@ pub fn begin(
     match start(folder, VisitStart { plain, settings, film }, begun.journal.take()) {
         Ok(recording) => {
             first.news = Some(recording.news.clone());
+            first.health = Some(recording.health.clone());
             (begun, Some(recording))
         }
         Err(e) => {

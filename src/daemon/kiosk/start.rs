@@ -9,6 +9,7 @@ use super::KioskConfig;
 use super::exhibit::{self, Exhibit};
 use super::visit_journal::VisitNews;
 use crate::command_queue::QueuedCommand;
+use crate::session::Health;
 use sculptd_clay::brush::{BrushSettings, Presets};
 use sculptd_clay::{BuildError, Clay};
 use sculptd_engine::camera::Camera;
@@ -40,6 +41,8 @@ pub struct Start {
     ///
     /// [`VisitRecording::news`]: super::visit_journal::VisitRecording::news
     pub news: Option<cc::Sender<VisitNews>>,
+    /// State of the visits' files.
+    pub health: Option<Health>,
 }
 
 /// A visit that the last run did not end.
@@ -86,7 +89,8 @@ impl Start {
     /// Returns a start with one form, for free sculpting.
     pub fn free(plain: Arc<TriMesh>, camera: Camera, brush: BrushSettings) -> Start {
         let forms = vec![StartForm { plain, brush, exhibit: None }];
-        Start { forms, camera, film: Arc::default(), interrupted: None, news: None }
+        let film = Arc::default();
+        Start { forms, camera, film, interrupted: None, news: None, health: None }
     }
 }
 

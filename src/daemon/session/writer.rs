@@ -249,6 +249,7 @@ fn start_thread(
         health: health.clone(),
         groups: Vec::new(),
         closed: false,
+        unsynced: false,
         clock: Clock::monotonic(),
     };
     let thread = std::thread::Builder::new()
@@ -384,6 +385,8 @@ struct JournalThread {
     groups: Vec<InputGroup>,
     /// Input was given up: what comes after it would make a log with a hole.
     closed: bool,
+    /// The reported fault is that of the syncer.
+    unsynced: bool,
     clock: Clock,
 }
 
@@ -418,8 +421,10 @@ impl JournalThread {
                 }
                 let _ = self.recycle.try_send(bytes);
             }
-            if ended || self.clock.now_us() >= due_us || (open.is_none() && !self.groups.is_empty())
-            {
+            // A sync that failed, or works again, is reported without further input too.
+            let synced = self.syncer.as_ref().is_none_or(|s| s.trouble().is_none());
+            let waits = !self.groups.is_empty() || synced == self.unsynced;
+            if ended || self.clock.now_us() >= due_us || (open.is_none() && waits) {
                 self.groups.extend(open.take());
                 due_us = u64::MAX;
                 self.flush();
@@ -543,6 +548,7 @@ impl JournalThread {
                     }
                 }
                 let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
+                self.unsynced = unsynced.is_some();
                 unsynced.map(|e| format!("the session file cannot be synced: {e}"))
             }
             Err(e) if kept > KEPT_BYTES => {
