@@ -8,6 +8,10 @@
 //! can differ: the map equals a full recomputation bit for bit once nothing is stale. A ray that
 //! hits nothing has no end: its vertex is measured again where the ray itself meets such a box, as
 //! a triangle that is newly in its way does. Most rays through air are of this kind.
+//!
+//! On a sharp edge the ray of a vertex points askew between the sides. If it meets no opposite side,
+//! the vertex has the least wall under the faces around it, each measured along the face's normal
+//! from a place a little way into the face.
 
 use std::sync::Arc;
 
@@ -29,6 +33,26 @@ const MARGIN: f32 = 1e-5;
 /// The box of a ray that hits nothing: of everything.
 const OPEN: (Vec3, Vec3) = (Vec3::NEG_INFINITY, Vec3::INFINITY);
 
+/// The box of several rays of which one hits nothing: measured again after each change.
+const ANYWHERE: (Vec3, Vec3) = (Vec3::MIN, Vec3::MAX);
+
+/// The cosine of 40 degrees: faces turned by more from each other meet in a sharp edge, and a side
+/// turned by more from parallel is not the opposite side of a wall.
+const COS_40: f32 = 0.766_044_44;
+
+/// The share of the way from a vertex to the middle of a face, where the wall under it is measured.
+const INTO_FACE: f32 = 0.01;
+
+/// A value, and where it was measured.
+#[derive(Debug, Clone, Copy)]
+struct MeasuredVertex {
+    value: f32,
+    reach: (Vec3, Vec3),
+    place: Vec3,
+    /// Out of the clay, of unit length.
+    out: Vec3,
+}
+
 /// The map and all that keeps it up to date.
 #[derive(Debug)]
 pub struct LiveMap {
@@ -43,6 +67,10 @@ pub struct LiveMap {
     around: Vec<u32>,
     face_normals: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// True where faces meet in a sharp edge.
+    sharp: Vec<bool>,
+    /// A third of the faces around each vertex.
+    areas: Vec<f32>,
     axis: Cone,
     values: Vec<f32>,
     /// Around each vertex and its hit; [`OPEN`] where its ray hits nothing.
@@ -87,6 +115,8 @@ impl LiveMap {
             around,
             face_normals: (0..triangles).into_par_iter().map(|t| face_normal(&mesh, t)).collect(),
             normals: Vec::new(),
+            sharp: Vec::new(),
+            areas: Vec::new(),
             axis: Cone::new(1, 0.0, Weights::Plain),
             values: vec![f32::NAN; n],
             reach: vec![(Vec3::INFINITY, Vec3::NEG_INFINITY); n],
@@ -96,6 +126,8 @@ impl LiveMap {
         };
         job.check()?;
         map.normals = (0..n).into_par_iter().map(|v| map.normal(v)).collect();
+        map.sharp = (0..n).into_par_iter().map(|v| map.is_sharp(v)).collect();
+        map.areas = (0..n).into_par_iter().map(|v| map.area(v)).collect();
         Ok(map)
     }
 
@@ -160,6 +192,8 @@ impl LiveMap {
         touched.dedup();
         for &v in &touched {
             self.normals[v as usize] = self.normal(v as usize);
+            self.sharp[v as usize] = self.is_sharp(v as usize);
+            self.areas[v as usize] = self.area(v as usize);
         }
         self.tree.refit(&self.mesh, &triangles, &mut self.parents);
         coarsen(&mut boxes);
@@ -202,7 +236,7 @@ impl LiveMap {
         // In the order of the loaded mesh: neighbours in memory, as a rule in space.
         now.sort_unstable();
         let caster = self.caster();
-        let found: Vec<(f32, (Vec3, Vec3))> = now
+        let found: Vec<MeasuredVertex> = now
             .par_chunks(256)
             .map(|chunk| {
                 job.check()?;
@@ -210,9 +244,9 @@ impl LiveMap {
             })
             .collect::<Result<Vec<_>, Cancelled>>()?
             .concat();
-        for (&v, (value, reach)) in now.iter().zip(found) {
-            self.values[v as usize] = value;
-            self.reach[v as usize] = reach;
+        for (&v, found) in now.iter().zip(found) {
+            self.values[v as usize] = found.value;
+            self.reach[v as usize] = found.reach;
             self.is_stale[v as usize] = false;
         }
         let is_stale = &self.is_stale;
@@ -228,6 +262,11 @@ impl LiveMap {
     /// Returns the outward normal of each vertex, along which it is measured; zero without one.
     pub fn normals(&self) -> &[Vec3] {
         &self.normals
+    }
+
+    /// Returns the area for which each vertex stands, in the clay's unit squared.
+    pub fn areas(&self) -> &[f32] {
+        &self.areas
     }
 
     /// Returns a flag for each value, true if it was measured on an older state of the clay.
@@ -262,8 +301,13 @@ impl LiveMap {
     /// # Errors
     /// Returns an error if the job was cancelled.
     pub fn changes(&self, earlier: &EarlierVersion, job: &Job) -> Result<Vec<f32>, Cancelled> {
+        let caster = self.caster();
         let change = |v: usize| {
-            let (place, out) = (self.mesh.positions[v], self.normals[v]);
+            let (mut place, mut out) = (self.mesh.positions[v], self.normals[v]);
+            if self.sharp[v] {
+                let measured = self.measure(&caster, v);
+                (place, out) = (measured.place, measured.out);
+            }
             let clear = |dir, [t_min, t_max]: [f32; 2]| {
                 !self.tree.any_hit(Ray { origin: place, dir, t_min, t_max }, |_| true)
             };
@@ -307,26 +351,95 @@ impl LiveMap {
         }
     }
 
-    fn measure(&self, caster: &Caster<'_>, v: usize) -> (f32, (Vec3, Vec3)) {
-        let point = self.mesh.positions[v];
+    fn measure(&self, caster: &Caster<'_>, v: usize) -> MeasuredVertex {
+        let (point, out) = (self.mesh.positions[v], self.normals[v]);
         let away = -self.ray_direction(v);
+        let mut straight =
+            MeasuredVertex { value: f32::NAN, reach: (point, point), place: point, out };
         if away == Vec3::ZERO {
-            return (f32::NAN, (point, point));
+            return straight;
         }
-        let own = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
+        let own = self.around(v);
         let site = Site { point, away, along: Vec3::ZERO, own, clear: f32::INFINITY };
-        match caster.hit(&site, -away) {
+        let hit = caster.hit(&site, -away);
+        match hit {
             Some(hit) => {
                 let end = point - away * hit.t;
-                (hit.t, (point.min(end), point.max(end)))
+                (straight.value, straight.reach) = (hit.t, (point.min(end), point.max(end)));
             }
-            None => (f32::NAN, OPEN),
+            None => straight.reach = OPEN,
         }
+        if !self.sharp[v] || hit.is_some_and(|hit| self.is_opposed(hit.triangle, away)) {
+            return straight;
+        }
+        self.under_faces(caster, v, straight)
+    }
+
+    /// Returns the least wall under the faces around a sharp vertex; `straight`, with a larger box,
+    /// where there is none.
+    fn under_faces(
+        &self,
+        caster: &Caster<'_>,
+        v: usize,
+        straight: MeasuredVertex,
+    ) -> MeasuredVertex {
+        let (point, own) = (self.mesh.positions[v], self.around(v));
+        let mut least: Option<MeasuredVertex> = None;
+        let mut reach = if straight.reach == OPEN { ANYWHERE } else { straight.reach };
+        for &t in own {
+            let out = self.face_normals[t as usize];
+            if out == Vec3::ZERO {
+                continue;
+            }
+            let [a, b, c] = self.mesh.corners(t as usize);
+            let (place, away) = (point.lerp((a + b + c) / 3.0, INTO_FACE), out * self.sign());
+            let site = Site { point: place, away, along: Vec3::ZERO, own, clear: f32::INFINITY };
+            let Some(hit) = caster.hit(&site, -away) else {
+                reach = ANYWHERE;
+                continue;
+            };
+            let end = place - away * hit.t;
+            reach = (reach.0.min(place).min(end), reach.1.max(place).max(end));
+            let thinner = least.is_none_or(|least| hit.t < least.value);
+            if thinner && self.is_opposed(hit.triangle, away) {
+                least = Some(MeasuredVertex { value: hit.t, reach, place, out });
+            }
+        }
+        MeasuredVertex { reach, ..least.unwrap_or(straight) }
+    }
+
+    /// Returns true if a facet is within 40 degrees of parallel to the place that faces `away`.
+    fn is_opposed(&self, triangle: u32, away: Vec3) -> bool {
+        -self.face_normals[triangle as usize].dot(away) * self.sign() >= COS_40
+    }
+
+    fn around(&self, v: usize) -> &[u32] {
+        &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+
+    fn is_sharp(&self, v: usize) -> bool {
+        let around = self.around(v);
+        let meet = |t: u32, u: u32| {
+            let other = self.mesh.triangles[u as usize];
+            self.mesh.triangles[t as usize].iter().filter(|c| other.contains(c)).count() == 2
+        };
+        let folded = |t: u32, u: u32| {
+            self.face_normals[t as usize].dot(self.face_normals[u as usize]) < COS_40 && meet(t, u)
+        };
+        around.iter().enumerate().any(|(i, &t)| around[..i].iter().any(|&u| folded(t, u)))
+    }
+
+    fn area(&self, v: usize) -> f32 {
+        let area = |&t: &u32| {
+            let [a, b, c] = self.mesh.corners(t as usize);
+            (b - a).cross(c - a).length() / 6.0
+        };
+        self.around(v).iter().map(area).sum()
     }
 
     fn normal(&self, v: usize) -> Vec3 {
         let mut sum = Vec3::ZERO;
-        for &t in &self.around[self.starts[v] as usize..self.starts[v + 1] as usize] {
+        for &t in self.around(v) {
             let c = self.mesh.triangles[t as usize];
             let k = c.iter().position(|&x| x as usize == v).unwrap_or(0);
             let p = self.mesh.corners(t as usize);

@@ -83,8 +83,8 @@ impl OwnHello {
         proved.then_some(HostOffer { from, about, term, members, value })
     }
 
-    /// Returns true if a host that is known by its key, the owner or one of the own list, refuses
-    /// this greeting.
+    /// Returns true if a host with a known key (the owner's, or one in the list) refuses this
+    /// greeting.
     pub fn is_refused(&self, core: &Core, from: Address, refusal: &Refusal, now_us: u64) -> bool {
         let now_s = core.now_s(now_us);
         let may = |members: &SignedMembership| members.list().may_host(&refusal.host, now_s);

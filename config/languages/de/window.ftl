@@ -853,7 +853,10 @@ shadow-along = Schatten entlang { $axis }
     .tip = Entlang { $axis } gesehen
 shadow-here = Von hier
     .tip = So gesehen wie die Kamera
-shadow-size = { $x } x { $y } mm, { $holes } Löcher
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } Loch
+   *[other] { $holes } Löcher
+}
 shadow-file = Zeichnung, die geschrieben wird
     .tip = Die Datei der Zeichnung
 shadow-write = SVG

@@ -853,7 +853,10 @@ shadow-along = σκιά κατά { $axis }
     .tip = Θέαση κατά { $axis }
 shadow-here = Από εδώ
     .tip = Θέαση όπως η κάμερα
-shadow-size = { $x } x { $y } mm, { $holes } τρύπες
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } τρύπα
+   *[other] { $holes } τρύπες
+}
 shadow-file = Σχέδιο προς εγγραφή
     .tip = Το αρχείο του σχεδίου
 shadow-write = SVG

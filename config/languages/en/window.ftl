@@ -855,7 +855,10 @@ shadow-along = shadow along { $axis }
     .tip = Looked along { $axis }
 shadow-here = From here
     .tip = Looked along as the camera does
-shadow-size = { $x } x { $y } mm, { $holes } holes
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } hole
+   *[other] { $holes } holes
+}
 shadow-file = Drawing to write
     .tip = The drawing's file
 shadow-write = SVG

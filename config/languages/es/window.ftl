@@ -853,7 +853,10 @@ shadow-along = sombra según { $axis }
     .tip = Mirando según { $axis }
 shadow-here = Desde aquí
     .tip = Mirando como la cámara
-shadow-size = { $x } x { $y } mm, { $holes } agujeros
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } agujero
+   *[other] { $holes } agujeros
+}
 shadow-file = Dibujo que se escribe
     .tip = El archivo del dibujo
 shadow-write = SVG

@@ -853,7 +853,10 @@ shadow-along = ombre selon { $axis }
     .tip = Vue selon { $axis }
 shadow-here = D'ici
     .tip = Vue comme la caméra
-shadow-size = { $x } x { $y } mm, { $holes } trous
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } trou
+   *[other] { $holes } trous
+}
 shadow-file = Dessin à écrire
     .tip = Le fichier du dessin
 shadow-write = SVG

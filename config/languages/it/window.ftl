@@ -853,7 +853,10 @@ shadow-along = ombra lungo { $axis }
     .tip = Vista lungo { $axis }
 shadow-here = Da qui
     .tip = Vista come la vede la camera
-shadow-size = { $x } x { $y } mm, { $holes } fori
+shadow-size = { $x } x { $y } mm, { $holes ->
+    [one] { $holes } foro
+   *[other] { $holes } fori
+}
 shadow-file = Disegno da scrivere
     .tip = Il file del disegno
 shadow-write = SVG

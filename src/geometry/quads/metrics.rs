@@ -1,14 +1,15 @@
 //! How good a quad mesh is.
 
-use glam::DVec3;
-use rayon::prelude::*;
-
 use crate::PolyMesh;
 use crate::bvh::Bvh8;
+use crate::deviation::deviation;
 use crate::edges::EdgeTable;
 use crate::job::{Cancelled, Job};
 use crate::portable::PortableMath;
 use crate::{CentredMesh, TriMesh};
+
+/// Distances are exact to this share of the mesh's size, beside their two per cent.
+const RESOLUTION: f64 = 1e-7;
 
 /// The figures of a quad mesh, and of how far it is from the surface that it was made of.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -27,8 +28,9 @@ pub struct QuadMetrics {
     pub mean_deviation: Option<f64>,
     /// The share of the vertices with four faces, or with two on a border, 0 to 1.
     pub regular: f64,
-    /// Greatest distance from the new mesh to the old one, and from the old one to the new, in the
-    /// mesh's unit: over the vertices and nine more points of every triangle.
+    /// Upper bounds of the distance from the new mesh to the old one, and from the old one to the
+    /// new, in the mesh's unit: no place is farther, and some place is nearly as far (see
+    /// [`deviation`]).
     pub hausdorff: [f64; 2],
 }
 
@@ -44,7 +46,7 @@ pub fn metrics(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadMetric
         regular: 0.0,
         hausdorff: [0.0; 2],
     };
-    let (mut least, mut greatest, mut deviation): (f64, f64, f64) = (180.0, 0.0, 0.0);
+    let (mut least, mut greatest, mut off_square): (f64, f64, f64) = (180.0, 0.0, 0.0);
     for face in made.faces() {
         match face.len() {
             3 => out.triangles += 1,
@@ -60,19 +62,25 @@ pub fn metrics(made: &PolyMesh, from: &PolyMesh, job: &Job) -> Result<QuadMetric
             let angle = u.cross(v).length().portable_atan2(u.dot(v)).to_degrees();
             least = least.min(angle);
             greatest = greatest.max(angle);
-            deviation += (angle - 90.0).abs();
+            off_square += (angle - 90.0).abs();
         }
     }
     if out.quads > 0 {
         out.least_angle = Some(least);
         out.greatest_angle = Some(greatest);
-        out.mean_deviation = Some(deviation / (out.quads * 4) as f64);
+        out.mean_deviation = Some(off_square / (out.quads * 4) as f64);
     }
     out.regular = regular(made);
     job.check()?;
     let old = CentredMesh::new(from, 1.0);
     let new = CentredMesh::about(made, old.centre, 1.0);
-    out.hausdorff = [farthest(&new.mesh, &old.mesh, job)?, farthest(&old.mesh, &new.mesh, job)?];
+    let (lo, hi) = old.mesh.bounds();
+    let resolution = f64::from(lo.distance(hi)) * RESOLUTION;
+    let farthest = |from: &TriMesh, to: &TriMesh| {
+        let found = deviation(from, to, &Bvh8::build(to, job)?, resolution, job)?;
+        Ok(found.at_most)
+    };
+    out.hausdorff = [farthest(&new.mesh, &old.mesh)?, farthest(&old.mesh, &new.mesh)?];
     Ok(out)
 }
 
@@ -86,30 +94,4 @@ fn regular(mesh: &PolyMesh) -> f64 {
     }
     let good = (0..n).filter(|&v| faces[v] == if border[v] { 2 } else { 4 }).count();
     good as f64 / n.max(1) as f64
-}
-
-/// The greatest distance of a sample of `a` to `b`.
-fn farthest(a: &TriMesh, b: &TriMesh, job: &Job) -> Result<f64, Cancelled> {
-    const PARTS: usize = 3;
-    let tree = Bvh8::build(b, job)?;
-    let each = |t: usize| -> Result<f64, Cancelled> {
-        if t % 256 == 0 {
-            job.check()?;
-        }
-        let [p, q, r] = a.corners(t).map(|p| p.as_dvec3());
-        let mut worst: f64 = 0.0;
-        for i in 0..=PARTS {
-            for j in 0..=PARTS - i {
-                let (u, v) = (i as f64 / PARTS as f64, j as f64 / PARTS as f64);
-                let at: DVec3 = p + (q - p) * u + (r - p) * v;
-                if let Some(n) = tree.nearest(at, f64::INFINITY) {
-                    worst = worst.max(n.distance());
-                }
-            }
-        }
-        Ok(worst)
-    };
-    let all: Vec<f64> =
-        (0..a.triangles.len()).into_par_iter().map(each).collect::<Result<_, _>>()?;
-    Ok(all.into_iter().fold(0.0, f64::max))
 }

@@ -179,7 +179,7 @@ mod tests {
             list.prove("hall", "b", 4);
         }
         assert!(list.get("hall").is_some_and(|e| e.state.run == "b"));
-        // What was held back while the installation was lost shows nobody.
+        // Publications held back while the installation was lost show nobody.
         list.advance(LOST_US + 3);
         assert!(!list.observe(state("b", 2), LOST_US + 4));
         assert!(list.get("hall").is_some_and(|e| !e.is_here()));

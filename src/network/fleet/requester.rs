@@ -1,6 +1,6 @@
 //! The staff's end of requests: each is sent until it is answered or its time is over. And of the
 //! question which run of an installation is running: a request that names no run, which every
-//! installation answers with its own.
+//! installation answers with the name of the present run.
 
 use std::collections::{BTreeMap, VecDeque};
 

@@ -58,7 +58,7 @@ pub enum Greeting {
     Refused(Box<Refusal>),
 }
 
-/// A host's refusal. Who knows the host's key can tell it from a stranger's.
+/// A host's refusal. With the host's key it can be distinguished from a stranger's.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
     /// Of the greeting that is answered.

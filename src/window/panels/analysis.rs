@@ -236,11 +236,11 @@ fn histogram(
     }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
-    let most = found.histogram.iter().copied().max().unwrap_or(0).max(1) as f32;
+    let most = found.histogram.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
     let width = rect.width() / found.histogram.len().max(1) as f32;
     for (i, n) in found.histogram.iter().enumerate() {
         let x = rect.left() + i as f32 * width;
-        let height = (*n as f32 / most).sqrt() * (rect.height() - 8.0);
+        let height = (n / most).sqrt() * (rect.height() - 8.0);
         let value = found.min + (i as f32 + 0.5) / found.histogram.len() as f32 * span;
         let share = (value - marks[1]) / (marks[2] - marks[1]).max(1e-12);
         let [r, g, b] = look.scale_colour(share.clamp(0.0, 1.0));

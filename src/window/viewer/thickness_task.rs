@@ -248,17 +248,25 @@ fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSumm
         .map(|(i, v)| (v * unit, i as u32))
         .collect();
     known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    // By area: a vertex of a coarse part stands for more than one of a fine one.
+    let (mut whole, mut until) = (0.0f64, Vec::with_capacity(known.len()));
+    for &(_, id) in &known {
+        whole += f64::from(map.areas()[id as usize]);
+        until.push(whole);
+    }
     let at = |share: f64| {
-        known.get(((known.len().max(1) - 1) as f64 * share) as usize).map_or(0.0, |k| k.0)
+        let k = until.partition_point(|area| *area < whole * share);
+        known.get(k.min(known.len().max(1) - 1)).map_or(0.0, |k| k.0)
     };
     let (min, max, high) = (at(0.0), at(1.0), at(0.98));
-    let mut histogram = vec![0u32; ThicknessSummary::CLASSES];
+    let mut histogram = vec![0.0f32; ThicknessSummary::CLASSES];
     let span = (high - min).max(1e-12);
-    for (v, _) in &known {
+    for (v, id) in &known {
         let class = ((v - min) / span * ThicknessSummary::CLASSES as f32) as usize;
-        histogram[class.min(ThicknessSummary::CLASSES - 1)] += 1;
+        histogram[class.min(ThicknessSummary::CLASSES - 1)] += map.areas()[*id as usize];
     }
     let below = known.partition_point(|k| k.0 < wanted.limit);
+    let area_below = below.checked_sub(1).map_or(0.0, |last| until[last]);
     let spots = spots(wanted, &known[..below.min(MOST_PLACES)], values.len());
     ThicknessSummary {
         min,
@@ -267,7 +275,7 @@ fn about(wanted: &ThicknessRequest, map: &LiveMap, left: usize) -> ThicknessSumm
         median: at(0.5),
         measured: values.len() - left,
         vertices: values.len(),
-        below: below as f32 / known.len().max(1) as f32,
+        below: if whole > 0.0 { (area_below / whole) as f32 } else { 0.0 },
         histogram,
         spots,
     }

@@ -27,8 +27,8 @@ const SPOT: Vec3 = Vec3::new(0.1, 0.9, 0.0);
 fn page() -> Harness<'static, State> {
     let mut h = harness(Tab::Walls);
     h.state_mut().ui_state.look.map = Map::Thickness;
-    let mut histogram = vec![3; 48];
-    histogram[12] = 9;
+    let mut histogram = vec![3.0; 48];
+    histogram[12] = 9.0;
     h.state_mut().ui_state.walls.found = Some(Box::new(ThicknessSummary {
         min: 0.4,
         max: 3.0,
@@ -47,7 +47,7 @@ fn page() -> Harness<'static, State> {
 #[test]
 fn walls_tell_their_thin_spots_and_the_camera_is_asked_to_fly() {
     let mut h = page();
-    // The class with the most vertices.
+    // The class with the largest area.
     h.get_by_label("0.921 mm");
     h.get_by_label("1: 0.400 mm").click();
     h.run_steps(2);

@@ -21,19 +21,20 @@ pub struct ThicknessSummary {
     pub high: f32,
     pub measured: usize,
     pub vertices: usize,
-    /// Share of the measured vertices below the limit, 0 to 1.
+    /// Share of the measured area below the limit, 0 to 1.
     pub below: f32,
-    /// From `min` to `high`.
-    pub histogram: Vec<u32>,
+    /// Areas of the classes from `min` to `high`.
+    pub histogram: Vec<f32>,
     pub spots: Vec<ThinSpot>,
 }
 
 impl ThicknessSummary {
     pub const CLASSES: usize = 48;
 
-    /// The middle of the class with the most vertices.
+    /// The middle of the class with the largest area.
     pub fn usual(&self) -> f32 {
-        let most = (0..self.histogram.len()).rev().max_by_key(|&i| self.histogram[i]);
+        let classes = 0..self.histogram.len();
+        let most = classes.rev().max_by(|&a, &b| self.histogram[a].total_cmp(&self.histogram[b]));
         let width = (self.high - self.min) / self.histogram.len().max(1) as f32;
         most.map_or(self.median, |i| self.min + (i as f32 + 0.5) * width)
     }
