@@ -9,9 +9,9 @@
 //! hits nothing has no end: its vertex is measured again where the ray itself meets such a box, as
 //! a triangle that is newly in its way does. Most rays through air are of this kind.
 //!
-//! On a sharp edge the ray of a vertex points askew between the sides. If it meets no opposite side,
-//! the vertex has the least wall under the faces around it, each measured along the face's normal
-//! from a place a little way into the face.
+//! On a sharp edge the ray of a vertex points askew between the sides. If it meets no opposite
+//! side, the vertex has the least wall under the faces around it, each measured along the face's
+//! normal from a place a little way into the face.
 
 use std::sync::Arc;
 
