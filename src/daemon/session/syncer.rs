@@ -8,7 +8,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -32,8 +32,9 @@ pub(super) struct Syncer {
     wake: cc::Sender<()>,
     /// The last tick that is committed, and the chain there.
     committed: Arc<Mutex<(u64, u32)>>,
-    /// Why the last sync failed, if it did.
-    trouble: Arc<Mutex<Option<String>>>,
+    /// Why the last sync failed, if it did, and where the file was then.
+    trouble: Arc<Mutex<Option<(PathBuf, String)>>>,
+    database: SessionPath,
     thread: JoinHandle<()>,
 }
 
@@ -51,6 +52,7 @@ impl Syncer {
         let committed = Arc::new(Mutex::new((first.tick, first.chain)));
         let trouble = Arc::new(Mutex::new(None));
         let (last, said, clock) = (committed.clone(), trouble.clone(), Clock::monotonic());
+        let path = database.clone();
         // Opened now: later the file may have another name.
         let mut own: Option<Connection> = None;
         let _ = take_over(&mut own, &database.get());
@@ -105,8 +107,7 @@ impl Syncer {
                     written.fetch_max(tick, Relaxed);
                 }
                 if let Ok(mut said) = said.lock() {
-                    let path = database.get();
-                    *said = result.err().map(|e| format!("{}: {e}", path.display()));
+                    *said = result.err().map(|e| (database.get(), e.to_string()));
                 }
             }
             // Everything is in the file once the session is closed. The power may go then.
@@ -115,10 +116,10 @@ impl Syncer {
             if let Err(e) = page.write(&ended).and_then(|()| page.sync())
                 && let Ok(mut said) = said.lock()
             {
-                said.get_or_insert(e.to_string());
+                said.get_or_insert((database.get(), e.to_string()));
             }
         })?;
-        Ok(Syncer { wake, committed, trouble, thread })
+        Ok(Syncer { wake, committed, trouble, database: path, thread })
     }
 
     /// Everything up to `tick` is committed, and the chain there.
@@ -130,15 +131,21 @@ impl Syncer {
         let _ = self.wake.try_send(());
     }
 
+    /// Returns why the last sync failed. A failure at a place from which the file has moved since
+    /// is none.
     pub(super) fn trouble(&self) -> Option<String> {
-        self.trouble.lock().ok().and_then(|t| t.clone())
+        let found = self.trouble.lock().ok().and_then(|t| t.clone());
+        let (path, why) = found.filter(|(path, _)| *path == self.database.get())?;
+        Some(format!("{}: {why}", path.display()))
     }
 
     /// Waits for the last sync.
     pub(super) fn finish(self) -> Option<String> {
-        drop(self.wake);
-        let _ = self.thread.join();
-        self.trouble.lock().ok().and_then(|mut t| t.take())
+        let Syncer { wake, trouble, thread, .. } = self;
+        drop(wake);
+        let _ = thread.join();
+        let (path, why) = trouble.lock().ok().and_then(|mut t| t.take())?;
+        Some(format!("{}: {why}", path.display()))
     }
 }
 

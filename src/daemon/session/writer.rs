@@ -4,6 +4,8 @@
 //! A full disk does not stop the sculpting. Groups are kept in memory up to `KEPT_BYTES`, the fault
 //! is shown, and the groups are written once there is room.
 
+mod misplaced;
+
 use std::fs::File;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst};
@@ -15,7 +17,7 @@ use crossbeam_channel as cc;
 use rusqlite::Connection;
 
 use super::GROUP_MS;
-use super::acknowledgement::{Acknowledgement, AcknowledgementPage, ENDED};
+use super::acknowledgement::{Acknowledgement, AcknowledgementPage};
 use super::connection::commit_without_waiting;
 use super::create::{CreateError, SessionDraft, is_half_made};
 use super::format::{Settings, append};
@@ -23,7 +25,7 @@ use super::health::Health;
 use super::history::{Handle, keeper::Keeper};
 use super::hold::{HeldSession, hold};
 use super::input_end::{InputEnd, begin_log, upgrade};
-use super::place::{SessionPath, SessionPlace, Standing};
+use super::place::{SessionPath, SessionPlace};
 use super::shared_memory_log::LogName;
 use super::start::SessionStart;
 use super::syncer::Syncer;
@@ -422,7 +424,13 @@ impl JournalThread {
                 let _ = self.recycle.try_send(bytes);
             }
             // A sync that failed, or works again, is reported without further input too.
-            let synced = self.syncer.as_ref().is_none_or(|s| s.trouble().is_none());
+            let mut synced = self.is_synced();
+            if !synced && !self.unsynced {
+                // A file that was moved is followed first.
+                self.looked_us = 0;
+                self.watch_place();
+                synced = self.is_synced();
+            }
             let waits = !self.groups.is_empty() || synced == self.unsynced;
             if ended || self.clock.now_us() >= due_us || (open.is_none() && waits) {
                 self.groups.extend(open.take());
@@ -436,80 +444,8 @@ impl JournalThread {
         }
     }
 
-    /// Checks once a second whether the file has moved, follows it if so, and writes the session to
-    /// another file if it is gone.
-    fn watch_place(&mut self) {
-        let now = self.clock.now_us();
-        if now < self.looked_us + LOOK.as_micros() as u64 || self.misplaced.is_some() {
-            return;
-        }
-        self.looked_us = now;
-        let Ok(mut place) = self.place.lock() else { return };
-        match place.look() {
-            Standing::Here => {}
-            Standing::Moved(to) => match place.follow(to.clone()) {
-                Ok(()) => tracing::warn!("journal: the session was moved to {}", to.display()),
-                Err(e) => {
-                    self.misplaced = Some(format!(
-                        "the session was moved to {}, and its log could not follow ({e}): keep \
-                         the file beside its log until the session ends",
-                        to.display()
-                    ));
-                }
-            },
-            Standing::Gone => {
-                let (path, tick) = (place.path.get(), self.end.tick);
-                let path = path.display();
-                self.misplaced = Some(match place.rescue(&self.db, self.end.known([0, 0])) {
-                    Ok(to) => format!(
-                        "{path} was deleted or replaced: what was sculpted up to tick {tick} is \
-                         in {}, and the rest is written there when the session ends",
-                        to.display()
-                    ),
-                    Err(e) => format!(
-                        "{path} was deleted or replaced, and the session cannot be written \
-                         elsewhere ({e}): nothing that is sculpted is kept. Export it"
-                    ),
-                });
-            }
-        }
-        drop(place);
-        if let Some(text) = &self.misplaced {
-            tracing::error!("journal: {text}");
-            if let Ok(mut fault) = self.health.fault.lock() {
-                *fault = Some(text.clone());
-            }
-        }
-    }
-
-    /// Writes the session to where it was rescued once more, with all that came since.
-    fn rescue_again(&mut self) {
-        let Ok(mut place) = self.place.lock() else { return };
-        if place.look() != Standing::Gone {
-            return;
-        }
-        let path = place.path.get();
-        let text = match place.rescue(&self.db, self.end.known(ENDED)) {
-            Ok(to) if self.groups.is_empty() && !self.closed => format!(
-                "{} was deleted or replaced: all of the session is in {}",
-                path.display(),
-                to.display()
-            ),
-            Ok(to) => format!(
-                "{} was deleted or replaced: the session up to tick {} is in {}; later input is \
-                 lost",
-                path.display(),
-                self.end.tick,
-                to.display()
-            ),
-            Err(e) => format!(
-                "{} was deleted or replaced, and the session could not be written elsewhere: {e}",
-                path.display()
-            ),
-        };
-        if let Ok(mut fault) = self.health.fault.lock() {
-            *fault = Some(text);
-        }
+    fn is_synced(&self) -> bool {
+        self.syncer.as_ref().is_none_or(|syncer| syncer.trouble().is_none())
     }
 
     /// The last group is synced too before the thread is gone.
@@ -549,7 +485,8 @@ impl JournalThread {
                 }
                 let unsynced = self.syncer.as_ref().and_then(Syncer::trouble);
                 self.unsynced = unsynced.is_some();
-                unsynced.map(|e| format!("the session file cannot be synced: {e}"))
+                let unsynced = unsynced.map(|e| format!("the session file cannot be synced: {e}"));
+                self.misplaced.clone().or(unsynced)
             }
             Err(e) if kept > KEPT_BYTES => {
                 // Waiting input is written once there is room. Later input is discarded, because a
