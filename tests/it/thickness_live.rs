@@ -201,7 +201,7 @@ fn gap_by_force(mesh: &TriMesh, v: u32, out: Vec3) -> f32 {
 /// The vertices of edges whose faces are turned from each other by more than 40 degrees.
 fn sharp_vertices(mesh: &TriMesh) -> Vec<bool> {
     let mut sharp = vec![false; mesh.positions.len()];
-    let mut sides = std::collections::HashMap::new();
+    let mut sides = std::collections::BTreeMap::new();
     for (t, corners) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = mesh.corners(t);
         let normal = (b - a).cross(c - a).normalize_or_zero();
