@@ -234,10 +234,14 @@ fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
                 until("the visitor sculpts", || hash(&daemon) != before.1);
                 pause(400);
                 let home = ended(daemon, rustix::process::Signal::KILL);
+                // On a loaded machine the visit may be over before the kill.
+                let was_over = audit(home.path()).len() > before.0;
                 let begun = clock.now_us();
                 daemon = installation(home, settings);
-                until("it says so", || daemon.has_told("the last visit was interrupted"));
-                opened_us.push(clock.now_us() - begun);
+                if !was_over {
+                    until("it says so", || daemon.has_told("the last visit was interrupted"));
+                    opened_us.push(clock.now_us() - begun);
+                }
             }
             let home = daemon.home.path();
             until("the visit is over", || audit(home).len() == before.0 + 1);
@@ -248,15 +252,17 @@ fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
     }
     let lines = audit(daemon.home.path());
     let interrupted = lines.iter().filter(|l| l["interrupted"] == json!(true)).count();
-    assert_eq!((lines.len(), interrupted), (days * visits, days), "each visit has its line");
+    let killed = opened_us.len();
+    assert_eq!((lines.len(), interrupted), (days * visits, killed), "each visit has its line");
+    assert!(killed > 0, "no visit was killed");
     opened_us.sort_unstable();
     println!(
         "{} visits, {} killed; most bytes of a day beside the gallery: {of_day:?}; back and open \
          after {} ms in the middle, {} ms at most",
         lines.len(),
-        days,
-        opened_us[opened_us.len() / 2] / 1000,
-        opened_us[opened_us.len() - 1] / 1000
+        killed,
+        opened_us[killed / 2] / 1000,
+        opened_us[killed - 1] / 1000
     );
     let (first, last) = (of_day[0], of_day[of_day.len() - 1]);
     assert!(last <= first + first / 10 + 65_536, "{first} bytes on the first day, {last} then");
