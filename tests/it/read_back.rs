@@ -76,6 +76,10 @@ fn page(live: &Live, factory: &queue::SenderFactory, clock: &Clock) -> Arc<Web> 
     Arc::new(Web::start(&options, state).expect("a page"))
 }
 
+/// Rounds after the others in which what was always refused is asked again: random objects are not
+/// always such that it can be carried out.
+const MORE_ROUNDS: usize = 20;
+
 #[test]
 fn every_reply_comes_after_its_effect() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -107,9 +111,13 @@ fn every_reply_comes_after_its_effect() {
     let (mut stale, mut untold, mut waits) = (Vec::new(), Vec::new(), Vec::new());
     let mut refusals = std::collections::BTreeMap::new();
     let mut done = std::collections::BTreeMap::new();
-    for round in 0..rounds {
+    for round in 0..rounds + MORE_ROUNDS {
         println!("round {round} at {} s", clock.now_us() / 1_000_000);
         for method in METHODS.iter().map(|m| m.name).filter(|m| !LEFT_OUT.contains(m)) {
+            let never = done.get(method).is_none_or(|n: &(u32, u32)| n.1 == 0);
+            if round >= rounds && !never {
+                continue;
+            }
             prepare(method, &ask, dir.path());
             let asked = params(method, &mut r, &ask, dir.path());
             let before = state(&host);

@@ -244,6 +244,13 @@ pub const RAISING: [BrushKind; 7] = [
     BrushKind::Gaussian,
 ];
 
+/// Vertices across the brush, with a still and with a trembling pen. The finest are most of the
+/// work, and are for long runs.
+fn densities() -> impl Iterator<Item = (u32, f32)> {
+    let finest = crate::field::long().then_some(100);
+    [10, 30].into_iter().chain(finest).flat_map(|a| [(a, 0.0), (a, TREMBLE)])
+}
+
 #[test]
 fn a_stroke_over_a_plane_is_smooth_along_its_crest() {
     for kind in RAISING {
@@ -259,9 +266,7 @@ fn strokes_are_smooth_on_a_ball_along_a_curve_and_with_a_trembling_pen() {
     for kind in RAISING {
         let brush = sculptd::presets().of(kind);
         for form in [TestForm::Plane, TestForm::Arc, TestForm::Ball] {
-            for (across, tremble) in
-                [10, 30, 100].into_iter().flat_map(|a| [(a, 0.0), (a, TREMBLE)])
-            {
+            for (across, tremble) in densities() {
                 let trial = Trial { form, across, tremble, ..Trial::new(brush) };
                 let (_, waviness) = trial.draw().crest();
                 println!("{kind}, {form:?}, {across} across, {tremble:.4}: {waviness:.3} degrees");
@@ -275,7 +280,7 @@ fn strokes_are_smooth_on_a_ball_along_a_curve_and_with_a_trembling_pen() {
 fn a_scraped_ridge_is_smooth_on_a_ball_along_a_curve_and_under_a_trembling_pen() {
     let brush = sculptd::presets().of(BrushKind::MultiplaneScrape);
     for form in [TestForm::Plane, TestForm::Arc, TestForm::Ball] {
-        for (across, tremble) in [10, 30, 100].into_iter().flat_map(|a| [(a, 0.0), (a, TREMBLE)]) {
+        for (across, tremble) in densities() {
             let (_, waviness) = Trial { form, across, tremble, ..Trial::new(brush) }.draw().crest();
             println!("{form:?}, {across} across, {tremble:.4}: {waviness:.3} degrees");
             let most = if form == TestForm::Plane && tremble == 0.0 { 0.1 } else { 0.3 };
@@ -297,7 +302,7 @@ fn what_levels_or_evens_leaves_no_waves_on_a_ball() {
         BrushKind::Sharpen,
     ] {
         let trial = Trial { form: TestForm::Ball, ..Trial::new(sculptd::presets().of(kind)) };
-        for (across, tremble) in [10, 30, 100].into_iter().flat_map(|a| [(a, 0.0), (a, TREMBLE)]) {
+        for (across, tremble) in densities() {
             let (height, waviness) = Trial { across, tremble, ..trial }.draw().crest();
             println!("{kind}, {across} across, {tremble:.4}: {waviness:.3} at {height:.5}");
             assert!(waviness <= 0.3, "{kind}, {across}: {waviness} degrees");
@@ -373,7 +378,8 @@ fn layer_and_clay_strips_leave_a_flat_top() {
 fn neither_the_rate_of_reports_nor_the_spacing_changes_the_surface() {
     use BrushKind::{Crease, MultiplaneScrape, Texture, Trim};
     for kind in RAISING.into_iter().chain([Crease, Texture, Trim, MultiplaneScrape]) {
-        for form in [TestForm::Plane, TestForm::Arc] {
+        let forms = [TestForm::Plane, TestForm::Arc];
+        for &form in &forms[..if crate::field::long() { 2 } else { 1 }] {
             let trial = Trial { form, across: 30, ..Trial::new(sculptd::presets().of(kind)) };
             any_rate_and_spacing(kind, trial);
         }
