@@ -157,7 +157,7 @@ pub enum Command {
     Thickness(thickness::ThicknessArgs),
     /// Whether a part is ready to print or mould: findings against limits, and how it should stand.
     Check(check::CheckArgs),
-    /// Repair a part (flat base, split with pegs, drain holes, vents, draft) and check it again.
+    /// Repair a part (flat base, split with pegs, holes, draft, walls, text) and check it again.
     Repair(repair::RepairArgs),
     /// Volume, area, dimensions, projected areas and thickness of a part.
     Measure(measure::MeasureArgs),

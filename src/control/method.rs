@@ -35,7 +35,7 @@ use crate::people::PeopleReply;
 use crate::repair::{RepairParams, RepairReply};
 use crate::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
-    RemeshQuadsReply,
+    RemeshQuadsReply, SymmetriseParams, SymmetriseReply,
 };
 use crate::scene::{
     AddParams, CombineReply, ExportParams, GroupParams, LockParams, MergeParams, MirrorParams,
@@ -257,8 +257,11 @@ methods! {
     /// Leaves as few triangles as are wanted, for printing and the web: one step of undo.
     /// New crossings are undone where they can be and counted, and the border of the mask stays.
     "decimate" Decimate decimate(DecimateParams) -> DecimateReply;
+    /// Replaces one side of a plane through the middle of the object, which must be a solid, by the
+    /// mirror image of the other: one step of undo.
+    "symmetrise" Symmetrise symmetrise(SymmetriseParams) -> SymmetriseReply;
     /// Repairs the object for printing or moulding, then checks it again: a flat base, a split with
-    /// pegs and sockets, drain holes, vents, or draft. One step of undo.
+    /// pegs and sockets, drain holes, vents, draft, thicker walls, or text. One step of undo.
     "repair" Repair repair(RepairParams) -> RepairReply;
     /// A Boolean of the object and a mesh from a file of at most 1 GiB, moved by `at`.
     "boolean" Boolean boolean(BooleanParams) -> BooleanReply;

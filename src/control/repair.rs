@@ -1,4 +1,5 @@
-//! `repair`: a flat base, a split with pegs and sockets, drain holes and vents.
+//! `repair`: a flat base, a split with pegs and sockets, drain holes, vents, draft, thicker walls,
+//! text.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::range::{COORDINATE, LENGTH};
 
 /// Parameters of `repair`. Lengths and places are in the unit and the frame of the world.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RepairParams {
@@ -30,7 +31,7 @@ fn on_plate() -> bool {
 }
 
 /// A repair of an object.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum RepairKind {
@@ -44,6 +45,10 @@ pub enum RepairKind {
     Vent(HoleRepair),
     /// Gives upright walls this draft, in degrees; `up` is the direction in which a mould opens.
     Draft(#[cfg_attr(test, schemars(range(min = 1e-3, max = 45.0)))] f64),
+    /// Thickens walls below this.
+    Thicken(#[cfg_attr(test, schemars(range(min = LENGTH.min, max = LENGTH.max)))] f64),
+    /// Raises or engraves a text.
+    Text(TextRepair),
 }
 
 /// The plane and the pegs of a split.
@@ -110,6 +115,30 @@ pub struct HoleRepair {
     /// Only the cavity or cup whose centre is nearest to this place; without it all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 3]>,
+}
+
+/// The text of `text`, of 1 to 200 letters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TextRepair {
+    /// The text; a line break begins a line.
+    pub text: String,
+    /// Its middle; the nearest place of the surface is taken.
+    #[cfg_attr(test, schemars(inner(range(min = COORDINATE.min, max = COORDINATE.max))))]
+    pub at: [f64; 3],
+    /// The surface is looked for from `at` in this direction, and not nearest to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<[f64; 3]>,
+    /// The direction in which the letters stand; without it `up`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upright: Option<[f64; 3]>,
+    /// The height of a capital letter.
+    #[cfg_attr(test, schemars(range(min = LENGTH.min, max = LENGTH.max)))]
+    pub height: f64,
+    /// How far it rises from the surface; below 0 how deep it is engraved.
+    #[cfg_attr(test, schemars(range(min = -LENGTH.max, max = LENGTH.max)))]
+    pub relief: f64,
 }
 
 /// Reply of `repair`: the changes, and the result of a check of them.

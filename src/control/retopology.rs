@@ -83,6 +83,54 @@ pub struct RemeshLocalReply {
     pub changed: u64,
 }
 
+/// Parameters of `symmetrise`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct SymmetriseParams {
+    /// Normal of the plane through the middle of the object.
+    pub axis: PlaneAxis,
+    /// Keeps the side against the axis, and not the one towards which it points.
+    #[serde(default)]
+    pub negative: bool,
+}
+
+/// An axis of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum PlaneAxis {
+    /// To the right.
+    X,
+    /// Up.
+    Y,
+    /// Towards the viewer of the front view.
+    Z,
+}
+
+/// Reply of `symmetrise`. Volumes are in the mesh's unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SymmetriseReply {
+    /// Vertices of the new mesh.
+    pub vertices: u64,
+    /// Triangles of the new mesh.
+    pub triangles: u64,
+    /// The volume before.
+    pub volume_before: f64,
+    /// The volume after.
+    pub volume: f64,
+    /// Pairs of triangles that cross each other.
+    pub self_intersections: u64,
+    /// Duration, in seconds.
+    pub seconds: f64,
+    /// Layers that were baked into the surface, which is another one now.
+    pub layers_baked: u64,
+    /// What must be known of the figures, one sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+}
+
 /// Parameters of `decimate`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -60,6 +60,7 @@ pub mod shared_input;
 pub mod simulated_loop;
 pub mod snap_jobs;
 pub mod startup;
+pub mod symmetrise_job;
 #[cfg(unix)]
 pub mod systemd;
 pub mod tablet_actions;

@@ -1,6 +1,6 @@
 //! Repairs of the active object, computed in the caller's thread: a flat base, a split with pegs
-//! and sockets, drain holes, vents, and draft. Each is one step of undo. After it the result is
-//! checked again, and the answer says what is left.
+//! and sockets, drain holes, vents, draft, thicker walls, and text. Each is one step of undo. After
+//! it the result is checked again, and the answer says what is left.
 
 use std::sync::Arc;
 
@@ -13,9 +13,11 @@ use crate::published::Published;
 use crate::scene_jobs::{Combined, built, operand};
 use sculptd_check::repair::flat_base::base_tool;
 use sculptd_check::repair::holes::{HoleSettings, PlannedHole, SealedKind, plan_holes};
+use sculptd_check::repair::lettering::{Lettering, plan_lettering};
 use sculptd_check::repair::split::{PegSettings, SplitPlane, split_part};
+use sculptd_check::repair::thickening::{thicken, thin_regions};
 use sculptd_check::repair::wall_draft::{add_draft, walls_below};
-use sculptd_check::repair::{Remaining, RepairError, remaining, solid_of};
+use sculptd_check::repair::{Remaining, RepairError, ReshapedPart, remaining, solid_of};
 use sculptd_clay::Snapshot;
 use sculptd_engine::scene::{
     Exchange, NewObject, ObjectId, ObjectSource, ObjectTransform, SceneEvent,
@@ -32,7 +34,7 @@ const LAYER: f64 = 0.05;
 const POCKET: f64 = 100.0;
 
 /// The repair of an object. Lengths and places are in the world's unit and frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum WantedRepair {
     /// A flat base at this height above the lowest point.
     Base(f64),
@@ -53,10 +55,14 @@ pub enum WantedRepair {
     },
     /// Draft for the walls that have less than this many degrees.
     Draft(f64),
+    /// Thickness for the walls that have less than this.
+    Thicken(f64),
+    /// A text, raised or engraved.
+    Text(Lettering),
 }
 
 /// A repair, and how the object is built.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RepairRequest {
     pub repair: WantedRepair,
     /// The build direction; of any length above 0.
@@ -85,7 +91,7 @@ struct RepairPlan {
     holes: Vec<PlannedHole>,
     pegs: Vec<DVec3>,
     notes: Vec<String>,
-    /// Number of cavities or cups that got no hole, or of walls without draft that stayed.
+    /// Number of cavities or cups that got no hole, or of walls that stayed as they are.
     most_left: usize,
 }
 
@@ -99,10 +105,40 @@ pub fn carry_out(
     job: &Job,
 ) -> Result<RepairDone, OperationError> {
     let before: Vec<ObjectId> = ids(&to.published.load());
-    let done = operations::carry_out(to, job, |now| match request.repair {
-        WantedRepair::Split(plane, pegs) => split(now, plane, pegs, job),
-        WantedRepair::Draft(angle) => drafted(now, request.up, angle, job),
-        _ => cut(now, request, job),
+    let up = request.up;
+    let done = operations::carry_out(to, job, |now| match &request.repair {
+        WantedRepair::Split(plane, pegs) => split(now, *plane, *pegs, job),
+        WantedRepair::Base(height) => cut(now, Operation::Difference, job, |mesh| {
+            Ok((base_tool(mesh, up, *height)?, RepairPlan::default()))
+        }),
+        &WantedRepair::Holes { kind, diameter, inlet, least, near } => {
+            let plate = request.plate;
+            let (pocket, layer) = (plate.then_some(POCKET), LAYER);
+            let asked =
+                HoleSettings { kind, diameter, inlet, least, pocket, near, up, layer, plate };
+            cut(now, Operation::Difference, job, |mesh| {
+                let plan = plan_holes(&*solid_of(mesh, job)?, &asked, job)?;
+                let most_left = plan.found - plan.voids;
+                let (holes, notes) = (plan.holes, plan.notes);
+                Ok((plan.tool, RepairPlan { holes, notes, most_left, ..RepairPlan::default() }))
+            })
+        }
+        &WantedRepair::Draft(angle) => reshaped(now, job, |solid, own| {
+            add_draft(solid, own.apply(up) - own.apply(DVec3::ZERO), angle, job)
+        }),
+        WantedRepair::Text(asked) => {
+            let raised = asked.relief > 0.0;
+            let operation = if raised { Operation::Union } else { Operation::Difference };
+            cut(now, operation, job, |mesh| {
+                let plan = plan_lettering(&*solid_of(mesh, job)?, asked, job)?;
+                Ok((plan.tool, RepairPlan { notes: plan.notes, ..RepairPlan::default() }))
+            })
+        }
+        &WantedRepair::Thicken(wall) => reshaped(now, job, |solid, own| {
+            let made = thicken(solid, wall * own.scale, job)?;
+            // They are in the object's frame; the check says what is left.
+            Ok(ReshapedPart { notes: Vec::new(), ..made })
+        }),
     })?;
     let note = done.note();
     let RepairPlan { holes, pegs, mut notes, most_left } = done.made;
@@ -115,15 +151,23 @@ pub fn carry_out(
         false => Some(*id) == active,
     };
     let (mut objects, mut left) = (Vec::new(), Vec::new());
+    // A thin wall that stayed is left; a wall that no mould reaches needs no draft.
+    let allowed = if matches!(request.repair, WantedRepair::Thicken(_)) { 0 } else { most_left };
     // It is in place: what is cancelled now is only its check.
     let unseen = Job::default();
     for (object, clay) in now.scene.each(&now.mesh).filter(|(o, _)| made(&o.id)) {
         let mesh = in_world(clay, &object.settings.transform);
-        if let WantedRepair::Draft(angle) = request.repair {
-            let count = walls_below(&mesh, request.up, angle, &unseen).unwrap_or(usize::MAX);
-            let text = format!("walls have less draft than {angle} degrees");
-            left.extend((count > most_left).then_some(text));
-        }
+        let (count, text) = match request.repair {
+            WantedRepair::Draft(angle) => (
+                walls_below(&mesh, request.up, angle, &unseen),
+                format!("walls have less draft than {angle} degrees"),
+            ),
+            WantedRepair::Thicken(wall) => {
+                (thin_regions(&mesh, wall, &unseen), format!("walls are thinner than {wall}"))
+            }
+            _ => (Ok(0), String::new()),
+        };
+        left.extend((count.unwrap_or(usize::MAX) > allowed).then_some(text));
         match remaining(&mesh, request.up, LAYER, request.plate, &unseen) {
             Ok(found) => objects.push((object.id, found)),
             Err(e) => notes.push(format!("the result was not checked: {e}")),
@@ -147,8 +191,11 @@ fn failing(repair: &WantedRepair, most_left: usize, found: &Remaining) -> Option
     }
     match *repair {
         WantedRepair::Base(_) if found.base_area <= 0.0 => Some("has no flat base".into()),
-        WantedRepair::Base(_) | WantedRepair::Split(..) | WantedRepair::Draft(_) => None,
-
+        WantedRepair::Base(_)
+        | WantedRepair::Split(..)
+        | WantedRepair::Draft(_)
+        | WantedRepair::Thicken(_)
+        | WantedRepair::Text(_) => None,
         WantedRepair::Holes { kind, least, .. } => {
             let all = match kind {
                 SealedKind::Trapped => &found.trapped,
@@ -174,53 +221,32 @@ fn in_world(clay: &Snapshot, transform: &ObjectTransform) -> PolyMesh {
     mesh
 }
 
-/// A repair that subtracts a tool.
+/// A repair that adds or subtracts a tool, planned on the active object in the world's frame.
 fn cut(
     now: &Published,
-    request: &RepairRequest,
+    operation: Operation,
     job: &Job,
+    planned: impl Fn(&PolyMesh) -> Result<(PolyMesh, RepairPlan), RepairError>,
 ) -> Result<Computed<RepairPlan>, OperationError> {
-    let mesh = in_world(&now.mesh, &now.transform());
-    let (tool, plan) = match request.repair {
-        WantedRepair::Holes { kind, diameter, inlet, least, near } => {
-            let RepairRequest { up, plate, .. } = *request;
-            let pocket = plate.then_some(POCKET);
-            let layer = LAYER;
-            let asked =
-                HoleSettings { kind, diameter, inlet, least, pocket, near, up, layer, plate };
-            let solid = solid_of(&mesh, job)?;
-            let plan = plan_holes(&solid, &asked, job)?;
-            let most_left = plan.found - plan.voids;
-            let (holes, notes) = (plan.holes, plan.notes);
-            (plan.tool, RepairPlan { holes, notes, most_left, ..RepairPlan::default() })
-        }
-        WantedRepair::Base(height) => {
-            (base_tool(&mesh, request.up, height)?, RepairPlan::default())
-        }
-        WantedRepair::Split(plane, pegs) => return split(now, plane, pegs, job),
-        WantedRepair::Draft(angle) => return drafted(now, request.up, angle, job),
-    };
-    let Computed { edit, then, basis, .. } =
-        boolean_jobs::join(now, tool, false, Operation::Difference, job)?;
+    let (tool, plan) = planned(&in_world(&now.mesh, &now.transform()))?;
+    let Computed { edit, then, basis, .. } = boolean_jobs::join(now, tool, false, operation, job)?;
     Ok(Computed { edit, then, made: plan, basis })
 }
 
-/// Draft for the walls of the active object, whose triangles stay.
-fn drafted(
+/// A repair that moves corners of the active object, whose triangles stay. `moved` gets it in its
+/// own frame, and the way into that frame.
+fn reshaped(
     now: &Published,
-    up: DVec3,
-    angle: f64,
     job: &Job,
+    moved: impl Fn(&PolyMesh, &ObjectTransform) -> Result<ReshapedPart, RepairError>,
 ) -> Result<Computed<RepairPlan>, OperationError> {
-    let own = now.transform().inverse();
-    let pull = own.apply(up) - own.apply(DVec3::ZERO);
     let mesh = now.mesh.to_tri();
     let solid = mesh.to_poly();
     if solid_of(&solid, job)?.positions != solid.positions {
         let why = "it crosses itself; unite it with a remesh first".into();
         return Err(RepairError::NotSolid(why).into());
     }
-    let made = add_draft(&solid, pull, angle, job)?;
+    let made = moved(&solid, &now.transform().inverse())?;
     let positions = made.mesh.positions.iter().map(|p| p.as_vec3()).collect();
     let new = TriMesh { positions, ..mesh };
     let queued = in_place(Arc::new(new), now.mesh.masks(), None, job)?;

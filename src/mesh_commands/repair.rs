@@ -1,5 +1,5 @@
-//! `sculptd repair`: a flat base, a split with pegs, drain holes, vents, draft. The file that was
-//! written is read and checked again, and the answer says what is left.
+//! `sculptd repair`: a flat base, a split with pegs, drain holes, vents, draft, thicker walls,
+//! text. The file that was written is read and checked again, and the answer says what is left.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,16 +8,19 @@ use glam::DVec3;
 use sculptd_check::preset::BuildMethod;
 use sculptd_check::repair::flat_base::base_tool;
 use sculptd_check::repair::holes::{HoleSettings, SealedKind, plan_holes};
+use sculptd_check::repair::lettering::{Lettering, plan_lettering};
 use sculptd_check::repair::split::{PegSettings, SplitPlane, split_part};
+use sculptd_check::repair::thickening::{thicken, thin_regions};
 use sculptd_check::repair::wall_draft::add_draft;
-use sculptd_check::repair::{RepairError, remaining, solid_of, subtract};
+use sculptd_check::repair::{RepairError, ReshapedPart, combined, remaining, solid_of};
 use sculptd_check::{
     CheckRequest, CheckSettings, Finding, FindingKind, PresetLibrary, Severity, check_part,
 };
 use sculptd_devices::Clock;
-use sculptd_geometry::boolean::default_tolerance;
+use sculptd_geometry::boolean::{Operation, default_tolerance};
 use sculptd_geometry::io::{read_mesh, writable_format};
 use sculptd_geometry::job::Job;
+use sculptd_geometry::measure::measures;
 use sculptd_geometry::{PolyMesh, repair};
 use serde::Serialize;
 
@@ -34,6 +37,8 @@ use super::{Fail, Outcome, answer};
   sculptd repair part.stl halves.stl --split 0,0,20,0,0,1 --pegs 3 --clearance 0.15
   sculptd repair hollow.stl drained.stl --drain 3 --inlet --process sla
   sculptd repair lid.stl drafted.stl --draft 1.5 --process moulding
+  sculptd repair lid.stl thicker.stl --thicken 1.2
+  sculptd repair lid.stl marked.stl --text Left --at 20,10,5 --letter-height 6 --relief -0.4
   sculptd repair cup.stl vented.stl --vent 2 --process sla --up 0,1,0 --json")]
 pub struct RepairArgs {
     /// The mesh file.
@@ -59,6 +64,23 @@ pub struct RepairArgs {
     /// Give walls with less draft along --up this draft.
     #[arg(long, value_name = "DEGREES", group = "what")]
     pub draft: Option<f64>,
+    /// Thicken walls below this.
+    #[arg(long, value_name = "MM", group = "what")]
+    pub thicken: Option<f64>,
+    /// Raise or engrave this text; `\n` begins a line.
+    #[arg(long, group = "what", requires = "at")]
+    pub text: Option<String>,
+    /// Of --text: its middle; the nearest place of the surface is taken.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "text")]
+    #[arg(value_parser = point)]
+    pub at: Option<DVec3>,
+    /// Of --text: the height of a capital letter.
+    #[arg(long, value_name = "MM", requires = "text", default_value_t = 5.0)]
+    pub letter_height: f64,
+    /// Of --text: how far it rises; below 0 how deep it is engraved.
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "text")]
+    #[arg(default_value_t = 0.6)]
+    pub relief: f64,
     /// Of --split: most pegs, 0 to 16.
     #[arg(long, value_name = "N", requires = "split", default_value_t = 4)]
     pub pegs: usize,
@@ -90,14 +112,25 @@ fn plane(text: &str) -> Result<SplitPlane, String> {
     }
 }
 
+/// A place, in millimetres.
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+    let numbers = numbers.filter(|n| n.iter().all(|x| x.is_finite()));
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        _ => Err("expected three numbers X,Y,Z".into()),
+    }
+}
+
 impl From<RepairError> for Fail {
     fn from(e: RepairError) -> Self {
         match e {
             RepairError::Boolean(e) => Fail::from(e),
             RepairError::Cancelled(e) => interrupted(e),
-            RepairError::OutOfRange { .. } | RepairError::BesidePart { .. } => {
-                Fail::Usage(e.to_string())
-            }
+            RepairError::OutOfRange { .. }
+            | RepairError::BesidePart { .. }
+            | RepairError::Text(_)
+            | RepairError::NoRoom { .. } => Fail::Usage(e.to_string()),
             _ => Fail::Check(e.to_string()),
         }
     }
@@ -154,6 +187,8 @@ struct RepairOutput {
     holes: Vec<HoleAnswer>,
     pegs: Vec<[f64; 3]>,
     warnings: Vec<String>,
+    /// The least change of the volume, in the mesh's unit; below 0 for what is taken away.
+    change: Option<f64>,
     /// The findings that must be gone.
     gone: Vec<FindingKind>,
     name: &'static str,
@@ -211,6 +246,11 @@ pub fn run(args: &RepairArgs, library: &PresetLibrary, json: bool) -> Outcome {
         left.extend(
             findings.iter().filter(|f| made.gone.contains(&f.kind)).map(|f| f.message.clone()),
         );
+        if let Some(wall) = args.thicken {
+            let count = thin_regions(&again, wall / scale, &job)?;
+            let text = format!("{count} walls are thinner than {wall} mm");
+            left.extend((count > 0).then_some(text));
+        }
         if !(written.closed && written.manifold && written.self_intersections == Some(0)) {
             left.push(format!("{name} is not one solid"));
         }
@@ -227,6 +267,16 @@ pub fn run(args: &RepairArgs, library: &PresetLibrary, json: bool) -> Outcome {
             base_area: base_area * scale.powi(2),
             findings,
         });
+    }
+    if let Some((change, part)) = made.change.zip(parts.first()) {
+        let by =
+            part.volume.unwrap_or(0.0) - measures(&solid.triangulate().0).volume * scale.powi(3);
+        let least = change * scale.powi(3);
+        if by / least < 0.99 {
+            left.push(format!(
+                "the volume changed by {by:.3} mm3, and the letters have {least:.3}"
+            ));
+        }
     }
     if args.base.is_some() && parts.iter().all(|p| p.base_area <= 0.0) {
         left.push("the part does not stand flat".into());
@@ -246,6 +296,17 @@ pub fn run(args: &RepairArgs, library: &PresetLibrary, json: bool) -> Outcome {
     if out.repaired { Ok(()) } else { Err(Fail::Check(format!("left: {}", out.left.join("; ")))) }
 }
 
+/// The output of a repair that moves corners.
+fn reshaped(
+    args: &RepairArgs,
+    made: ReshapedPart,
+    name: &'static str,
+    gone: Vec<FindingKind>,
+) -> RepairOutput {
+    let (files, warnings) = (vec![(args.out.clone(), made.mesh)], made.notes);
+    RepairOutput { files, warnings, gone, name, ..RepairOutput::default() }
+}
+
 /// Plans and carries out the repair. Lengths of the arguments are millimetres, those of the mesh
 /// its file's unit.
 fn made(
@@ -258,7 +319,7 @@ fn made(
     let up = settings.up;
     if let Some(height) = args.base {
         let tool = base_tool(solid, up, height / scale)?;
-        let (mesh, warnings) = subtract(solid, &tool, job)?;
+        let (mesh, warnings) = combined(solid, &tool, Operation::Difference, job)?;
         let (files, gone) = (vec![(args.out.clone(), mesh)], vec![FindingKind::Contact]);
         return Ok(RepairOutput { files, warnings, gone, name: "base", ..RepairOutput::default() });
     }
@@ -286,13 +347,23 @@ fn made(
     }
     if let Some(angle) = args.draft {
         let made = add_draft(solid, up, angle, job)?;
-        let (files, warnings) = (vec![(args.out.clone(), made.mesh)], made.notes);
-        let gone = vec![FindingKind::Draft];
+        return Ok(reshaped(args, made, "draft", vec![FindingKind::Draft]));
+    }
+    if let Some(wall) = args.thicken {
+        let made = thicken(solid, wall / scale, job)?;
+        return Ok(reshaped(args, made, "thicken", Vec::new()));
+    }
+    if let Some((text, at)) = args.text.as_ref().zip(args.at) {
+        let (height, relief) = (args.letter_height / scale, args.relief / scale);
+        let (text, at) = (text.replace("\\n", "\n"), at / scale);
+        let asked = Lettering { text, at, along: None, upright: up, height, relief };
+        let plan = plan_lettering(solid, &asked, job)?;
+        let (mesh, warnings) = combined(solid, &plan.tool, plan.operation, job)?;
         return Ok(RepairOutput {
-            files,
-            warnings,
-            gone,
-            name: "draft",
+            files: vec![(args.out.clone(), mesh)],
+            warnings: [plan.notes, warnings].concat(),
+            change: Some(plan.area * relief),
+            name: "text",
             ..RepairOutput::default()
         });
     }
@@ -303,7 +374,9 @@ fn made(
         }
         (None, Some(d)) => (SealedKind::Cup, d, process.cup, FindingKind::SuctionCup, "vent"),
         (None, None) => {
-            return Err(Fail::Usage("expected --base, --split, --drain, --vent or --draft".into()));
+            return Err(Fail::Usage(
+                "expected --base, --split, --drain, --vent, --draft, --thicken or --text".into(),
+            ));
         }
     };
     let Some(least) = least else {
@@ -325,7 +398,7 @@ fn made(
         plate: process.method == BuildMethod::Layers,
     };
     let plan = plan_holes(solid, &asked, job)?;
-    let (mesh, mut warnings) = subtract(solid, &plan.tool, job)?;
+    let (mesh, mut warnings) = combined(solid, &plan.tool, Operation::Difference, job)?;
     warnings.splice(0..0, plan.notes);
     let holes = plan.holes.iter().map(|h| HoleAnswer {
         from: (h.from * scale).to_array(),

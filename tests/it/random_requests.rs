@@ -70,10 +70,16 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
         "thickness" => json!({ "rays": 1 }),
         "join" => json!({ "operation": operation }),
         "trim" => json!({ "part": { "box": [0.0, 0.0, 0.45, 1.0] } }),
-        "repair" => match r.below(4) {
+        "repair" => match r.below(6) {
             0 => json!({ "repair": { "base": 0.05 + 0.3 * r.part() } }),
             1 => json!({ "repair": { "draft": 1.0 + r.part() } }),
             2 => json!({ "repair": { "drain": { "diameter": 0.1 } }, "plate": r.below(2) == 0 }),
+            3 => {
+                let at = [r.part() - 0.5, r.part() - 0.5, r.part() - 0.5];
+                let text = json!({ "text": "No. 8", "at": at, "height": 0.1, "relief": 0.05 });
+                json!({ "repair": { "text": text } })
+            }
+            4 => json!({ "repair": { "thicken": 0.05 + 0.2 * r.part() } }),
             _ => {
                 let point = [0.0, r.part() - 0.5, 0.0];
                 let plane = json!({ "point": point, "normal": [0, 1, 0], "radius": 0.1 });
@@ -84,6 +90,9 @@ pub fn params(method: &str, r: &mut Random, ask: Ask<'_>, dir: &Path) -> Value {
         "remesh" => json!({ "voxel": 0.08 + 0.1 * r.part() }),
         "remesh.quads" => json!({ "quads": 200 + r.below(200) }),
         "remesh.local" => json!({ "stretched_only": false, "edge": null }),
+        "symmetrise" => {
+            json!({ "axis": r.of(&["x", "y", "z"]), "negative": r.below(2) == 0 })
+        }
         "decimate" => json!({ "triangles": 400 + r.below(400) }),
         "boolean" => {
             let at = [r.part() - 0.5, 0.9, r.part() - 0.5];
@@ -170,6 +179,17 @@ pub fn prepare(method: &str, ask: Ask<'_>, dir: &Path) {
                 let shift = json!({ "shift": [0.7, 0.1, 0.2], "turn": [0, 0, 0, 1], "scale": 1.0 });
                 ask("scene.transform", json!({ "id": b, "transform": shift }));
                 ask("scene.boolean", json!({ "operation": "union", "a": a, "b": b, "live": true }));
+            }
+        }
+        "scene.reshape" => {
+            ask("scene.add", json!({ "primitive": { "ball": 0.4 }, "edge": 0.1 }));
+        }
+        "scene.split" => {
+            let add = || ask("scene.add", json!({ "path": dir.join("ball.ply") }));
+            if let (Some(a), Some(b)) = (add(), add()) {
+                let far = json!({ "shift": [5.0, 0.1, 0.2], "turn": [0, 0, 0, 1], "scale": 1.0 });
+                ask("scene.transform", json!({ "id": b["id"], "transform": far }));
+                ask("scene.merge", json!({ "ids": [a["id"], b["id"]] }));
             }
         }
         "guests.revoke" => {

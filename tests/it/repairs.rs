@@ -124,6 +124,64 @@ fn a_split_writes_two_files_and_draft_turns_the_walls() {
 }
 
 #[test]
+fn thin_walls_become_thicker_and_a_blade_stays_and_is_named() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let plate = put(dir.path(), "plate.stl", &cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 0.5)));
+    let out = dir.path().join("thicker.stl").to_string_lossy().into_owned();
+    let (code, said) = reported(&[&plate, &out, "--thicken", "1.2"]);
+    assert_eq!((code, &said["repaired"]), (0, &json!(true)), "{said}");
+    let got = number(&said["parts"][0]["volume"]);
+    assert!((got - 40.0 * 30.0 * 1.2).abs() < 0.5, "{got}");
+    // Half a unit is 12.7 mm.
+    let (code, said) = reported(&[&plate, &out, "--thicken", "25.4", "--unit", "in"]);
+    let got = number(&said["parts"][0]["volume"]);
+    assert!(
+        code == 0 && (got / (40.0 * 30.0 * 25.4f64.powi(3)) - 1.0).abs() < 1e-3,
+        "{got}: {said}"
+    );
+    assert_eq!(repair(&[&plate, &out, "--thicken", "0.5"]).status.code(), Some(1));
+    let (code, said) = reported(&[
+        &plate,
+        &out,
+        "--text",
+        "No.\\n8",
+        "--at",
+        "20,15,0.5",
+        "--letter-height",
+        "6",
+        "--relief",
+        "-0.2",
+    ]);
+    assert_eq!((code, &said["repaired"]), (0, &json!(true)), "{said}");
+    let got = number(&said["parts"][0]["volume"]);
+    assert!(got < 600.0 - 4.0 && got > 600.0 - 20.0, "{got}");
+    // Far from the origin and turned, where single precision is coarse beside the letters' curves.
+    let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 1.1, 2.0);
+    let mut far = cuboid(DVec3::ZERO, DVec3::new(60.0, 30.0, 4.0));
+    far.positions.iter_mut().for_each(|p| *p = turn * *p + DVec3::new(300.0, -500.0, 200.0));
+    let far = put(dir.path(), "far.stl", &far);
+    let [x, y, z] = (turn * DVec3::new(30.0, 15.0, 4.0) + DVec3::new(300.0, -500.0, 200.0)).into();
+    let at = format!("{x},{y},{z}");
+    for relief in ["0.6", "-0.6"] {
+        let args = [&far, &out, "--text", "No. 8 &", "--at", &at, "--relief", relief];
+        let (code, said) = reported(&args);
+        assert_eq!((code, &said["repaired"]), (0, &json!(true)), "{said}");
+    }
+    for at in ["0,0,0.5", "20,15"] {
+        let args = [&plate, &out, "--text", "x", "--at", at];
+        assert_eq!(repair(&args).status.code(), Some(2), "{at}");
+    }
+    let mut blade = cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 8.0));
+    blade.positions.iter_mut().filter(|p| p.x == 0.0).for_each(|p| p.z = 0.0);
+    sculptd_geometry::repair::weld(&mut blade, 0.0);
+    let blade = put(dir.path(), "blade.stl", &blade);
+    let (code, said) = reported(&[&blade, &out, "--thicken", "1.2"]);
+    let left = said["left"][0].as_str().expect("a sentence");
+    assert!(code == 1 && left.contains("thinner than 1.2 mm"), "{said}");
+    assert!(said["warnings"].to_string().contains("stayed at 0.0"), "{said}");
+}
+
+#[test]
 fn what_cannot_be_repaired_is_refused() {
     let dir = tempfile::tempdir().expect("a folder");
     let part = put(dir.path(), "part.stl", &hollow());
@@ -201,8 +259,25 @@ fn each_repair_of_the_loop_is_one_step_of_undo() {
     assert!((got - (outer - 34f64.powi(3))).abs() < 1.0, "{got}");
     ask("undo", Value::Null);
     assert!(comes(|| hash() == before));
+    let done = ask("repair", json!({ "repair": { "thicken": 5.0 } }));
+    let got = number(&done["objects"][0]["volume"]);
+    // The outer faces have no corner over the cavity: the inner ones move.
+    let wanted = 40f64.powi(3) - 30f64.powi(3);
+    assert!(done["repaired"] == true && (got - wanted).abs() < 10.0, "{got}: {done}");
+    ask("undo", Value::Null);
+    assert!(comes(|| hash() == before));
+    let text = json!({ "text": "No. 8", "at": [20, 20, 99], "height": 6, "relief": 1.5 });
+    let done = ask("repair", json!({ "repair": { "text": text } }));
+    let got = number(&done["objects"][0]["volume"]);
+    let solid = 40f64.powi(3) - 34f64.powi(3);
+    assert!(done["repaired"] == true && got > solid + 50.0 && got < solid + 200.0, "{got}: {done}");
+    ask("undo", Value::Null);
+    assert!(comes(|| hash() == before));
     for bad in [
+        json!({ "repair": { "text": { "text": "x", "at": [0, 0, 0], "height": 90, "relief": 1 }}}),
+        json!({ "repair": { "text": { "text": "", "at": [0, 0, 0], "height": 1, "relief": 1 } } }),
         json!({ "repair": { "draft": 60.0 } }),
+        json!({ "repair": { "thicken": 2.0 } }),
         json!({ "repair": { "base": 90.0 } }),
         json!({ "repair": { "vent": { "diameter": 3.0 } } }),
         json!({ "repair": { "base": 1.0 }, "up": [0, 0, 0] }),

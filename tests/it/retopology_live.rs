@@ -161,3 +161,44 @@ fn a_decimation_is_one_step_of_undo_and_keeps_the_border_of_the_mask() {
     assert!(made["triangles"].as_u64() < made["triangles_before"].as_u64(), "{made}");
     ball.live.stop().expect("ends");
 }
+
+#[test]
+fn one_side_becomes_the_mirror_image_of_the_other() {
+    let ball = MaskedBall::new();
+    for axis in ["y", "z"] {
+        let wrong = json!({ "axis": axis, "side": 1 });
+        ball.refused("symmetrise", wrong);
+    }
+    ball.replaced("symmetrise", json!({ "axis": "z" }));
+    // A hollow on the side that has no mask, which is then on both.
+    let tool = shapes::icosphere(0.4, 12);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("tool.stl");
+    sculptd_geometry::io::write_mesh(&file, &tool.to_poly()).expect("written");
+    let params = json!({ "path": file, "operation": "difference", "at": [-0.9, 0.3, 0.2] });
+    ball.ask("boolean", params);
+    ball.wait("carved", || ball.live.published.load().undo_steps == 1);
+    let carved = ball.hash();
+    let made = ball.ask("symmetrise", json!({ "axis": "x", "negative": true }));
+    ball.wait("in place", || ball.hash() != carved);
+    let shown = ball.live.published.load_full();
+    let (middle, mesh) = (shown.middle.x, shown.mesh.to_tri());
+    let solid = sculptd_geometry::distance::DistanceSolid::build(&mesh, &Job::default());
+    let solid = solid.expect("a solid");
+    let hollows = [-0.9f32, 0.9].map(|x| glam::DVec3::new(f64::from(x + middle), 0.3, 0.2));
+    assert!(hollows.iter().all(|p| solid.signed_distance(*p) > 0.1), "hollow on both sides");
+    for p in &mesh.positions {
+        let twin = glam::DVec3::new(f64::from(2.0 * middle - p.x), p.y.into(), p.z.into());
+        let off = solid.signed_distance(twin).abs();
+        assert!(off < 1e-5, "the mirror image of {p} is {off} off");
+    }
+    let masks = shown.mesh.masks().unwrap_or_default();
+    let beside = |p: &glam::Vec3| (p.x - middle).abs() > 0.1;
+    assert!(mesh.positions.iter().zip(&masks).all(|(p, m)| !beside(p) || *m == 0.0));
+    let facts = check::report(&mesh.to_poly(), true, &Job::default()).expect("a report");
+    assert!(facts.closed && facts.manifold && facts.self_intersections == Some(0), "{facts:?}");
+    assert_eq!(made["triangles"].as_u64(), Some(mesh.triangles.len() as u64));
+    assert_eq!(made["self_intersections"], 0);
+    ball.ask("undo", Value::Null);
+    ball.wait("as before", || ball.hash() == carved);
+}

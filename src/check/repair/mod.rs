@@ -1,5 +1,6 @@
-//! Repairs of a part: a flat base, a split with pegs and sockets, drain holes, vents, and draft.
-//! Each is planned here; all but draft are carried out by the exact Boolean of `sculptd_geometry`.
+//! Repairs of a part: a flat base, a split with pegs and sockets, drain holes, vents, draft,
+//! thicker walls, and text. Each is planned here. Draft and thicker walls move corners; all others
+//! are carried out by the exact Boolean of `sculptd_geometry`.
 //!
 //! Lengths are in the mesh's unit, so whoever knows millimetres converts them first. A repair that
 //! is one cut is planned as a *tool*, a solid to subtract, so that a caller can subtract it in its
@@ -9,8 +10,10 @@
 
 pub mod flat_base;
 pub mod holes;
+pub mod lettering;
 mod section_region;
 pub mod split;
+pub mod thickening;
 mod tool;
 pub mod wall_draft;
 mod way_out;
@@ -63,6 +66,20 @@ pub enum RepairError {
     /// No hole leads out.
     #[error("no hole leads out of the {0}. Turn the part, or cut it open with a split")]
     NoWayOut(&'static str),
+    /// A text that cannot be drawn.
+    #[error("the text cannot be drawn: {0}")]
+    Text(String),
+    /// A text that does not lie on the surface as a whole.
+    #[error(
+        "the text is {wide:.2} wide and {tall:.2} tall, and the surface ends or drops away under \
+         it. Move it, or make it smaller"
+    )]
+    NoRoom {
+        /// Width of the text.
+        wide: f64,
+        /// Height of all its lines.
+        tall: f64,
+    },
     /// The Boolean found no result.
     #[error(transparent)]
     Boolean(#[from] BooleanError),
@@ -79,6 +96,19 @@ impl RepairError {
         }
         Err(RepairError::OutOfRange { name, value, range: "a length above 0".into() })
     }
+}
+
+/// A part whose corners were moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReshapedPart {
+    /// The part; its faces are those of the part before.
+    pub mesh: PolyMesh,
+    /// The area of the walls that were to be changed, in square units.
+    pub area: f64,
+    /// The connected walls that stayed as they are.
+    pub kept: usize,
+    /// Sentences on these walls.
+    pub notes: Vec<String>,
 }
 
 /// Result of the check of a repaired part. Lengths and places are in the mesh's unit and frame.
@@ -130,20 +160,11 @@ pub fn remaining(
     Ok(Remaining { closed, manifold, crossings, volume, base_area, trapped, cups })
 }
 
-/// Subtracts a tool from a part. Returns the result and sentences on how it was computed.
+/// Combines a part with a tool. Returns the result and sentences on how it was computed.
 ///
 /// # Errors
 /// Returns an error if the part is no solid, or the Boolean has no result.
-pub fn subtract(
-    mesh: &PolyMesh,
-    tool: &PolyMesh,
-    job: &Job,
-) -> Result<(PolyMesh, Vec<String>), RepairError> {
-    combined(mesh, tool, Operation::Difference, job)
-}
-
-/// Carries out one Boolean.
-fn combined(
+pub fn combined(
     mesh: &PolyMesh,
     tool: &PolyMesh,
     operation: Operation,

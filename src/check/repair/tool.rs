@@ -68,7 +68,7 @@ pub(super) fn united(all: &[Cylinder], job: &Job) -> Result<PolyMesh, RepairErro
     Ok(out)
 }
 
-fn append(to: &mut PolyMesh, mesh: &PolyMesh) {
+pub(super) fn append(to: &mut PolyMesh, mesh: &PolyMesh) {
     let base = to.positions.len() as u32;
     to.positions.extend(&mesh.positions);
     for face in mesh.faces() {

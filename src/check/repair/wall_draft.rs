@@ -9,7 +9,7 @@ use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::portable::PortableMath;
 
-use super::{RepairError, direction};
+use super::{RepairError, ReshapedPart, direction};
 use crate::moulding::draft_regions;
 use crate::part::PreparedPart;
 use crate::regions::FaceRegion;
@@ -18,19 +18,6 @@ use crate::regions::FaceRegion;
 pub const MOST_DRAFT: f64 = 45.0;
 /// Share of the larger one below which the smaller squared direction of a vertex's walls is none.
 const FLAT: f64 = 1e-9;
-
-/// A part with drafted walls.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DraftedPart {
-    /// The part; its triangles are those of the part before.
-    pub mesh: PolyMesh,
-    /// The area of the walls that were turned, in square units.
-    pub area: f64,
-    /// The connected walls that stayed as they are.
-    pub kept: usize,
-    /// Sentences on these walls.
-    pub notes: Vec<String>,
-}
 
 /// The conditions on the movement of one vertex: how far along which directions.
 #[derive(Debug, Clone, Copy, Default)]
@@ -76,7 +63,7 @@ pub fn add_draft(
     pull: DVec3,
     angle: f64,
     job: &Job,
-) -> Result<DraftedPart, RepairError> {
+) -> Result<ReshapedPart, RepairError> {
     let pull = direction("pull direction", pull)?;
     if !(angle > 0.0 && angle <= MOST_DRAFT) {
         let range = format!("above 0 and at most {MOST_DRAFT} degrees");
@@ -120,7 +107,7 @@ pub fn add_draft(
         let by = own.movement();
         *p += x * by.x + y * by.y;
     }
-    Ok(DraftedPart { mesh, area, kept: notes.len(), notes })
+    Ok(ReshapedPart { mesh, area, kept: notes.len(), notes })
 }
 
 /// Returns the number of connected walls with less than `angle` degrees of draft along `pull`.

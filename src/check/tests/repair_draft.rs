@@ -5,8 +5,8 @@ mod common;
 use common::*;
 use glam::DVec3;
 use sculptd_check::FindingKind::Draft;
-use sculptd_check::repair::wall_draft::{DraftedPart, add_draft};
-use sculptd_check::repair::{RepairError, remaining};
+use sculptd_check::repair::wall_draft::add_draft;
+use sculptd_check::repair::{RepairError, ReshapedPart, remaining};
 use sculptd_geometry::PolyMesh;
 use sculptd_geometry::job::Job;
 
@@ -14,7 +14,7 @@ fn volume(mesh: &PolyMesh) -> f64 {
     sculptd_geometry::measure::measures(&mesh.triangulate().0).volume
 }
 
-fn drafted(part: &PolyMesh, pull: DVec3, angle: f64) -> DraftedPart {
+fn drafted(part: &PolyMesh, pull: DVec3, angle: f64) -> ReshapedPart {
     let made = add_draft(part, pull, angle, &Job::default()).expect("walls without draft");
     let left = remaining(&made.mesh, pull, 0.05, false, &Job::default()).expect("a solid");
     assert!(left.closed && left.manifold && left.crossings == 0, "{left:?}");

@@ -7,8 +7,9 @@ use std::f64::consts::PI;
 use common::*;
 use glam::DVec3;
 use sculptd_check::repair::holes::{HolePlan, HoleSettings, SealedKind, plan_holes};
-use sculptd_check::repair::{Remaining, RepairError, remaining, solid_of, subtract};
+use sculptd_check::repair::{Remaining, RepairError, combined, remaining, solid_of};
 use sculptd_geometry::PolyMesh;
+use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
 
@@ -31,7 +32,7 @@ fn drilled(part: &PolyMesh, asked: &HoleSettings) -> (HolePlan, PolyMesh, Remain
     let job = Job::default();
     let solid = solid_of(part, &job).expect("a solid");
     let plan = plan_holes(&solid, asked, &job).expect("a hole");
-    let (made, _) = subtract(&solid, &plan.tool, &job).expect("a result");
+    let (made, _) = combined(&solid, &plan.tool, Operation::Difference, &job).expect("a result");
     let left = remaining(&made, asked.up, asked.layer, asked.plate, &job).expect("a solid");
     assert!(left.closed && left.manifold && left.crossings == 0, "{left:?}");
     (plan, made, left)

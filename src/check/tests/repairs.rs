@@ -8,8 +8,9 @@ use common::*;
 use glam::DVec3;
 use sculptd_check::repair::flat_base::base_tool;
 use sculptd_check::repair::split::{PegSettings, SplitParts, SplitPlane, split_part};
-use sculptd_check::repair::{Remaining, RepairError, remaining, subtract};
+use sculptd_check::repair::{Remaining, RepairError, combined, remaining};
 use sculptd_geometry::PolyMesh;
+use sculptd_geometry::boolean::Operation;
 use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::job::Job;
 use sculptd_geometry::shapes;
@@ -35,7 +36,8 @@ fn a_ball_gets_a_base_of_the_area_of_its_section() {
         let whole = looked_at(&part, up).volume;
         for height in [0.5, 2.0, 7.0] {
             let tool = base_tool(&part, up, height).expect("a plane through the ball");
-            let (made, _) = subtract(&part, &tool, &Job::default()).expect("a result");
+            let (made, _) =
+                combined(&part, &tool, Operation::Difference, &Job::default()).expect("a result");
             let left = looked_at(&made, up);
             // The section and the cap of a ball of radius 10.
             close(left.base_area, PI * (20.0 * height - height * height), 0.01);

@@ -35,7 +35,7 @@ use sculptd_control::people::PeopleReply;
 use sculptd_control::repair::{RepairParams, RepairReply};
 use sculptd_control::retopology::{
     DecimateParams, DecimateReply, RemeshLocalParams, RemeshLocalReply, RemeshQuadsParams,
-    RemeshQuadsReply,
+    RemeshQuadsReply, SymmetriseParams, SymmetriseReply,
 };
 use sculptd_control::scene::{self as asked_scene, ObjectParams};
 use sculptd_control::snap::{SnapParams, SnapReply};
@@ -511,6 +511,10 @@ impl Handler for Host {
 
     fn remesh_local(&self, params: RemeshLocalParams) -> Result<RemeshLocalReply, RpcError> {
         retopology::remesh_local(self, params)
+    }
+
+    fn symmetrise(&self, params: SymmetriseParams) -> Result<SymmetriseReply, RpcError> {
+        retopology::symmetrise(self, params)
     }
 
     fn decimate(&self, params: DecimateParams) -> Result<DecimateReply, RpcError> {

@@ -6,6 +6,7 @@ use super::host::{Host, failed};
 use crate::repair_jobs::{RepairRequest, WantedRepair, carry_out};
 use sculptd_check::layers::sweep::SealedVoid;
 use sculptd_check::repair::holes::SealedKind;
+use sculptd_check::repair::lettering::Lettering;
 use sculptd_check::repair::split::{PegSettings, SplitPlane};
 use sculptd_control::RpcError;
 use sculptd_control::repair::{
@@ -24,17 +25,26 @@ pub(super) fn repair(host: &Host, params: &RepairParams) -> Result<RepairReply, 
         least: of.least.unwrap_or(if kind == SealedKind::Cup { CUP } else { 0.0 }),
         near: of.at.map(DVec3::from),
     };
-    let repair = match params.repair {
-        RepairKind::Base(height) => WantedRepair::Base(height),
+    let repair = match &params.repair {
+        RepairKind::Base(height) => WantedRepair::Base(*height),
         RepairKind::Split(of) => {
             let plane = SplitPlane { point: of.point.into(), normal: of.normal.into() };
             let (radius, length, clearance) = (of.radius, of.length, of.clearance);
             let most = of.pegs as usize;
             WantedRepair::Split(plane, PegSettings { radius, length, clearance, most })
         }
-        RepairKind::Draft(angle) => WantedRepair::Draft(angle),
-        RepairKind::Drain(of) => holes(SealedKind::Trapped, of),
-        RepairKind::Vent(of) => holes(SealedKind::Cup, of),
+        RepairKind::Draft(angle) => WantedRepair::Draft(*angle),
+        RepairKind::Thicken(wall) => WantedRepair::Thicken(*wall),
+        RepairKind::Text(of) => WantedRepair::Text(Lettering {
+            text: of.text.clone(),
+            at: of.at.into(),
+            along: of.along.map(DVec3::from),
+            upright: of.upright.unwrap_or(params.up).into(),
+            height: of.height,
+            relief: of.relief,
+        }),
+        RepairKind::Drain(of) => holes(SealedKind::Trapped, *of),
+        RepairKind::Vent(of) => holes(SealedKind::Cup, *of),
     };
     let request = RepairRequest { repair, up: params.up.into(), plate: params.plate };
     let place = host.jobs.begin_operation()?;

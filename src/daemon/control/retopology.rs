@@ -9,6 +9,7 @@ use super::{face_sets, layers};
 use crate::decimate_job::{DecimateWanted, decimated};
 use crate::quad_job::{QuadsWanted, quads};
 use crate::remesh_job::{Wanted, remeshed};
+use crate::symmetrise_job::{SymmetriseWanted, symmetrised};
 use sculptd_control::RpcError;
 use sculptd_control::edit::{RemeshParams, RemeshReply};
 use sculptd_control::retopology as asked;
@@ -93,6 +94,34 @@ pub(super) fn remesh_quads(
         seconds: (clock.now_us() - begun) as f64 * 1e-6,
         layers_baked,
         warnings: made.warnings.into_iter().chain(note).collect(),
+    })
+}
+
+pub(super) fn symmetrise(
+    host: &Host,
+    params: asked::SymmetriseParams,
+) -> Result<asked::SymmetriseReply, RpcError> {
+    let axis = match params.axis {
+        asked::PlaneAxis::X => 0,
+        asked::PlaneAxis::Y => 1,
+        asked::PlaneAxis::Z => 2,
+    };
+    let wanted = SymmetriseWanted { axis, keeps_positive: !params.negative };
+    let place = host.jobs.begin_operation()?;
+    let clock = Clock::monotonic();
+    let begun = clock.now_us();
+    let layers_baked = layers::count(host);
+    let done = host.operate(&place.job, |now| symmetrised(now, wanted, &place.job))?;
+    let (note, made) = (done.note(), done.made);
+    Ok(asked::SymmetriseReply {
+        vertices: made.vertices as u64,
+        triangles: made.triangles as u64,
+        volume_before: made.volume[0],
+        volume: made.volume[1],
+        self_intersections: made.crossings as u64,
+        seconds: (clock.now_us() - begun) as f64 * 1e-6,
+        layers_baked,
+        warnings: note.into_iter().collect(),
     })
 }
 

@@ -14,7 +14,7 @@ use crate::look::Map;
 use glam::DVec3;
 use sculptd_check::Severity;
 use sculptd_check::preset::BuildMethod;
-use sculptd_check::repair::holes::SealedKind;
+use sculptd_daemon::repair_jobs::WantedRepair;
 
 /// Interval at which the progress is redrawn, while a check runs.
 const LOOK: Duration = Duration::from_millis(100);
@@ -39,7 +39,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     let page = &mut ui_state.check;
     status(ui, view, page, out);
     let wanted = findings(ui, view, ui_state, out);
-    out.extend(wanted.map(|(kind, place)| check_repairs::request(ui_state, kind, place)));
+    out.extend(wanted.map(|w| UiRequest::Repair(ui_state.check.repair(w))));
     facts(ui, view, &ui_state.check);
     check_repairs::ui(ui, view, ui_state, out);
 }
@@ -206,14 +206,14 @@ fn status(ui: &mut egui::Ui, view: &View<'_>, page: &CheckPage, out: &mut Vec<Ui
     }
 }
 
-/// The list; each row is a button that flies to its place, where it has one. Returns the finding
-/// that a person wants repaired.
+/// The list; each row is a button that flies to its place, where it has one. Returns the repair
+/// that a person asked for.
 fn findings(
     ui: &mut egui::Ui,
     view: &View<'_>,
     ui_state: &mut UiState,
     out: &mut Vec<UiRequest>,
-) -> Option<(SealedKind, DVec3)> {
+) -> Option<WantedRepair> {
     let free = !ui_state.joining;
     let page = &mut ui_state.check;
     let found = page.shown()?;
@@ -241,8 +241,9 @@ fn findings(
             out.push(UiRequest::FlyTo(place.as_vec3()));
         }
         if present && Some(object.id) == active {
-            let pressed = ui.push_id(*at, |ui| check_repairs::button(ui, finding, free)).inner;
-            wanted = pressed.map(|kind| (kind, place)).or(wanted);
+            let pressed =
+                ui.push_id(*at, |ui| check_repairs::button(ui, page, finding, place, free)).inner;
+            wanted = pressed.or(wanted);
         }
     }
     if all.len() > LISTED {

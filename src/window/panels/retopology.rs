@@ -7,6 +7,7 @@ use super::state::{CREASE, UiRequest, UiState, View};
 use crate::language::tr;
 use sculptd_daemon::decimate_job::{DecimateWanted, LEAST};
 use sculptd_daemon::quad_job::{MOST_LEVELS, QuadsWanted};
+use sculptd_daemon::symmetrise_job::SymmetriseWanted;
 
 /// Interval at which a progress bar is redrawn, while there is one.
 const LOOK: Duration = Duration::from_millis(100);
@@ -38,6 +39,21 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
         let triangles = (left.round() as usize).max(LEAST);
         out.push(UiRequest::Decimate(DecimateWanted { triangles, max_error: None }));
     }
+    ui.add_space(8.0);
+    ui.strong(tr!("symmetrise-heading"));
+    ui.horizontal_wrapped(|ui| {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            for keeps_positive in [true, false] {
+                let (from, to) = if keeps_positive { ('+', '-') } else { ('-', '+') };
+                let text = format!("{from}{name} > {to}{name}");
+                let button = ui.add_enabled(free, egui::Button::new(text));
+                if button.on_hover_text(tr!("symmetrise-heading.tip")).clicked() {
+                    let wanted = SymmetriseWanted { axis, keeps_positive };
+                    out.push(UiRequest::Symmetrise(wanted));
+                }
+            }
+        }
+    });
     progress(ui, ui_state);
 }
 

@@ -116,6 +116,10 @@ impl WindowState {
                 let job = self.begin_change();
                 self.tasks.decimate(wanted, job, state, commands);
             }
+            UiRequest::Symmetrise(wanted) => {
+                let to = (wiring.published.clone(), wiring.commands.clone());
+                self.tasks.symmetrise(wanted, to);
+            }
             UiRequest::Repair(request) => {
                 let to = (wiring.published.clone(), wiring.commands.clone());
                 let job = self.begin_change();

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::language::tr;
 use sculptd_daemon::repair_jobs::RepairDone;
+use sculptd_daemon::symmetrise_job::SymmetriseMade;
 use sculptd_geometry::boolean::Operation;
 
 /// A file was written.
@@ -24,6 +25,11 @@ pub(super) fn operation_title(operation: Operation) -> String {
         Operation::Difference => "operation-difference",
         Operation::ReverseDifference => "operation-reverse-difference",
     })
+}
+
+/// The message after one side was made from the other.
+pub(super) fn symmetric(made: &SymmetriseMade) -> String {
+    tr!("task-symmetrised", crossings = made.crossings)
 }
 
 /// The message after a repair: the holes, the pegs, and the findings that are left.

@@ -15,7 +15,7 @@ use super::latest_wins::LatestWins;
 use super::look_files::LookFiles;
 use super::pages::MapValues;
 use super::preview::{self, Preview};
-use super::task_texts::{failed, operation_title, repaired, saved};
+use super::task_texts::{failed, operation_title, repaired, saved, symmetric};
 use super::thickness_task::{ThicknessRequest, WallReport, follow};
 use super::wiring::Wiring;
 use crate::language::{current, set_current, tr};
@@ -35,6 +35,7 @@ use sculptd_daemon::remesh_job::{Remeshed, Wanted};
 use sculptd_daemon::repair_jobs::RepairRequest;
 use sculptd_daemon::scene_jobs::{SceneBoolean, Selection};
 use sculptd_daemon::snap_jobs::{self, PickedFace};
+use sculptd_daemon::symmetrise_job::{SymmetriseMade, SymmetriseWanted, symmetrised};
 use sculptd_daemon::trim;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::{
@@ -505,6 +506,13 @@ impl Tasks {
             tr!("task-decimated", before = before, now = now, crossings = crossing)
         };
         self.operate("sculptd-remesh", (shown, commands), job, compute, done);
+    }
+
+    /// One side of the active object becomes the mirror image of the other.
+    pub fn symmetrise(&self, wanted: SymmetriseWanted, to: Loop) {
+        let compute = move |now: &Published, job: &Job| symmetrised(now, wanted, job);
+        let done = |m: Installed<SymmetriseMade>| symmetric(&m.made);
+        self.operate("sculptd-boolean", to, Arc::default(), compute, done);
     }
 
     /// Writes the shadow's outline.

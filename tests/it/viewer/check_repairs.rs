@@ -24,7 +24,7 @@ fn hollow() -> TriMesh {
 
 fn asked(h: &Harness<'_, State>) -> Vec<RepairRequest> {
     let of = |a: &UiRequest| match a {
-        UiRequest::Repair(request) => Some(*request),
+        UiRequest::Repair(request) => Some(request.clone()),
         _ => None,
     };
     h.state().asked.iter().filter_map(of).collect()
@@ -67,10 +67,20 @@ fn a_finding_is_repaired_by_its_button_and_the_page_asks_for_a_base_and_a_split(
     h.get_by_label("Add draft").click();
     h.run_steps(2);
     assert!(matches!(asked(&h)[3].repair, WantedRepair::Draft(angle) if angle == 1.5));
+    h.get_by_label("Thicken").click();
+    h.run_steps(2);
+    assert!(matches!(asked(&h)[4].repair, WantedRepair::Thicken(wall) if wall == 1.2));
+    h.state_mut().ui_state.check.repairs.text = "No. 7".into();
+    h.run_steps(2);
+    h.get_by_label("Add text").click();
+    h.run_steps(2);
+    let all = asked(&h);
+    let WantedRepair::Text(text) = &all[5].repair else { panic!("{all:?}") };
+    assert!(text.text == "No. 7" && text.along.is_some() && text.relief == 0.6, "{text:?}");
     // While another change is under way nothing is asked for.
     h.state_mut().ui_state.joining = true;
     h.run_steps(2);
     h.get_by_label("Drain").click();
     h.run_steps(2);
-    assert_eq!(asked(&h).len(), 4);
+    assert_eq!(asked(&h).len(), 6);
 }

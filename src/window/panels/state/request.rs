@@ -9,6 +9,7 @@ use sculptd_daemon::decimate_job::DecimateWanted;
 use sculptd_daemon::quad_job::QuadsWanted;
 use sculptd_daemon::remesh_job::Wanted;
 use sculptd_daemon::repair_jobs::RepairRequest;
+use sculptd_daemon::symmetrise_job::SymmetriseWanted;
 use sculptd_daemon::trim::Part;
 use sculptd_daemon::window_link::NextSculpture;
 use sculptd_devices::pad_actions::{Binding, Control};
@@ -77,6 +78,8 @@ pub enum UiRequest {
     Decimate(DecimateWanted),
     /// The object is repaired for printing or moulding.
     Repair(RepairRequest),
+    /// One side of the active object from the other.
+    Symmetrise(SymmetriseWanted),
     /// Distances are those to the object as it is now.
     Reference,
     /// The shadow's outline is written.

@@ -774,6 +774,9 @@ class Placement(TypedDict):
     # A rotation as a quaternion: x, y, z, w. It is brought to unit length.
     turn: NotRequired[Sequence[float]]
 
+# An axis of the world.
+PlaneAxis: TypeAlias = Literal['x', 'y', 'z']
+
 # A factor from pressure: at_zero + (1 - at_zero) * pressure^gamma.
 class PressureCurve(TypedDict):
     # The factor without pressure. 1: pressure does not matter.
@@ -1157,6 +1160,30 @@ class SubscribeReply(TypedDict):
     # The events that follow from now on.
     events: Sequence[EventName]
 
+# Parameters of symmetrise.
+class SymmetriseParams(TypedDict):
+    # Normal of the plane through the middle of the object.
+    axis: PlaneAxis
+    # Keeps the side against the axis, and not the one towards which it points.
+    negative: NotRequired[bool]
+
+# Reply of symmetrise. Volumes are in the mesh's unit.
+class SymmetriseReply(TypedDict):
+    # Layers that were baked into the surface, which is another one now.
+    layers_baked: int
+    # Duration, in seconds.
+    seconds: float
+    # Triangles of the new mesh.
+    triangles: int
+    # Vertices of the new mesh.
+    vertices: int
+    # The volume after.
+    volume: float
+    # The volume before.
+    volume_before: float
+    # What must be known of the figures, one sentence each.
+    warnings: NotRequired[Sequence[str]]
+
 # State of knowledge about the desktop's mapping of a tablet.
 TabletPlace: TypeAlias = Literal['area', 'unknown', 'learned', 'cut']
 
@@ -1176,6 +1203,21 @@ class TakeUpReply(TypedDict):
     triangles: int
     # Data that was left out or guessed, one sentence each.
     warnings: Sequence[str]
+
+# The text of text, of 1 to 200 letters.
+class TextRepair(TypedDict):
+    # The surface is looked for from at in this direction, and not nearest to it.
+    along: NotRequired[Sequence[float] | None]
+    # Its middle; the nearest place of the surface is taken.
+    at: Sequence[float]
+    # The height of a capital letter.
+    height: float
+    # How far it rises from the surface; below 0 how deep it is engraved.
+    relief: float
+    # The text; a line break begins a line.
+    text: str
+    # The direction in which the letters stand; without it up.
+    upright: NotRequired[Sequence[float] | None]
 
 # Definition of wall thickness; as --method of sculptd thickness.
 ThicknessDefinition: TypeAlias = Literal['ray', 'cone', 'sphere']
@@ -1548,7 +1590,8 @@ class Client:
         ...
     def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
         """Repairs the object for printing or moulding, then checks it again: a flat base, a split
-        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
+        with pegs and sockets, drain holes, vents, draft, thicker walls, or text. One step of
+        undo."""
         ...
     def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
@@ -1559,6 +1602,10 @@ class Client:
     def subscribe(self) -> SubscribeReply:
         """From now on sends a line for each change of mesh, history, brush, losses or session
         file."""
+        ...
+    def symmetrise(self, *, axis: PlaneAxis, negative: bool = ...) -> SymmetriseReply:
+        """Replaces one side of a plane through the middle of the object, which must be a solid,
+        by the mirror image of the other: one step of undo."""
         ...
     def take_up(self, *, path: str) -> TakeUpReply:
         """Puts a mesh from a file of at most 1 GiB into the hands, to be carried to its place."""
@@ -1847,7 +1894,8 @@ class AsyncClient:
         ...
     async def repair(self, *, repair: RepairKind, plate: bool = ..., up: Sequence[float] = ...) -> RepairReply:
         """Repairs the object for printing or moulding, then checks it again: a flat base, a split
-        with pegs and sockets, drain holes, vents, or draft. One step of undo."""
+        with pegs and sockets, drain holes, vents, draft, thicker walls, or text. One step of
+        undo."""
         ...
     async def shutdown(self) -> ShutdownReply:
         """Ends the daemon as a signal would."""
@@ -1858,6 +1906,10 @@ class AsyncClient:
     async def subscribe(self) -> SubscribeReply:
         """From now on sends a line for each change of mesh, history, brush, losses or session
         file."""
+        ...
+    async def symmetrise(self, *, axis: PlaneAxis, negative: bool = ...) -> SymmetriseReply:
+        """Replaces one side of a plane through the middle of the object, which must be a solid,
+        by the mirror image of the other: one step of undo."""
         ...
     async def take_up(self, *, path: str) -> TakeUpReply:
         """Puts a mesh from a file of at most 1 GiB into the hands, to be carried to its place."""
