@@ -1,14 +1,16 @@
 //! Ticks of a stroke with and without the live thickness map beside them, and how long after pen-up
-//! the map is right.
+//! the map is right; or with and without the live score of an exhibit.
 //!
-//!     cargo run --release --no-default-features --example live [-- SECONDS [VERTICES [gap]]]
+//!     cargo run --release --no-default-features --example live [-- SECONDS [VERTICES [gap|score]]]
 //!
 //! A hollow ball of VERTICES (500,000: a million triangles) is sculpted at 120 ticks a second, a
 //! dab of about 5,000 vertices each, out and in by turns. The map's thread gets each tick's
 //! snapshot, the newest wins, as in the viewer. The map is of walls, or with `gap` of gaps: the
-//! rays of half of the vertices then hit nothing.
+//! rays of half of the vertices then hit nothing. With `score` the clay is the block of the exhibit
+//! `figurine`, and its score is measured as during a visit.
 
 use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
@@ -18,6 +20,8 @@ use glam::Vec3;
 use sculptd_clay::brush::GaussianBrush;
 use sculptd_clay::live_thickness::LiveMap;
 use sculptd_clay::{Clay, Reach, Snapshot, Workers};
+use sculptd_daemon::kiosk::exhibit;
+use sculptd_daemon::kiosk::exhibit::score::Goal;
 use sculptd_daemon::pacer::Pacer;
 use sculptd_devices::Clock;
 use sculptd_geometry::job::Job;
@@ -35,6 +39,26 @@ fn hollow(vertices: usize) -> TriMesh {
     ball.positions.extend(inner);
     ball.triangles.extend(flipped);
     ball
+}
+
+/// What is measured beside the ticks.
+#[derive(Debug, Clone)]
+enum Beside {
+    Map(MeasuredSide),
+    Score(Arc<Goal>),
+}
+
+/// Time between two scores during a visit.
+const SCORE_REST: Duration = Duration::from_millis(300);
+
+/// What the score's thread does: the newest snapshot, then a rest.
+fn score(goal: &Goal, newest: &cc::Receiver<(Snapshot, Vec3)>, stop: &AtomicBool) {
+    let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
+    while !stop.load(Relaxed) {
+        let Ok((snapshot, _)) = newest.recv_timeout(Duration::from_millis(20)) else { continue };
+        let _ = pool.install(|| goal.score(&snapshot.to_tri(), &Job::default()));
+        let _ = cc::never::<()>().recv_timeout(SCORE_REST);
+    }
 }
 
 struct Ticks {
@@ -74,12 +98,7 @@ fn follow(
     }
 }
 
-fn stroke(
-    plain: &TriMesh,
-    seconds: f64,
-    clock: &Clock,
-    beside: Option<MeasuredSide>,
-) -> Option<Ticks> {
+fn stroke(plain: &TriMesh, seconds: f64, clock: &Clock, beside: Option<Beside>) -> Option<Ticks> {
     let job = Job::default();
     let mut mesh = Clay::build(plain, &job).ok()?;
     let workers = Workers::new(1);
@@ -90,7 +109,11 @@ fn stroke(
     let (send, newest) = cc::bounded(1);
     let (right, rights) = cc::unbounded();
     let stop = Arc::new(AtomicBool::new(false));
-    let thread = if let Some(side) = beside {
+    let maps = matches!(beside, Some(Beside::Map(_)));
+    let thread = if let Some(Beside::Score(goal)) = beside {
+        let (stop, drain) = (stop.clone(), newest.clone());
+        Some(std::thread::spawn(move || score(&goal, &drain, &stop)))
+    } else if let Some(Beside::Map(side)) = beside {
         let mut map = LiveMap::new(&mesh.snapshot(), side, &job).ok()?;
         map.work(Vec3::ZERO, usize::MAX, &job).ok()?;
         let (stop, drain) = (stop.clone(), newest.clone());
@@ -126,7 +149,7 @@ fn stroke(
         // One place: what was not taken yet is old.
         let _ = newest.try_recv();
         let _ = send.try_send((snapshot, centre));
-        if last && beside.is_some() {
+        if last && maps {
             let up = clock.now_us();
             let done = rights.iter().find(|r| *r >= revision);
             out.right_ms.extend(done.map(|_| (clock.now_us() - up) as f64 * 1e-3));
@@ -144,13 +167,21 @@ fn main() {
     let args: Vec<String> = std::env::args().collect();
     let number = |i: usize, or: f64| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(or);
     let (seconds, vertices) = (number(1, 10.0), number(2, 500_000.0) as usize);
-    let plain = hollow(vertices);
     let clock = Clock::monotonic();
-    let gap = args.get(3).is_some_and(|a| a == "gap");
-    let side = if gap { MeasuredSide::Gap } else { MeasuredSide::Wall };
+    let (plain, kind) = match args.get(3).map(String::as_str) {
+        Some("score") => {
+            let exhibit = exhibit::open(Path::new("figurine"), &Job::default());
+            let Ok(exhibit) = exhibit else { return };
+            let Some(goal) = exhibit.steps[0].goal.clone() else { return };
+            ((*exhibit.start).clone(), Beside::Score(goal))
+        }
+        Some("gap") => (hollow(vertices), Beside::Map(MeasuredSide::Gap)),
+        _ => (hollow(vertices), Beside::Map(MeasuredSide::Wall)),
+    };
     // In turns, so that a busy machine is busy for both.
     for _ in 0..3 {
-        for beside in [None, Some(side)] {
+        for beside in [None, Some(kind.clone())] {
+            let what = if beside.is_some() { "with   " } else { "without" };
             let Some(Ticks { mut us, mut right_ms }) = stroke(&plain, seconds, &clock, beside)
             else {
                 return;
@@ -160,9 +191,8 @@ fn main() {
             let at = |q: f64| us.get((us.len() as f64 * q) as usize).copied().unwrap_or(0);
             let _ = writeln!(
                 std::io::stdout(),
-                "{} map: tick p50 {} us, p90 {}, p99 {}, max {}; right after pen-up in ms: \
+                "{what}: tick p50 {} us, p90 {}, p99 {}, max {}; right after pen-up in ms: \
                     {right_ms:.1?}",
-                if beside.is_some() { "with   " } else { "without" },
                 at(0.5),
                 at(0.9),
                 at(0.99),

@@ -125,10 +125,11 @@ fn invitation(_: &LiveRun) -> Option<sculptd_daemon::qr_code::Invitation> {
 /// Returns an error that names the unknown material and the known ones.
 #[cfg(feature = "viewer")]
 pub fn check_screen(screen: &sculptd_daemon::kiosk::ScreenSettings) -> Result<(), String> {
-    let names = sculptd_window::look::MATERIALS.map(|m| m.short_name());
-    if screen.material.is_empty() || names.contains(&screen.material.as_str()) {
+    use sculptd_window::look::{MATERIALS, material_index};
+    if material_index(&screen.material).is_some() {
         return Ok(());
     }
+    let names = MATERIALS.map(|m| m.short_name());
     Err(format!("screen.material = \"{}\": expected {}", screen.material, names.join(", ")))
 }
 

@@ -205,7 +205,9 @@ impl LiveRun {
         let mut first = first.transpose().map_err(LiveRunError::Kiosk)?;
         let (begun, visits) = match (&options.visits, &mut first) {
             (Some(folder), Some(first)) => {
-                recovery::begin(folder, first, begun, config, &mut notices)
+                let audit = options.kiosk.as_ref().map(|kiosk| kiosk.audit.clone());
+                let folders = (&**folder, &*audit.unwrap_or_default());
+                recovery::begin(folders, first, begun, config, &mut notices)
             }
             _ => (begun, None),
         };
@@ -525,13 +527,13 @@ fn screen(
     let (staff, show) = (!kiosk.staff_pin.is_empty(), kiosk.screen.clone());
     let (published, commands) = (live.published.clone(), live.commands.clone());
     let (clock, stop) = (clock.clone(), stop.clone());
-    let dim = kiosk.hours.dim;
+    let share_minutes = kiosk.share_minutes;
     let exhibits = first.forms.iter().filter_map(|form| form.exhibit.clone()).collect();
-    let settings = (kiosk, &words[0]);
+    let settings = (kiosk, &words[..]);
     let keeper = keeper::start(settings, first, published, commands, factory, clock, stop)
         .map_err(LiveRunError::Kiosk)?;
     let desk = keeper.desk;
-    let screen = Screen { desk, words, staff, show, watch: None, exhibits, dim };
+    let screen = Screen { desk, words, staff, show, watch: None, exhibits, share_minutes };
     Ok((Some(screen), Some(keeper.thread)))
 }
 

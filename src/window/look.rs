@@ -53,6 +53,14 @@ pub const MATERIALS: [Material; 8] = [
     material("material-steel", [0.62, 0.63, 0.65], 1.0, 160.0, 0.20).metal(),
 ];
 
+/// Returns the index in [`MATERIALS`] of a name in commands or settings; an empty one is the first.
+pub fn material_index(name: &str) -> Option<usize> {
+    match name {
+        "" => Some(0),
+        name => MATERIALS.iter().position(|material| material.short_name() == name),
+    }
+}
+
 /// Light source of the clay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -47,15 +47,17 @@ fn write(path: &Path, text: &str) {
     write_beside(path, |out| out.write_all(text.as_bytes())).expect("written");
 }
 
-/// The settings file of an installation. The first one listens, the others connect to it.
+/// The settings file of an installation, with a gallery. The first one listens, the others connect to it.
 fn installation(staff: &Staff, name: &str, listens: bool) -> PathBuf {
     let path = |ending: &str| staff.home.path().join(format!("{name}{ending}"));
     let key = path(".key").display().to_string();
     assert_eq!(staff.ask(&["key", name, "-o", &key]).0, Some(0));
     let way = if listens { "listen" } else { "connect" };
     let (fleet, endpoint) = (&staff.fleet, &staff.endpoint);
+    let gallery = path("-works");
+    std::fs::create_dir(&gallery).expect("made");
     let text = format!(
-        "idle_s = 45.0\n\n[fleet]\nname = \"{fleet}\"\nkey = \"{key}\"\n{way} = [\"{endpoint}\"]\n\
+        "idle_s = 45.0\ngallery = {gallery:?}\n\n[fleet]\nname = \"{fleet}\"\nkey = \"{key}\"\n{way} = [\"{endpoint}\"]\n\
          multicast = false\n"
     );
     write(&path(".toml"), &text);
@@ -79,14 +81,14 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
     let files = [("foyer", true), ("hall", false), ("tower", false)]
         .map(|(name, listens)| installation(&staff, name, listens));
     let _foyer = start(&files[0]);
-    let _hall = start(&files[1]);
+    let mut hall = start(&files[1]);
     let mut tower = start(&files[2]);
     until("all three are there", || staff.ask(&["list"]).1["here"] == 3);
-    let hall = staff.entry("hall");
-    assert_eq!(hall["state"]["visit"]["stage"], "attract");
-    assert!(hall["state"]["disk_free_bytes"].as_u64().is_some_and(|b| b > 0));
-    assert!(hall["state"]["ticks"]["p99_ms"].as_f64().is_some_and(|ms| ms > 0.0));
-    let old = hall["state"]["settings"]["revision"].clone();
+    let entry = staff.entry("hall");
+    assert_eq!(entry["state"]["visit"]["stage"], "attract");
+    assert!(entry["state"]["disk_free_bytes"].as_u64().is_some_and(|b| b > 0));
+    assert!(entry["state"]["ticks"]["p99_ms"].as_f64().is_some_and(|ms| ms > 0.0));
+    let old = entry["state"]["settings"]["revision"].clone();
 
     // Requests.
     let (code, said) = staff.ask(&["message", "The lights, please", "hall", "tower"]);
@@ -98,6 +100,25 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
     let lines = logs["answers"][0]["lines"].as_array().cloned().unwrap_or_default();
     let message = |l: &Value| l.as_str().is_some_and(|l| l.contains("The lights, please"));
     assert!(lines.iter().any(message), "{lines:?}");
+    // The buttons of the staff page, without the page.
+    let visit = |name: &str| staff.entry(name)["state"]["visit"].clone();
+    assert_eq!(staff.ask(&["clean", "hall"]).0, Some(0));
+    until("it is closed", || visit("hall")["closed"] == true);
+    assert_eq!(
+        (&visit("hall")["cleaning"], &visit("foyer")["closed"]),
+        (&true.into(), &false.into())
+    );
+    assert_eq!(staff.ask(&["open", "hall"]).0, Some(0));
+    until("it is open", || visit("hall")["closed"] == false);
+    let (code, said) = staff.ask(&["export", "hall", "tower"]);
+    assert_eq!((code, said["answers"][0]["outcome"].as_str()), (Some(0), Some("done")), "{said}");
+    until("there is a result", || {
+        staff.entry("hall")["state"]["exported"].as_str().is_some_and(|t| t.contains("no work"))
+    });
+    let run = |name: &str| staff.entry(name)["state"]["run"].clone();
+    let before = run("hall");
+    assert_eq!(staff.ask(&["restart", "hall"]).0, Some(0));
+    until("it runs again", || run("hall") != before && staff.ask(&["list"]).1["here"] == 3);
     // Another fleet's key is not heard.
     let stranger = Staff {
         home: tempfile::tempdir().expect("a folder"),
@@ -107,6 +128,7 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
     assert_eq!(stranger.ask(&["create", &fleet]).0, Some(0));
     assert_eq!(stranger.ask(&["list"]).1["here"], 0, "nor is what it hears believed");
     assert_eq!(stranger.ask(&["message", "Out", "hall"]).0, Some(1));
+    assert_eq!(stranger.ask(&["end", "hall"]).0, Some(1));
 
     // Settings that do well.
     let good = staff.home.path().join("good.toml");
@@ -157,7 +179,9 @@ fn staff_see_ask_and_roll_out_over_real_processes() {
     // A lost installation is reported within ten seconds: the list waits for four.
     tower.child.kill().expect("killed");
     tower.child.wait().expect("ended");
+    assert_eq!(staff.ask(&["end", "hall"]).0, Some(0));
+    until("it ends for good", || hall.child.try_wait().expect("waited for").is_some());
     let (_, list) = staff.ask(&["list"]);
-    assert_eq!(list["here"], 2);
+    assert_eq!(list["here"], 1);
     assert_eq!(staff.entry("tower")["here"], false, "it is remembered");
 }

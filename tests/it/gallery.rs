@@ -8,7 +8,8 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, SystemTime};
 
 use crate::waiting::until;
-use sculptd_daemon::kiosk::share::Share;
+use sculptd_daemon::kiosk::KioskConfig;
+use sculptd_daemon::kiosk::share::{Share, ShareTexts};
 use sculptd_daemon::kiosk::spool::Spool;
 use sculptd_daemon::kiosk::{gallery, spool};
 use sculptd_daemon::qr_code::Code;
@@ -119,10 +120,20 @@ fn a_place_that_is_none_is_said_before_visitors_come() {
     }
 }
 
+/// The texts of every language.
+fn texts(deleted: impl Fn(&Path) + Send + Sync + 'static) -> ShareTexts {
+    let languages = KioskConfig::default().every_language(sculptd::settings::LANGUAGES);
+    ShareTexts { languages: languages.expect("built-in"), deleted: Box::new(deleted) }
+}
+
 /// Status and body of a request.
 fn get(at: SocketAddr, path: &str, head: &str) -> (u16, Vec<u8>) {
+    ask("GET", at, path, head)
+}
+
+fn ask(method: &str, at: SocketAddr, path: &str, head: &str) -> (u16, Vec<u8>) {
     let mut stream = TcpStream::connect(at).expect("listens");
-    write!(stream, "GET {path} HTTP/1.1\r\n{head}\r\n\r\n").expect("sent");
+    write!(stream, "{method} {path} HTTP/1.1\r\n{head}\r\n\r\n").expect("sent");
     let mut all = Vec::new();
     stream.read_to_end(&mut all).expect("an answer");
     let end = all.windows(4).position(|w| w == b"\r\n\r\n").expect("a head") + 4;
@@ -138,7 +149,8 @@ fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
     gallery::keep(dir.path(), &shapes::uv_sphere(1.0, 9, 8)).expect("another");
     let clock = Clock::manual();
     let at = "127.0.0.1:0".parse().expect("an address");
-    let share = Share::start(at, "", Duration::from_secs(60), clock.clone()).expect("listens");
+    let minute = Duration::from_secs(60);
+    let share = Share::start(at, "", (minute, clock.clone()), texts(|_| {})).expect("listens");
     let at = share.address();
     let link = share.link(&path).expect("a link");
     let rest = link.url.strip_prefix(&format!("http://{at}")).expect("our address").to_owned();
@@ -167,6 +179,78 @@ fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
     check_code(&link.code);
 }
 
+#[test]
+fn a_visitor_sees_the_work_in_3_d_takes_it_home_and_deletes_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (here, there) = (dir.path().join("works"), dir.path().join("store"));
+    let spool = Spool::start(&here, &there.display().to_string()).expect("a place");
+    let ball = shapes::uv_sphere(1.0, 6, 8);
+    let (path, other) =
+        (gallery::keep(&here, &ball).expect("kept"), gallery::keep(&here, &ball).expect("kept"));
+    spool.wake();
+    until("both are sent", || spool.stand.sent.load(Relaxed) == 2 && waiting(&here).is_empty());
+    let clock = Clock::manual();
+    let at = "127.0.0.1:0".parse().expect("an address");
+    let lasts = (Duration::from_secs(600), clock.clone());
+    let share = Share::start(at, "", lasts, texts(spool.withdrawer(&here))).expect("listens");
+    let at = share.address();
+    let link = share.link(&path).expect("a link");
+    let rest = link.url.strip_prefix(&format!("http://{at}")).expect("our address").to_owned();
+    let host = format!("Host: {at}");
+    let page = |language: &str| {
+        let (status, page) = get(at, &rest, &format!("{host}\r\nAccept-Language: {language}"));
+        assert_eq!(status, 200);
+        String::from_utf8(page).expect("text")
+    };
+    // In the visitor's language, or else in the installation's.
+    assert!(page("ja,en;q=0.8").contains("作品を削除"));
+    assert!(page("pt-BR,de;q=0.7").contains("Mein Werk löschen"));
+    let text = page("xx");
+    assert!(text.contains("Delete my work") && text.contains("works for 10 min"), "{text}");
+    for file in ["work-000001.glb", "work-000001.stl", "share_page.js"] {
+        assert!(text.contains(&format!("\"{rest}/{file}\"")), "{file}: {text}");
+        assert_eq!(get(at, &format!("{rest}/{file}"), &host).0, 200, "{file}");
+        let own = format!("{host}\r\nOrigin: http://{at}");
+        assert_eq!(get(at, &format!("{rest}/{file}"), &own).0, 200, "{file}");
+    }
+    let stl = get(at, &format!("{rest}/work-000001.stl"), &host).1;
+    let triangles = ball.triangulate().0.triangles.len();
+    assert_eq!(stl.len(), 84 + 50 * triangles);
+    // Only our page deletes, and only this work.
+    let delete = format!("{rest}/delete");
+    for head in [host.clone(), format!("{host}\r\nOrigin: http://evil.example")] {
+        assert_eq!(ask("POST", at, &delete, &head).0, 403, "{head}");
+    }
+    let own = format!("{host}\r\nOrigin: http://{at}");
+    assert_eq!(ask("POST", at, &rest, &own).0, 404);
+    assert_eq!(ask("POST", at, "/00000000000000000000000000000000/delete", &own).0, 404);
+    assert_eq!(get(at, &delete, &host).0, 404);
+    assert!(path.exists());
+    assert_eq!(ask("POST", at, &delete, &own).0, 200);
+    assert!(!path.exists() && !path.with_extension("png").exists() && other.exists());
+    assert_eq!(get(at, &rest, &host).0, 404);
+    assert!(!share.is_good(&link));
+    let listed = std::fs::read_to_string(here.join("index.html")).expect("the page");
+    assert!(listed.contains("1 work<") && !listed.contains("work-000001"), "{listed}");
+    // Nor where it was sent to.
+    until("it is deleted there", || !there.join("work-000001.glb").exists());
+    until("its picture too", || !there.join("work-000001.png").exists());
+    assert!(there.join("work-000002.glb").exists());
+    // The file for the download goes with its link.
+    let stls = || {
+        let files = std::fs::read_dir(here.join("outgoing")).expect("a folder");
+        files
+            .filter(|e| e.as_ref().is_ok_and(|e| e.path().extension() == Some("stl".as_ref())))
+            .count()
+    };
+    assert_eq!(stls(), 0);
+    share.link(&other).expect("a link");
+    assert_eq!(stls(), 1);
+    clock.set_us(601_000_000);
+    share.drop_expired();
+    assert_eq!(stls(), 0);
+}
+
 /// The three eyes of a QR code, seven squares each, at three corners and not at the fourth.
 fn check_code(code: &Code) {
     let dark = |x: usize, y: usize| code.dark[y * code.side + x];
@@ -190,8 +274,8 @@ fn a_name_of_ours_is_answered_to() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = gallery::keep(Path::new(dir.path()), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
     let at = "127.0.0.1:0".parse().expect("an address");
-    let share = Share::start(at, "museum.local", Duration::from_secs(60), Clock::manual())
-        .expect("listens");
+    let lasts = (Duration::from_secs(60), Clock::manual());
+    let share = Share::start(at, "museum.local", lasts, texts(|_| {})).expect("listens");
     let at = share.address();
     let link = share.link(&path).expect("a link");
     let rest =

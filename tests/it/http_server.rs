@@ -5,7 +5,7 @@ use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::time::Duration;
 
 use sculptd_daemon::http::bounds::{CONNECTIONS, HEAD_BYTES, HEAD_TIME};
-use sculptd_daemon::kiosk::share::Share;
+use sculptd_daemon::kiosk::share::{Share, ShareTexts};
 use sculptd_devices::Clock;
 
 use crate::hostile::{Daemon, descriptors, memory_kib, more_descriptors};
@@ -20,7 +20,8 @@ fn share_of(bytes: usize) -> (tempfile::TempDir, Share, String, Vec<u8>) {
     std::fs::write(&path, &content).expect("written");
     let at = "127.0.0.1:0".parse().expect("an address");
     let hour = Duration::from_secs(3600);
-    let share = Share::start(at, "", hour, Clock::monotonic()).expect("listens");
+    let texts = ShareTexts { languages: vec![], deleted: Box::new(|_| {}) };
+    let share = Share::start(at, "", (hour, Clock::monotonic()), texts).expect("listens");
     let link = share.link(&path).expect("a link");
     let token = link.url.rsplit('/').next().expect("a token").to_owned();
     (dir, share, format!("/{token}/work-000001.glb"), content)

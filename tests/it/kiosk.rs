@@ -210,7 +210,7 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let stop = Arc::new(AtomicBool::new(false));
     let (published, commands) = (live.published.clone(), live.commands.clone());
     let keeper = keeper::start(
-        (kiosk, &words),
+        (kiosk, std::slice::from_ref(&words)),
         start,
         published,
         commands,
@@ -255,6 +255,7 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     }
     until("the visitor sculpts", || shown().figures.dabs > before && shown().mesh.hash() != clean);
     touch(60.0, false, false);
+    assert!(!keeper.desk.asks_consent.load(Relaxed));
     until("a countdown", || stage() == Some(Stage::Countdown));
     until("the visit ends", || {
         keeper.desk.view.lock().expect("a view").is_some_and(|v| v.visits == 1)
@@ -263,14 +264,43 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let audit = std::fs::read_to_string(dir.path().join("audit.jsonl")).expect("a line");
     assert!(audit.contains("\"visit\":1") && audit.contains("\"kept\":true"), "{audit}");
     until("the film plays again", || stage() == Some(Stage::Attract));
+    // A visitor who ends the visit is asked, and gets the code.
+    until("the next film sculpts", || shown().figures.dabs > 20 && shown().mesh.hash() != clean);
+    touch(10.0, true, true);
+    until("a visit begins", || stage() == Some(Stage::Working));
+    until("the film's work is gone", || shown().mesh.hash() == clean);
+    for i in 0..40 {
+        touch(40.0 + i as f32 * 0.5, true, true);
+    }
+    until("the visitor sculpts", || shown().mesh.hash() != clean);
+    touch(60.0, false, false);
+    keeper.desk.finished.store(true, Relaxed);
+    until("the farewell", || stage() == Some(Stage::Farewell));
+    until("the question", || keeper.desk.asks_consent.load(Relaxed));
+    assert_eq!(gallery::works(&dir.path().join("works")).expect("listed").len(), 2);
     #[cfg(unix)]
     {
         let link = || keeper.desk.link.lock().expect("a desk").clone();
-        let shown = link().expect("the code is on the screen");
+        assert!(link().is_none(), "nobody consented yet");
+        keeper.desk.consents.store(true, Relaxed);
+        until("the code is on the screen", || link().is_some());
+        let shown = link().expect("a link");
         assert!(shown.url.starts_with("http://127.0.0.1:") && shown.until_us > clock.now_us());
         until("a code that leads nowhere any more is gone", || link().is_none());
         assert!(clock.now_us() >= shown.until_us);
     }
+    keeper.desk.finished.store(true, Relaxed);
+    until("the film plays again", || stage() == Some(Stage::Attract));
+    until("works of the day turn on the wall", || {
+        keeper.desk.view.lock().expect("a view").is_some_and(|v| v.work.is_some())
+    });
+    let (work, yaw) = (shown().mesh.hash(), shown().camera.yaw);
+    until("it turns", || shown().camera.yaw != yaw);
+    assert_ne!(work, clean);
+    touch(10.0, true, true);
+    until("a visit begins on the wall", || stage() == Some(Stage::Working));
+    until("nothing of the wall is left", || shown().mesh.hash() == clean);
+    touch(60.0, false, false);
     let staff = || keeper.desk.view.lock().expect("a view").is_some_and(|v| v.staff);
     keeper.desk.ask(StaffRequest::End);
     pause(300);
@@ -326,7 +356,7 @@ fn a_choice_that_comes_after_the_touch_is_the_visit_s() {
     let words = kiosk.words(sculptd::settings::LANGUAGES).expect("English");
     let stop = Arc::new(AtomicBool::new(false));
     let keeper = keeper::start(
-        (kiosk, &words),
+        (kiosk, std::slice::from_ref(&words)),
         start,
         live.published.clone(),
         live.commands.clone(),

@@ -10,6 +10,7 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::daemon_process::Daemon;
+use crate::hostile::{descriptors, memory_kib};
 use crate::waiting::{pause, until};
 
 const STROKE: &str = r#"{
@@ -108,6 +109,55 @@ fn a_visit_goes_on_after_a_kill_and_its_work_comes_to_the_gallery() {
     until("it sculpts", || daemon.has_told("end with Ctrl-C"));
     assert!(!daemon.has_told("interrupted"), "nobody came");
     assert_eq!(audit(daemon.home.path()).len(), 1);
+}
+
+/// A kill between the write of the work and the removal of the visit's file, as its files show it.
+#[test]
+fn a_kill_while_a_work_is_put_away_keeps_it_once() {
+    let daemon = installation(tempfile::tempdir().expect("a folder"), LONG);
+    visit(&daemon);
+    let home = ended(daemon, rustix::process::Signal::KILL);
+    let folder = home.path().join("sculptd/kiosk");
+    let kept = std::fs::read(folder.join("visit.sculpt")).expect("the visit");
+    // It goes on, and is put away.
+    let daemon = installation(home, LONG);
+    until("it says so", || daemon.has_told("the last visit was interrupted"));
+    let home = ended(daemon, rustix::process::Signal::TERM);
+    assert_eq!((works(home.path()), audit(home.path()).len()), (1, 1));
+    let name = "work-000001.glb";
+    assert_eq!(audit(home.path())[0]["work"], name);
+    let note = |home: &Path| {
+        let put = |file: &Path, bytes: &[u8]| {
+            sculptd_geometry::io::write_beside(file, |out| out.write_all(bytes)).expect("written");
+        };
+        put(&folder.join("visit.sculpt"), &kept);
+        put(
+            &folder.join("putting-away"),
+            home.join("works").join(name).to_str().expect("text").as_bytes(),
+        );
+    };
+    // Killed after the line in the audit, and before it.
+    let mut home = home;
+    for without_line in [false, true] {
+        note(home.path());
+        if without_line {
+            std::fs::remove_file(home.path().join("visits.log")).expect("removed");
+        }
+        let daemon = installation(home, LONG);
+        until("it says so", || daemon.has_told("its work is work-000001.glb in the gallery"));
+        until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+        home = ended(daemon, rustix::process::Signal::TERM);
+        assert_eq!(works(home.path()), 1);
+        let lines = audit(home.path());
+        assert_eq!(lines.len(), 1, "{lines:?}");
+        assert_eq!((&lines[0]["work"], &lines[0]["interrupted"]), (&json!(name), &json!(true)));
+        assert!(!folder.join("visit.sculpt").exists() && !folder.join("putting-away").exists());
+    }
+    // A note of a work that was never written changes nothing: the visit goes on.
+    note(home.path());
+    std::fs::remove_file(home.path().join("works").join(name)).expect("removed");
+    let daemon = installation(home, LONG);
+    until("it says so", || daemon.has_told("the last visit was interrupted"));
 }
 
 #[test]
@@ -212,60 +262,151 @@ fn bytes(folder: &Path, without: &str) -> u64 {
         .sum()
 }
 
-/// Days of twenty visits; the last visit of each day is killed, goes on and is put away. A month by
-/// `SCULPTD_LONG`, which takes half an hour, or as many days as `SCULPTD_DAYS` says. Beside the
-/// gallery and the line of each visit the disk does not fill.
+/// Limit of the time from a touch to the beginning of its visit, in microseconds.
+const BEGINS_US: u64 = 1_000_000;
+
+/// What was measured in a day of visits.
+#[derive(Debug, Clone, Copy, Default)]
+struct Day {
+    /// Most bytes on the disk beside the gallery and the audit.
+    disk: u64,
+    memory_kib: u64,
+    descriptors: usize,
+    /// Longest time from a touch to its visit, microseconds.
+    begins_us: u64,
+}
+
+/// A visitor sculpts from the attract loop on. Returns the time from the touch to the beginning of
+/// the visit, in microseconds.
+fn come(daemon: &Daemon, clock: &sculptd_devices::Clock) -> u64 {
+    let begun = || {
+        let lines = daemon.told.lock().expect("no panic");
+        lines.iter().filter(|l| l.contains("a visit begins")).count()
+    };
+    let before = begun();
+    let mut took = 0;
+    std::thread::scope(|scope| {
+        let touched = clock.now_us();
+        let stroke = scope.spawn(|| daemon.ctl("stroke", Some(STROKE)));
+        until("a visit begins", || begun() > before);
+        // With the start of the program that asks for the stroke.
+        took = clock.now_us() - touched;
+        stroke.join().expect("no panic").expect("a stroke");
+    });
+    took
+}
+
+/// Settings with opening hours: today, or on another day of the week alone.
+fn day_settings(open: bool, home: &Path) -> String {
+    let clock = sculptd_daemon::local_time::LocalClock::new().expect("a calendar");
+    let today = clock.now().expect("a time").weekday as usize;
+    let days = ["mon", "tue", "wed", "thu", "fri", "sat", "sun"];
+    let (from, to) = if open { (today, (today + 1) % 7) } else { (today + 3, today + 3) };
+    let store = home.join("works/store");
+    let span = format!("{}-{} 0:00-24:00", days[from % 7], days[to % 7]);
+    format!(
+        "idle_s = 1\ncountdown_s = 1\nexhibits = [\"relief\", \"pot\"]\nwall_s = 5\n\
+         gallery_store = {store:?}\n\n[hours]\nopen = [\"{span}\"]"
+    )
+}
+
+/// A night: it is closed, and a touch begins no visit.
+fn night(home: tempfile::TempDir) -> tempfile::TempDir {
+    let settings = day_settings(false, home.path());
+    let daemon = installation(home, &settings);
+    until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+    daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+    pause(500);
+    assert!(!daemon.has_told("a visit begins"), "it is closed");
+    ended(daemon, rustix::process::Signal::TERM)
+}
+
+/// Days of twenty visits to two exhibits, with opening hours; for a visit in each day the place that
+/// works are sent to is gone, and the last visit is killed, goes on and is put away. A month by
+/// `SCULPTD_LONG`, which takes forty minutes, or as many days as `SCULPTD_DAYS` says. Disk, memory
+/// and descriptors stay flat beside the gallery and the line of each visit; each visit begins within
+/// a second of the touch, and no first stroke is wiped.
 #[test]
 fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
     let asked = std::env::var("SCULPTD_DAYS").ok().and_then(|d| d.parse().ok());
     let long = std::env::var_os("SCULPTD_LONG").is_some();
     let (days, visits) = if long || asked.is_some() { (asked.unwrap_or(30), 20) } else { (2, 3) };
-    let settings = "idle_s = 1\ncountdown_s = 1";
     let clock = sculptd_devices::Clock::monotonic();
-    let mut daemon = installation(tempfile::tempdir().expect("a folder"), settings);
-    let (mut of_day, mut opened_us) = (Vec::new(), Vec::new());
+    let mut home = tempfile::tempdir().expect("a folder");
+    let (mut all, mut opened_us): (Vec<Day>, _) = (Vec::new(), Vec::new());
+    let mut seen_first_strokes = 0;
     for day in 0..days {
-        let mut most = 0;
+        let settings = day_settings(true, home.path());
+        let mut daemon = installation(home, &settings);
+        until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+        let mut of_day = Day::default();
         for visit in 1..=visits {
-            let home = daemon.home.path();
-            let before = (audit(home).len(), hash(&daemon));
-            daemon.ctl("stroke", Some(STROKE)).expect("a stroke");
+            let before = audit(daemon.home.path()).len();
+            let store = daemon.home.path().join("works/store");
+            if visit == 2 {
+                std::fs::rename(&store, store.with_extension("gone")).expect("moved");
+            }
+            of_day.begins_us = of_day.begins_us.max(come(&daemon, &clock));
+            // The first stroke is in the visit's clay, unless the visit is over already.
+            let steps = daemon.ctl("status", None).expect("an answer")["undo_steps"].as_u64();
+            if audit(daemon.home.path()).len() == before {
+                seen_first_strokes += 1;
+                assert!(steps >= Some(1), "day {day}, visit {visit}: the first stroke is gone");
+            }
             if visit == visits {
-                until("the visitor sculpts", || hash(&daemon) != before.1);
                 pause(400);
                 let home = ended(daemon, rustix::process::Signal::KILL);
                 // On a loaded machine the visit may be over before the kill.
-                let was_over = audit(home.path()).len() > before.0;
+                let was_over = audit(home.path()).len() > before;
                 let begun = clock.now_us();
-                daemon = installation(home, settings);
+                daemon = installation(home, &settings);
                 if !was_over {
                     until("it says so", || daemon.has_told("the last visit was interrupted"));
                     opened_us.push(clock.now_us() - begun);
                 }
             }
             let home = daemon.home.path();
-            until("the visit is over", || audit(home).len() == before.0 + 1);
-            assert_eq!(works(home), before.0 + 1, "day {day}, visit {visit}");
-            most = most.max(bytes(home, "works") - bytes_of(&home.join("visits.log")));
+            until("the visit is over", || audit(home).len() == before + 1);
+            assert_eq!(works(home), before + 1, "day {day}, visit {visit}");
+            of_day.disk =
+                of_day.disk.max(bytes(home, "works") - bytes_of(&home.join("visits.log")));
+            if visit == 2 {
+                std::fs::rename(store.with_extension("gone"), &store).expect("back");
+            }
+            if visit + 1 == visits {
+                of_day.memory_kib = memory_kib(daemon.child.id());
+                of_day.descriptors = descriptors(daemon.child.id());
+            }
         }
-        of_day.push(most);
+        let stored = || {
+            let there =
+                sculptd_daemon::kiosk::names::works(&daemon.home.path().join("works/store"));
+            there.map_or(0, |names| names.len())
+        };
+        until("all works are sent", || stored() == (day + 1) * visits);
+        home = night(ended(daemon, rustix::process::Signal::TERM));
+        println!("day {day}: {of_day:?}");
+        all.push(of_day);
     }
-    let lines = audit(daemon.home.path());
+    let lines = audit(home.path());
     let interrupted = lines.iter().filter(|l| l["interrupted"] == json!(true)).count();
     let killed = opened_us.len();
     assert_eq!((lines.len(), interrupted), (days * visits, killed), "each visit has its line");
-    assert!(killed > 0, "no visit was killed");
+    assert!(killed > 0 && seen_first_strokes > 0, "{killed} killed, {seen_first_strokes} seen");
     opened_us.sort_unstable();
     println!(
-        "{} visits, {} killed; most bytes of a day beside the gallery: {of_day:?}; back and open \
-         after {} ms in the middle, {} ms at most",
+        "{} visits, {killed} killed, {seen_first_strokes} first strokes seen; back and open after \
+         {} ms in the middle, {} ms at most",
         lines.len(),
-        killed,
         opened_us[killed / 2] / 1000,
         opened_us[killed - 1] / 1000
     );
-    let (first, last) = (of_day[0], of_day[of_day.len() - 1]);
-    assert!(last <= first + first / 10 + 65_536, "{first} bytes on the first day, {last} then");
+    let (first, last) = (all[0], all[all.len() - 1]);
+    let flat = |first: u64, last: u64, more: u64| last <= first + first / 10 + more;
+    assert!(flat(first.disk, last.disk, 65_536), "disk: {all:?}");
+    assert!(flat(first.memory_kib, last.memory_kib, 16 << 10), "memory: {all:?}");
+    assert!(flat(first.descriptors as u64, last.descriptors as u64, 4), "descriptors: {all:?}");
+    assert!(all.iter().all(|day| day.begins_us < BEGINS_US), "late visits: {all:?}");
 }
 
 fn bytes_of(file: &Path) -> u64 {

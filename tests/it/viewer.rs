@@ -10,6 +10,7 @@ mod cut;
 mod files;
 mod four_views;
 mod kiosk;
+mod kiosk_screens;
 mod languages;
 mod layers;
 mod layout;

@@ -17,7 +17,7 @@ use sculptd_network::fleet::access::FleetKey;
 use sculptd_network::fleet::fleet_console::FleetConsole;
 use sculptd_network::fleet::fleet_link::StaffLink;
 use sculptd_network::fleet::registry::FleetChange;
-use sculptd_network::fleet::request::{FleetAction, FleetOutcome};
+use sculptd_network::fleet::request::{FleetAction, FleetOutcome, StaffOrder};
 use sculptd_network::fleet::requester::RequestEnd;
 use sculptd_network::fleet::state::{InstallationState, fleet_name};
 use sculptd_network::random::system_entropy;
@@ -84,6 +84,31 @@ pub enum FleetCommand {
     },
     /// End the visit as if the visitor had pressed "finished".
     RestartVisit {
+        #[command(flatten)]
+        to: Recipients,
+    },
+    /// Close for cleaning: a still screen, and no visitor may come.
+    Clean {
+        #[command(flatten)]
+        to: Recipients,
+    },
+    /// Open again after cleaning.
+    Open {
+        #[command(flatten)]
+        to: Recipients,
+    },
+    /// Pack the works of today into one file in each gallery.
+    Export {
+        #[command(flatten)]
+        to: Recipients,
+    },
+    /// Restart the programs.
+    Restart {
+        #[command(flatten)]
+        to: Recipients,
+    },
+    /// End the programs for good: somebody on site must start them again.
+    End {
         #[command(flatten)]
         to: Recipients,
     },
@@ -204,6 +229,11 @@ pub fn run(args: &FleetArgs, json: bool) -> Outcome {
             ask_all(args, to, &FleetAction::Message { text: text.clone() }, json)
         }
         FleetCommand::RestartVisit { to } => ask_all(args, to, &FleetAction::RestartVisit, json),
+        FleetCommand::Clean { to } => order(args, to, StaffOrder::Clean, json),
+        FleetCommand::Open { to } => order(args, to, StaffOrder::Open, json),
+        FleetCommand::Export { to } => order(args, to, StaffOrder::Export, json),
+        FleetCommand::Restart { to } => order(args, to, StaffOrder::Restart, json),
+        FleetCommand::End { to } => order(args, to, StaffOrder::End, json),
         FleetCommand::Logs { to, lines } => {
             ask_all(args, to, &FleetAction::Logs { lines: *lines }, json)
         }
@@ -214,6 +244,10 @@ pub fn run(args: &FleetArgs, json: bool) -> Outcome {
             ask_all(args, to, &FleetAction::TakeBackSettings { revision: None }, json)
         }
     }
+}
+
+fn order(args: &FleetArgs, to: &Recipients, order: StaffOrder, json: bool) -> Outcome {
+    ask_all(args, to, &FleetAction::Staff { order }, json)
 }
 
 fn create(name: &str, json: bool) -> Outcome {

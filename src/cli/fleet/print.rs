@@ -13,6 +13,8 @@ use sculptd_network::fleet::state::{InstallationState, VisitStage};
 
 fn stage(state: &InstallationState) -> &'static str {
     match state.visit.stage {
+        _ if state.visit.cleaning => "cleaning",
+        VisitStage::Attract if state.visit.closed => "closed",
         VisitStage::Attract => "attract",
         VisitStage::Working => "working",
         VisitStage::Countdown => "countdown",
@@ -38,8 +40,16 @@ pub fn list(fleet: &str, registry: &FleetRegistry, json: bool) {
     let here = registry.all().filter(|(_, e)| e.is_here()).count();
     let shown = json!({ "fleet": fleet, "here": here, "installations": all });
     answer(json, &shown, |out| {
-        let head =
-            ["installation", "state", "visits", "errors", "disk free", "devices", "tick p99"];
+        let head = [
+            "installation",
+            "state",
+            "today",
+            "visits",
+            "errors",
+            "disk free",
+            "devices",
+            "tick p99",
+        ];
         write!(out, "{:<20} {:<10}", head[0], head[1])?;
         head[2..].iter().try_for_each(|h| write!(out, " {h:>9}"))?;
         writeln!(out, " {:>8}  version  settings", "up")?;
@@ -50,7 +60,8 @@ pub fn list(fleet: &str, registry: &FleetRegistry, json: bool) {
             let connected = s.devices.iter().filter(|d| d.connected).count();
             writeln!(
                 out,
-                "{name:<20} {what:<10} {:>9} {:>9} {disk:>9} {:>9} {:>6.2} ms {:>8}  {:<7}  {}{}",
+                "{name:<20} {what:<10} {:>9} {:>9} {:>9} {disk:>9} {:>9} {:>6.2} ms {:>8}  {:<7}  {}{}",
+                s.visit.today,
                 s.visit.visits,
                 s.errors.errors,
                 format!("{connected}/{}", s.devices.len()),

@@ -51,6 +51,11 @@ impl Answer {
         Answer { policy, ..Answer::of(StatusCode::OK, kind, content) }
     }
 
+    /// Status 200 with a page that may load what this policy names.
+    pub fn page(text: String, policy: &'static str) -> Self {
+        Answer { policy, ..Answer::text("text/html; charset=utf-8", text) }
+    }
+
     /// Status 101: the connection speaks another protocol from now on.
     pub fn switched(upgrade: Upgrade) -> Self {
         let nothing = Content::Text(Bytes::new());
@@ -196,6 +201,21 @@ pub fn permitted<'a>(
     permitted_to_page(request, at, name)
 }
 
+/// As [`permitted_to_page`], for a POST: only a page that this server gave out may send it.
+///
+/// # Errors
+/// The refusal that the sender gets.
+pub fn permitted_post<'a>(
+    request: &'a Request<()>,
+    at: SocketAddr,
+    name: &str,
+) -> Result<&'a str, Refusal> {
+    if !request.headers().contains_key(header::ORIGIN) {
+        return Err((StatusCode::FORBIDDEN, "only a page of ours may ask for this"));
+    }
+    permitted_method(request, at, name, Method::POST)
+}
+
 /// As [`permitted`], also for pages that this server gave out: an `Origin` must be our own.
 ///
 /// # Errors
@@ -204,6 +224,15 @@ pub fn permitted_to_page<'a>(
     request: &'a Request<()>,
     at: SocketAddr,
     name: &str,
+) -> Result<&'a str, Refusal> {
+    permitted_method(request, at, name, Method::GET)
+}
+
+fn permitted_method<'a>(
+    request: &'a Request<()>,
+    at: SocketAddr,
+    name: &str,
+    method: Method,
 ) -> Result<&'a str, Refusal> {
     const BAD: Refusal = (StatusCode::BAD_REQUEST, "not a request");
     let headers = request.headers();
@@ -216,8 +245,8 @@ pub fn permitted_to_page<'a>(
     if !origins.all(own) {
         return Err((StatusCode::FORBIDDEN, "a page of another origin may not read this"));
     }
-    if request.method() != Method::GET {
-        return Err((StatusCode::METHOD_NOT_ALLOWED, "GET only"));
+    if request.method() != method {
+        return Err((StatusCode::METHOD_NOT_ALLOWED, "not with this method"));
     }
     // A target that names a host is meant for proxies.
     let path = request.uri().path();

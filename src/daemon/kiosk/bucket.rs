@@ -60,12 +60,35 @@ impl Bucket {
     pub fn put(&self, name: &str, bytes: &[u8], stop: &AtomicBool) -> Result<(), String> {
         let to = self.prefix.clone().join(name);
         let put = self.store.put(&to, PutPayload::from(bytes.to_vec()));
+        self.wait_for(async { put.await.map(drop) }, stop)
+    }
+
+    /// Deletes one object, if it exists; gives up when `stop` is raised.
+    ///
+    /// # Errors
+    /// In words, where the store refuses or cannot be reached.
+    pub fn delete(&self, name: &str, stop: &AtomicBool) -> Result<(), String> {
+        let of = self.prefix.clone().join(name);
+        let delete = async {
+            match self.store.delete(&of).await {
+                Err(object_store::Error::NotFound { .. }) => Ok(()),
+                done => done,
+            }
+        };
+        self.wait_for(delete, stop)
+    }
+
+    fn wait_for(
+        &self,
+        work: impl Future<Output = object_store::Result<()>>,
+        stop: &AtomicBool,
+    ) -> Result<(), String> {
         self.runtime.block_on(async {
-            let mut put = std::pin::pin!(put);
+            let mut work = std::pin::pin!(work);
             loop {
-                match tokio::time::timeout(LOOK, &mut put).await {
-                    Ok(done) => return done.map(|_| ()).map_err(|e| causes(&e)),
-                    Err(_) if stop.load(Relaxed) => return Err("ended before it was sent".into()),
+                match tokio::time::timeout(LOOK, &mut work).await {
+                    Ok(done) => return done.map_err(|e| causes(&e)),
+                    Err(_) if stop.load(Relaxed) => return Err("the program ends".into()),
                     Err(_) => {}
                 }
             }

@@ -6,6 +6,8 @@ const TRIES: u32 = 3;
 const LOCKED_S: f64 = 60.0;
 /// Time without a touch after which the staff page closes by itself, in seconds.
 const STAFF_S: f64 = 180.0;
+/// Time without a touch after which the farewell ends, in seconds.
+const FAREWELL_S: f64 = 60.0;
 /// Time that a visit in progress has after closing time, in seconds.
 const GRACE_S: f64 = 300.0;
 
@@ -17,6 +19,9 @@ pub enum Stage {
     Working,
     /// Nobody has touched anything for a while; any touch goes back to `Working`.
     Countdown,
+    /// The visit is over and its work is put away; the visitor may take it home. Touches begin no
+    /// visit.
+    Farewell,
     /// No visitor may come: outside the opening hours, or during cleaning.
     Closed,
 }
@@ -52,6 +57,10 @@ pub struct View {
     pub staff: bool,
     /// It is closed for cleaning, and not outside the opening hours.
     pub cleaning: bool,
+    /// Number of the gallery's work that is shown, 0 for one without a number.
+    pub work: Option<u64>,
+    /// Darkness of the screen, percent.
+    pub dim_percent: u8,
     /// The next opening time as a minute of the day; `None`: more than a day away.
     pub opens_at: Option<u32>,
 }
@@ -68,6 +77,8 @@ pub struct Cycle {
     visits: u64,
     /// Tick at which the visit ends at the latest.
     ends: Option<u64>,
+    /// A visitor who ends a visit gets a farewell.
+    farewell: bool,
     /// No visitor may come.
     closed: bool,
     /// The tick of the staff's last touch while their page is open.
@@ -92,12 +103,18 @@ impl Cycle {
             touched: 0,
             visits: 0,
             ends: None,
+            farewell: false,
             closed: false,
             staff: None,
             wrong: 0,
             all_wrong: 0,
             locked_until: 0,
         }
+    }
+
+    /// A cycle in which visitors who end their visit get a farewell.
+    pub fn with_farewell(self, farewell: bool) -> Self {
+        Cycle { farewell, ..self }
     }
 
     /// A cycle that begins within a visit, as if the visitor had touched something just now.
@@ -107,7 +124,7 @@ impl Cycle {
 
     /// Ends a visit that is in progress.
     pub fn interrupt(&mut self) -> Option<KioskAct> {
-        self.is_visited().then(|| self.end())
+        self.is_visited().then(|| self.end(false))
     }
 
     /// Returns true if a visit is in progress.
@@ -128,8 +145,19 @@ impl Cycle {
             self.ends = Some(self.ends.map_or(latest, |ends| ends.min(latest)));
         }
         self.closed = closed;
-        if !self.is_visited() {
-            self.stage = if closed { Stage::Closed } else { Stage::Attract };
+        if !self.is_visited() && self.stage != Stage::Farewell {
+            self.stage = self.unvisited();
+        }
+    }
+
+    fn unvisited(&self) -> Stage {
+        if self.closed { Stage::Closed } else { Stage::Attract }
+    }
+
+    /// Ends the farewell.
+    pub fn end_farewell(&mut self) {
+        if self.stage == Stage::Farewell {
+            self.stage = self.unvisited();
         }
     }
 
@@ -157,22 +185,31 @@ impl Cycle {
                 return Some(KioskAct::Begin);
             }
             Stage::Attract | Stage::Closed => {}
-            _ if done || self.ends.is_some_and(|ends| self.now >= ends) => return Some(self.end()),
+            Stage::Farewell => {
+                if done || self.now - self.touched >= (FAREWELL_S * self.rate_hz) as u64 {
+                    self.end_farewell();
+                }
+            }
+            _ if done || self.ends.is_some_and(|ends| self.now >= ends) => {
+                return Some(self.end(self.farewell));
+            }
             Stage::Working if self.now - self.touched >= self.idle => self.stage = Stage::Countdown,
             Stage::Countdown if touched => self.stage = Stage::Working,
             Stage::Countdown if self.now - self.touched >= self.idle + self.countdown => {
-                return Some(self.end());
+                // Everybody has gone.
+                return Some(self.end(false));
             }
             Stage::Working | Stage::Countdown => {}
         }
         None
     }
 
-    fn end(&mut self) -> KioskAct {
-        self.stage = if self.closed { Stage::Closed } else { Stage::Attract };
+    fn end(&mut self, farewell: bool) -> KioskAct {
+        let seconds = ((self.touched - self.begun) as f64 / self.rate_hz) as u64;
+        self.stage = if farewell { Stage::Farewell } else { self.unvisited() };
         self.visits += 1;
-        self.ends = None;
-        KioskAct::End { seconds: ((self.touched - self.begun) as f64 / self.rate_hz) as u64 }
+        (self.ends, self.touched) = (None, self.now);
+        KioskAct::End { seconds }
     }
 
     /// Staff typed `number`: the right one opens their page. An empty `pin` lets nobody in; after
@@ -238,6 +275,30 @@ mod tests {
         assert_eq!((c.view().stage, c.view().visits), (Stage::Attract, 1));
         c.step(true, false);
         assert_eq!(c.step(false, true), Some(KioskAct::End { seconds: 0 }));
+    }
+
+    #[test]
+    fn a_visitor_who_ends_a_visit_gets_a_farewell_and_one_who_left_does_not() {
+        let mut c = Cycle::new(10.0, 2.0, 1.0).with_farewell(true);
+        c.step(true, false);
+        assert!(matches!(c.step(false, true), Some(KioskAct::End { .. })));
+        assert_eq!((c.view().stage, c.view().visits), (Stage::Farewell, 1));
+        assert_eq!(c.step(true, false), None, "a touch begins no visit");
+        assert_eq!(idle(&mut c, 599), None);
+        assert_eq!(c.view().stage, Stage::Farewell);
+        idle(&mut c, 1);
+        assert_eq!(c.view().stage, Stage::Attract);
+        // By the visitor's press, and at closing time.
+        c.step(true, false);
+        c.step(false, true);
+        c.set_closed(true);
+        assert_eq!(c.view().stage, Stage::Farewell);
+        c.step(false, true);
+        assert_eq!(c.view().stage, Stage::Closed);
+        c.set_closed(false);
+        c.step(true, false);
+        assert!(idle(&mut c, 30).is_some());
+        assert_eq!(c.view().stage, Stage::Attract, "nobody is here");
     }
 
     #[test]

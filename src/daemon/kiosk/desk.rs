@@ -35,7 +35,9 @@ pub struct KioskDesk {
     pub typed: Mutex<Option<String>>,
     /// Requests of the staff page, in order.
     pub requests: Mutex<Vec<StaffRequest>>,
-    /// Content of the staff page, as long as it is open.
+    /// Requests of staff on another computer, in order.
+    pub fleet_requests: Mutex<Vec<StaffRequest>>,
+    /// Content of the staff page.
     pub staff: Mutex<StaffFacts>,
     /// Set before the end of the run if a new one is to follow it.
     pub again: AtomicBool,
@@ -43,7 +45,11 @@ pub struct KioskDesk {
     pub screen_gone: AtomicBool,
     /// Message from the fleet's staff to those on site, until dismissed.
     pub message: Mutex<Option<String>>,
-    /// Link to the last visitor's sculpture, until another visitor comes.
+    /// The visitor is asked for consent to share the work.
+    pub asks_consent: AtomicBool,
+    /// The visitor gave it.
+    pub consents: AtomicBool,
+    /// Link to the visitor's sculpture, until the farewell ends.
     #[cfg(unix)]
     pub link: Mutex<Option<share::Link>>,
 }
@@ -60,10 +66,13 @@ impl Default for KioskDesk {
             result: Mutex::default(),
             typed: Mutex::default(),
             requests: Mutex::default(),
+            fleet_requests: Mutex::default(),
             staff: Mutex::default(),
             again: AtomicBool::default(),
             screen_gone: AtomicBool::default(),
             message: Mutex::default(),
+            asks_consent: AtomicBool::default(),
+            consents: AtomicBool::default(),
             #[cfg(unix)]
             link: Mutex::default(),
         }
@@ -80,6 +89,26 @@ impl KioskDesk {
     /// Returns the exhibit that was chosen, once.
     pub(super) fn take_choice(&self) -> Option<usize> {
         Some(self.chosen.swap(NONE, Relaxed)).filter(|&exhibit| exhibit != NONE)
+    }
+
+    /// Adds a request of staff on another computer, which needs no open page.
+    pub fn ask_from_fleet(&self, request: StaffRequest) {
+        if let Ok(mut requests) = self.fleet_requests.lock() {
+            requests.push(request);
+        }
+    }
+
+    /// Returns the requests of staff, once. Those of the page count only while it is open.
+    pub(super) fn take_requests(&self, page_is_open: bool) -> Vec<StaffRequest> {
+        let take = |list: &Mutex<Vec<StaffRequest>>| {
+            list.lock().map(|mut all| std::mem::take(&mut *all)).unwrap_or_default()
+        };
+        let mut all = take(&self.requests);
+        if !page_is_open {
+            all.clear();
+        }
+        all.extend(take(&self.fleet_requests));
+        all
     }
 
     /// Adds a request of the staff page.
@@ -113,6 +142,6 @@ pub struct Screen {
     pub watch: Option<Invitation>,
     /// Exhibits to choose from; empty: free sculpting.
     pub exhibits: Vec<Arc<Exhibit>>,
-    /// Darkness of the screen while the installation is closed, from 0 (as usual) to 1 (black).
-    pub dim: f32,
+    /// Minutes for which a link to a work is good.
+    pub share_minutes: f64,
 }

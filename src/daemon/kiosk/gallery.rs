@@ -38,29 +38,60 @@ b { display: block; padding: .75rem; font-weight: 500 }
 </style>
 "#;
 
-/// Adds a picture, its sculpture and rewrites the page, in this order: who finds a sculpture finds
-/// its picture too. Each file is written under a temporary name and renamed.
-/// The page lists the folder, so the next call repairs an interruption between the two.
+/// Adds a work under the next free name. See [`next`] and [`keep_as`].
+///
+/// # Errors
+/// Returns the system's error.
 pub fn keep(folder: &Path, mesh: &PolyMesh) -> std::io::Result<PathBuf> {
+    let path = next(folder)?;
+    keep_as(&path, mesh)?;
+    Ok(path)
+}
+
+/// Returns the path of the next work of a gallery.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn next(folder: &Path) -> std::io::Result<PathBuf> {
     std::fs::create_dir_all(folder)?;
     // A number is never used twice, even if staff has emptied the folder: a sculpture that was
     // already sent would be overwritten.
     let last = works(folder)?.iter().filter_map(|n| number(n)).max().unwrap_or(0);
     let next = last.max(sent(folder)) + 1;
-    let path = folder.join(format!("work-{next:06}.glb"));
+    Ok(folder.join(format!("work-{next:06}.glb")))
+}
+
+/// Adds a picture, its sculpture and rewrites the page, in this order: each sculpture has its
+/// picture already. Each file is written under a temporary name and renamed. The page lists the
+/// folder, so the next call repairs an interruption between the two.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn keep_as(path: &Path, mesh: &PolyMesh) -> std::io::Result<()> {
     let work = SceneMesh { mesh: mesh.clone(), ..SceneMesh::default() };
     if let Err(e) = draw(&path.with_extension("png"), mesh) {
         tracing::error!("{}: no picture of it is written: {e}", path.display());
     }
-    write_scene(&path, &[work], &Job::default()).map_err(std::io::Error::other)?;
+    write_scene(path, &[work], &Job::default()).map_err(std::io::Error::other)?;
     // The sculpture is kept, with or without the page that lists it.
-    if let Err(e) = page(folder) {
-        tracing::error!(
-            "{}: the page is not written, the next one mends it: {e}",
-            folder.display()
-        );
+    if let Some(Err(e)) = path.parent().map(page) {
+        tracing::error!("{}: the page is not written, the next one mends it: {e}", path.display());
     }
-    Ok(path)
+    Ok(())
+}
+
+/// Deletes a work and its picture, and rewrites the page. A work that is gone already is no error.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn remove(path: &Path) -> std::io::Result<()> {
+    for file in [path.to_path_buf(), path.with_extension("png")] {
+        match std::fs::remove_file(&file) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(e),
+            _ => {}
+        }
+    }
+    path.parent().map_or(Ok(()), page)
 }
 
 /// Draws a form from its front, a little from the side and from above.
@@ -111,6 +142,9 @@ pub struct VisitLine {
     pub dabs: u64,
     /// True if the work is in the gallery.
     pub kept: bool,
+    /// Name of the work in the gallery.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub work: Option<String>,
     /// True if the program was killed during the visit. `seconds` and `dabs` count from the next
     /// start.
     #[serde(skip_serializing_if = "std::ops::Not::not")]

@@ -59,6 +59,37 @@ impl Hours {
     }
 }
 
+/// The darkness of the screen by times of the week.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DimHours(Vec<(Hours, f32)>);
+
+impl DimHours {
+    /// Reads spans with a darkness from 0 to 1, such as `daily 18:00-22:00 0.5`.
+    ///
+    /// # Errors
+    /// Names the span and what was expected.
+    pub fn parse(spans: &[String]) -> Result<DimHours, String> {
+        let read = |text: &String| {
+            let wrong = || {
+                format!(
+                    "\"{text}\": expected days, times and a darkness from 0 to 1, for example \
+                         \"daily 18:00-22:00 0.5\""
+                )
+            };
+            let (span, dim) = text.trim().rsplit_once(' ').ok_or_else(wrong)?;
+            let dim = dim.parse().ok().filter(|dim| (0.0..=1.0).contains(dim));
+            let hours = Hours::parse(&[span.to_owned()]).map_err(|_| wrong())?;
+            Ok((hours, dim.ok_or_else(wrong)?))
+        };
+        spans.iter().map(read).collect::<Result<_, String>>().map(DimHours)
+    }
+
+    /// Returns the darkness at this time: that of the first span that holds it, or 0.
+    pub fn at(&self, now: LocalTime) -> f32 {
+        self.0.iter().find(|(hours, _)| hours.is_open(now)).map_or(0.0, |(_, dim)| *dim)
+    }
+}
+
 /// A time of the day such as `9:30`; 24:00 is the end of the day.
 fn minute(text: &str) -> Option<u32> {
     let (hour, minute) = text.trim().split_once(':')?;
@@ -128,6 +159,26 @@ mod tests {
         assert!(!long.is_open(at(1, 0, 0)) && !long.is_open(at(3, 23, 59)));
         assert!(hours(&[]).is_open(at(3, 4, 5)), "always");
         assert_eq!(hours(&[]).opens_next(at(3, 4, 5)), None);
+    }
+
+    #[test]
+    fn an_evening_is_darker_and_a_night_darker_still() {
+        let spans = ["daily 22:00-6:00 0.9", "mon-fri 18:00-24:00 0.4"].map(String::from);
+        let dim = DimHours::parse(&spans).expect("spans");
+        for (time, expected) in [
+            (at(0, 17, 59), 0.0),
+            (at(0, 18, 0), 0.4),
+            (at(0, 22, 0), 0.9),
+            (at(1, 5, 59), 0.9),
+            (at(1, 6, 0), 0.0),
+            (at(5, 19, 0), 0.0),
+        ] {
+            assert_eq!(dim.at(time), expected, "{time:?}");
+        }
+        for text in ["daily 18:00-22:00", "daily 18:00-22:00 1.5", "daily 0.5", "18:00 0.5"] {
+            let said = DimHours::parse(&[text.to_owned()]).expect_err(text);
+            assert!(said.contains("daily 18:00-22:00 0.5"), "{said}");
+        }
     }
 
     #[test]

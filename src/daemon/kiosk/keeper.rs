@@ -10,14 +10,14 @@ use std::time::Duration;
 use arc_swap::ArcSwap;
 use crossbeam_channel as cc;
 
+use super::attract::{AttractAct, AttractLoop};
 use super::desk::{KioskDesk, VisitResult};
 use super::exhibit::score_thread::{self, WantedScore};
 use super::exhibit::{Exhibit, ExhibitStep};
-use super::film::AttractRecording;
+use super::farewell::Farewell;
+use super::felt::{is_at_work, touch};
 use super::gallery::{self, VisitLine};
-use super::hours::Hours;
-#[cfg(unix)]
-use super::share;
+use super::hours::{DimHours, Hours};
 use super::speech::Speech;
 use super::spool::Spool;
 use super::staff::{StaffRequest, VisitFigures, export, hottest_celsius};
@@ -25,20 +25,20 @@ use super::start::{BuiltForms, Start};
 use super::visit_journal::{PutAway, VisitNews};
 use super::{Cycle, Interrupted, KioskAct, KioskConfig, Language, Stage};
 use crate::Published;
-use crate::adaptors::ATTRACT_IDS;
-use crate::command_queue::CommandSender;
+use crate::command_queue::{CommandSender, QueuedCommand};
 use crate::disk_space::free_bytes;
 use crate::local_time::{LocalClock, LocalTime};
 use crate::session::Health;
-use sculptd_devices::catalogue::Catalogue;
+use sculptd_devices::Clock;
 use sculptd_devices::queue::{Sender, SenderFactory};
-use sculptd_devices::{Clock, DeviceId};
+use sculptd_engine::camera::Camera;
+use sculptd_engine::command::Command;
+use sculptd_geometry::TriMesh;
+use sculptd_geometry::io::write_beside;
 use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
-/// Id of the hands in the list of touching pens.
-const HAND: u16 = u16::MAX;
 /// Interval at which the calendar and the staff page are looked at, microseconds.
 const SLOW_US: u64 = 1_000_000;
 
@@ -61,6 +61,9 @@ struct KioskThread {
     /// Index of the exhibit's step.
     step: usize,
     hours: Hours,
+    /// Times at which nothing plays and nothing is spoken.
+    quiet: Hours,
+    dim: DimHours,
     calendar: Option<LocalClock>,
     wall: Option<LocalTime>,
     cleaning: bool,
@@ -78,25 +81,20 @@ struct KioskThread {
     clock: Clock,
     stop: Arc<AtomicBool>,
     desk: Arc<KioskDesk>,
-    /// Recordings to play while no visitor is present; never empty.
-    films: Vec<AttractRecording>,
-    film: usize,
-    playing: bool,
+    attract: AttractLoop,
     /// Index of the form that the next film shows; `None`: the one after the form in the world.
     next_form: Option<usize>,
     /// The clay was reset for the time in which the installation is closed.
     rests: bool,
-    began_us: u64,
     dabs_before: u64,
     spool: Option<Spool>,
+    farewell: Farewell,
     speech: Speech,
-    #[cfg(unix)]
-    share: Option<share::Share>,
 }
 
 /// Starts keeping. A recording that cannot be played is an error here and not in front of visitors.
 pub fn start(
-    (config, words): (KioskConfig, &Language),
+    (config, languages): (KioskConfig, &[Language]),
     start: Start,
     published: Arc<ArcSwap<Published>>,
     commands: CommandSender,
@@ -104,33 +102,13 @@ pub fn start(
     clock: Clock,
     stop: Arc<AtomicBool>,
 ) -> Result<KioskKeeper, String> {
-    let catalogue = Catalogue::builtin().map_err(|e| e.to_string())?;
-    let mut films = Vec::new();
-    for (path, id) in config.attract.iter().zip(ATTRACT_IDS.cycle()) {
-        let film = AttractRecording::open(path, DeviceId(id), start.camera.aspect, &catalogue)
-            .map_err(|e| e.to_string())?;
-        if film.is_empty() {
-            return Err(format!("{}: nothing in it touches the work", path.display()));
-        }
-        films.push(film);
-    }
-    if films.is_empty() {
-        films.push(AttractRecording::own(DeviceId(ATTRACT_IDS.start)));
-    }
+    let attract = AttractLoop::new(&config, start.camera, start.forms[0].brush)?;
     let spool = match config.gallery_store.as_str() {
         "" => None,
         place => Some(Spool::start(&config.gallery, place)?),
     };
-    #[cfg(unix)]
-    let share = match config.share.as_str() {
-        "" => None,
-        at => {
-            let lasts = Duration::from_secs_f64(config.share_minutes * 60.0);
-            let at = crate::metrics::address(at).map_err(|e| format!("share: {e}"))?;
-            let share = share::Share::start(at, &config.share_name, lasts, clock.clone());
-            Some(share.map_err(|e| format!("share {at}: {e}"))?)
-        }
-    };
+    let farewell = Farewell::start(&config, languages, spool.as_ref(), &clock)?;
+    let words = languages.first().ok_or("no language")?;
     let countdown = format!("{} {}", words.countdown, words.go_on);
     let speech = Speech::new(&config.speak, &words.welcome, &countdown);
     let built = BuiltForms::build(&start).map_err(|e| e.to_string())?;
@@ -140,6 +118,8 @@ pub fn start(
     let goals = has_goal.then(|| score_thread::start(published.clone(), desk.score.clone()));
     let goals = goals.transpose().map_err(|e| e.to_string())?;
     let hours = Hours::parse(&config.hours.open)?;
+    let quiet = Hours::parse(&config.hours.quiet)?;
+    let dim = DimHours::parse(&config.hours.dim_at)?;
     let calendar = LocalClock::new().inspect_err(|e| {
         tracing::error!("kiosk: no calendar, so there are no opening hours: {e}");
     });
@@ -151,6 +131,8 @@ pub fn start(
         form,
         step: 0,
         hours,
+        quiet,
+        dim,
         calendar: calendar.ok(),
         wall: None,
         cleaning: false,
@@ -165,17 +147,13 @@ pub fn start(
         clock,
         stop,
         desk: desk.clone(),
-        films,
-        film: 0,
-        playing: false,
+        attract,
         next_form: form.or(Some(0)),
         rests: false,
-        began_us: 0,
         dabs_before: 0,
         spool,
+        farewell,
         speech,
-        #[cfg(unix)]
-        share,
     };
     let run = move || keeping.run();
     let thread = std::thread::Builder::new()
@@ -187,7 +165,8 @@ pub fn start(
 
 impl KioskThread {
     fn run(&mut self) {
-        let mut cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
+        let cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
+        let mut cycle = cycle.with_farewell(!self.config.share.is_empty());
         self.look(&mut cycle);
         if self.start.interrupted.is_some() {
             cycle = cycle.resumed();
@@ -211,8 +190,12 @@ impl KioskThread {
             let touched = pressed || moved && (comes || cycle.view().stage != Stage::Attract);
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
+            let before = cycle.view().stage;
             let act = cycle.step(touched, done);
             self.carry_out(act, &mut cycle);
+            if before == Stage::Farewell && cycle.view().stage != Stage::Farewell {
+                self.farewell.clear(&self.desk);
+            }
             self.follow_choice(&mut cycle);
             if self.desk.next_step.swap(false, Relaxed) {
                 self.next_step(&mut cycle);
@@ -228,15 +211,21 @@ impl KioskThread {
                 self.look(&mut cycle);
             }
             match cycle.view().stage {
+                Stage::Attract if self.is_quiet() => self.rest(),
                 Stage::Attract if !cycle.view().staff => {
                     self.attract();
-                    #[cfg(unix)]
-                    self.drop_expired();
+                }
+                Stage::Farewell => {
+                    if let Err(e) = self.farewell.share(&self.desk) {
+                        self.figures.error(e);
+                    }
                 }
                 Stage::Closed => self.rest(),
                 _ => {}
             }
-            self.speech.say(&cycle.view());
+            if !self.is_quiet() {
+                self.speech.say(&cycle.view());
+            }
             self.show(&cycle);
             let _ = quiet.recv_timeout(Duration::from_secs_f64(1.0 / RATE_HZ));
         }
@@ -251,10 +240,17 @@ impl KioskThread {
     /// Shows the state to the screen.
     fn show(&self, cycle: &Cycle) {
         let mut now = cycle.view();
-        now.exhibit = self.exhibit().and(self.form);
+        now.work = self.attract.work();
+        now.exhibit = self.exhibit().and(self.form).filter(|_| now.work.is_none());
         now.step = self.step;
         now.cleaning = self.cleaning;
         now.opens_at = self.wall.and_then(|wall| self.hours.opens_next(wall));
+        let dim = match now.stage {
+            Stage::Closed => self.config.hours.dim,
+            Stage::Attract => self.wall.map_or(0.0, |wall| self.dim.at(wall)),
+            _ => 0.0,
+        };
+        now.dim_percent = (dim * 100.0).round() as u8;
         if let Ok(mut view) = self.desk.view.lock() {
             *view = Some(now);
         }
@@ -292,20 +288,18 @@ impl KioskThread {
         }
     }
 
-    /// Looks at the calendar, and refreshes the staff page if it is open.
+    /// Looks at the calendar, and refreshes the figures for staff.
     fn look(&mut self, cycle: &mut Cycle) {
         self.looked_us = self.clock.now_us();
         self.wall = self.calendar.as_ref().and_then(LocalClock::now);
         let open = self.wall.is_none_or(|wall| self.hours.is_open(wall));
         cycle.set_closed(self.cleaning || !open);
+        self.farewell.drop_expired(&self.desk);
         let fault = self.start.health.as_ref().and_then(Health::trouble);
         if let (false, Some(why)) = (self.unstored, &fault) {
             self.figures.error(format!("the visit is not stored: {why}"));
         }
         self.unstored = fault.is_some();
-        if !cycle.view().staff {
-            return;
-        }
         if let Ok(mut facts) = self.desk.staff.lock() {
             let day = self.wall.map(|wall| wall.day);
             self.figures.show(day, &mut facts);
@@ -321,13 +315,9 @@ impl KioskThread {
         }
     }
 
-    /// Carries out the requests of the staff page. They count only while it is open.
+    /// Carries out the requests of staff.
     fn staff(&mut self, cycle: &mut Cycle) {
-        let requests = self.desk.requests.lock().map(|mut all| std::mem::take(&mut *all));
-        for request in requests.unwrap_or_default() {
-            if !cycle.view().staff {
-                continue;
-            }
+        for request in self.desk.take_requests(cycle.view().staff) {
             tracing::info!("kiosk: staff: {request:?}");
             match request {
                 StaffRequest::Leave => cycle.leave_staff(),
@@ -370,13 +360,19 @@ impl KioskThread {
             Some(KioskAct::Begin) => {
                 tracing::info!("kiosk: a visit begins");
                 self.stop_film();
-                #[cfg(unix)]
-                self.show_link(None);
                 self.show_result(None);
                 let chosen = self.desk.take_choice().filter(|&index| index < self.built.len());
                 self.begin_with(chosen.or(self.form).unwrap_or(0), cycle);
             }
-            Some(KioskAct::End { seconds }) => self.end_visit(seconds, cycle.view().visits),
+            Some(KioskAct::End { seconds }) => {
+                let kept = self.end_visit(seconds, cycle.view().visits);
+                if kept.is_none() {
+                    cycle.end_farewell();
+                }
+                if let (Stage::Farewell, Some(work)) = (cycle.view().stage, kept) {
+                    self.farewell.ask(work, &self.desk);
+                }
+            }
         }
     }
 
@@ -405,20 +401,21 @@ impl KioskThread {
         }
     }
 
-    /// Puts a visitor's work away.
-    fn end_visit(&mut self, seconds: u64, visit: u64) {
+    /// Puts a visitor's work away, and returns its file in the gallery.
+    fn end_visit(&mut self, seconds: u64, visit: u64) -> Option<PathBuf> {
         let state = self.published.load_full();
         let interrupted = self.start.interrupted.take().is_some();
         let dabs = state.figures.dabs.saturating_sub(self.dabs_before);
-        let mut kept = false;
+        let mut kept = None;
         let keeps = !self.config.gallery.as_os_str().is_empty();
         let keeps = keeps && (dabs > 0 || interrupted);
         if keeps {
-            let mesh = state.mesh.to_tri().to_poly();
-            match gallery::keep(&self.config.gallery, &mesh) {
+            match self.keep(&state.mesh.to_tri()) {
                 Ok(path) => {
-                    kept = true;
-                    self.pass_on(&path);
+                    if let Some(spool) = &self.spool {
+                        spool.wake();
+                    }
+                    kept = Some(path);
                 }
                 Err(e) => self.figures.error(format!("{}: {e}", self.config.gallery.display())),
             }
@@ -435,20 +432,37 @@ impl KioskThread {
         }
         let exhibit = self.exhibit().map(|exhibit| exhibit.name.clone());
         let percent = score.map(|score| score.percent());
-        let line = VisitLine { visit, seconds, dabs, kept, interrupted, exhibit, percent };
+        let work = kept.as_ref().and_then(|path| path.file_name());
+        let work = work.map(|name| name.to_string_lossy().into_owned());
+        let kept_it = kept.is_some();
+        let line =
+            VisitLine { visit, seconds, dabs, kept: kept_it, work, interrupted, exhibit, percent };
         let file = &self.config.audit;
         if !file.as_os_str().is_empty()
             && let Err(e) = gallery::audit(file, &line)
         {
             self.figures.error(format!("{}: {e}", file.display()));
         }
-        self.figures.ended(self.wall.map(|wall| wall.day), seconds, kept);
+        self.figures.ended(self.wall.map(|wall| wall.day), seconds, kept_it);
         // The attract film that follows begins with a reset.
         if let Some(news) = &self.start.news {
-            let refused = keeps && !kept;
+            let refused = keeps && !kept_it;
             let work = if refused { PutAway::Refused } else { PutAway::Done };
             let _ = news.send(VisitNews::PutAway(work));
         }
+        kept
+    }
+
+    /// Puts a work into the gallery. A note beside the visit's file names it first: if the program
+    /// is killed before that file is removed, the next start does not keep the work twice.
+    fn keep(&self, mesh: &TriMesh) -> std::io::Result<PathBuf> {
+        let path = gallery::next(&self.config.gallery)?;
+        if let Some(note) = &self.start.putting_away {
+            let name = path.as_os_str().as_encoded_bytes();
+            write_beside(note, |out| out.write_all(name))?;
+        }
+        gallery::keep_as(&path, &mesh.to_poly())?;
+        Ok(path)
     }
 
     fn show_result(&self, result: Option<VisitResult>) {
@@ -457,47 +471,14 @@ impl KioskThread {
         }
     }
 
-    /// The work is in the gallery: on to where it is kept for good, and to the visitor.
-    fn pass_on(&mut self, path: &std::path::Path) {
-        if let Some(spool) = &self.spool {
-            spool.wake();
-        }
-        #[cfg(unix)]
-        if let Some(share) = &self.share {
-            match share.link(path) {
-                Ok(link) => self.show_link(Some(link)),
-                Err(e) => self.figures.error(format!("{}: {e}", path.display())),
-            }
-        }
-    }
-
-    #[cfg(unix)]
-    fn show_link(&self, link: Option<share::Link>) {
-        if let Ok(mut shown) = self.desk.link.lock() {
-            *shown = link;
-        }
-    }
-
-    /// A code that leads nowhere any more is not shown.
-    #[cfg(unix)]
-    fn drop_expired(&self) {
-        if let Ok(mut link) = self.desk.link.lock()
-            && link.as_ref().is_some_and(|l| l.until_us <= self.clock.now_us())
-        {
-            *link = None;
-        }
-    }
-
     /// Resets everything to a form, for a film or for a visit.
     fn put_back(&mut self, form: usize, film: bool) {
         (self.form, self.step) = (Some(form), 0);
         self.rests = self.rests && film;
         self.start.film.store(film, Relaxed);
-        let command = self.built.reset(form);
-        // The loop takes 64 commands a tick: it has room again before long.
-        if self.commands.send_timeout(command, Duration::from_secs(2)).is_err() {
-            let text = "the reset was not carried out; the loop takes no commands";
-            return self.figures.error(text.into());
+        let command = self.built.reset(form, self.in_view(self.start.camera));
+        if !self.send(command) {
+            return;
         }
         if let Some(news) = self.start.news.as_ref().filter(|_| !film) {
             let form = self.built.get(form);
@@ -505,31 +486,61 @@ impl KioskThread {
         }
     }
 
-    fn attract(&mut self) {
-        if !self.playing {
-            // Each film begins on clean clay, and shows the next exhibit.
-            let after = self.form.map_or(0, |form| (form + 1) % self.built.len());
-            let next = self.next_form.take().unwrap_or(after);
-            self.rests = false;
-            self.put_back(next, true);
-            if let Some(exhibit) = self.exhibit() {
-                tracing::info!("kiosk: the film shows {}", exhibit.name);
-            }
-            self.films[self.film].rewind();
-            (self.playing, self.began_us) = (true, self.clock.now_us());
+    /// Sends a reset; `false`: the loop takes none.
+    fn send(&mut self, reset: QueuedCommand) -> bool {
+        // The loop takes 64 commands a tick: it has room again before long.
+        let sent = self.commands.send_timeout(reset, Duration::from_secs(2)).is_ok();
+        if !sent {
+            let text = "the reset was not carried out; the loop takes no commands";
+            self.figures.error(text.into());
         }
-        let now = self.clock.now_us().saturating_sub(self.began_us);
-        if !self.films[self.film].play(self.began_us, now, &mut self.sender) {
-            self.film = (self.film + 1) % self.films.len();
-            self.playing = false;
+        sent
+    }
+
+    /// Returns true in the quiet hours.
+    fn is_quiet(&self) -> bool {
+        !self.config.hours.quiet.is_empty()
+            && self.wall.is_some_and(|wall| self.quiet.is_open(wall))
+    }
+
+    fn attract(&mut self) {
+        let midnight = || self.calendar.as_ref().map_or(0, LocalClock::midnight);
+        let given = (self.published.load().camera.aspect, midnight);
+        let act = self.attract.step(self.clock.now_us(), &mut self.sender, given);
+        match act {
+            None => {}
+            Some(AttractAct::Film) => {
+                // Each film begins on clean clay, and shows the next exhibit.
+                let after = self.form.map_or(0, |form| (form + 1) % self.built.len());
+                let next = self.next_form.take().unwrap_or(after);
+                self.rests = false;
+                self.put_back(next, true);
+                if let Some(exhibit) = self.exhibit() {
+                    tracing::info!("kiosk: the film shows {}", exhibit.name);
+                }
+            }
+            Some(AttractAct::Work(command)) => {
+                self.rests = false;
+                self.start.film.store(true, Relaxed);
+                self.send(*command);
+            }
+            // Another turn follows in a moment.
+            Some(AttractAct::Turn(camera)) => {
+                let _ = self.commands.try_send(Command::Camera(camera));
+            }
         }
     }
 
-    /// Stops the film, if one is played.
+    /// Returns a camera with the proportions of the view, which a reset does not change. In a tall
+    /// view it moves back, so that a form is as far from the sides as it was from above and below.
+    fn in_view(&self, camera: Camera) -> Camera {
+        let aspect = self.published.load().camera.aspect;
+        Camera { aspect, distance: camera.distance / aspect.min(1.0), ..camera }
+    }
+
+    /// Stops what plays.
     fn stop_film(&mut self) {
-        if std::mem::take(&mut self.playing) {
-            self.films[self.film].stop(self.clock.now_us(), &mut self.sender);
-        }
+        self.attract.stop(self.clock.now_us(), &mut self.sender);
     }
 
     /// While it is closed nothing moves, on clean clay.
@@ -539,25 +550,4 @@ impl KioskThread {
             self.put_back(self.form.unwrap_or(0), true);
         }
     }
-}
-
-/// A pen that presses, or a hand over the tracker: bare hands touch nothing.
-fn is_at_work(felt: &(u16, [f32; 3])) -> bool {
-    felt.0 == HAND || felt.1[2] > 0.0
-}
-
-/// Returns what visitors touch now: their pens and hands, without those of the attract loop. `None`
-/// if they touch nothing.
-fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
-    let mut felt: Vec<(u16, [f32; 3])> = Vec::new();
-    for (id, pen) in state.pens.iter().flatten() {
-        if !ATTRACT_IDS.contains(&id.0) {
-            felt.push((id.0, [pen.view.x, pen.view.y, pen.pressure]));
-        }
-    }
-    let visitors = state.hand_devices.iter().flatten().any(|id| !ATTRACT_IDS.contains(&id.0));
-    if let Some(hands) = state.hands.as_ref().filter(|_| visitors) {
-        felt.extend(hands.as_slice().iter().map(|h| (HAND, h.palm.to_array())));
-    }
-    (!felt.is_empty()).then_some(felt)
 }

@@ -9,11 +9,14 @@
 //! * A visit that a kill or a power cut interrupts goes on at the next start, or its work goes to
 //!   the gallery ([`visit_journal`]).
 
+mod attract;
 #[cfg(feature = "s3")]
 pub mod bucket;
 pub mod cycle;
 pub mod desk;
 pub mod exhibit;
+mod farewell;
+mod felt;
 pub mod film;
 pub mod gallery;
 pub mod hours;
@@ -33,6 +36,7 @@ pub mod start;
 pub mod trial;
 pub mod unrecorded;
 pub mod visit_journal;
+pub mod wall;
 
 pub use cycle::{Cycle, KioskAct, Stage, View};
-pub use settings::{FleetSettings, Interrupted, KioskConfig, Language, ScreenSettings};
+pub use settings::{FleetSettings, Hint, Interrupted, KioskConfig, Language, ScreenSettings};

@@ -3,8 +3,11 @@
 use std::path::Path;
 use std::time::Duration;
 
+use super::gallery::{self, VisitLine};
 use super::start::{InterruptedVisit, Start, StartForm};
-use super::visit_journal::{VISIT_FILE, VisitRecording, VisitStart, set_aside, start};
+use super::visit_journal::{
+    PUTTING_AWAY, VISIT_FILE, VisitRecording, VisitStart, remove_note, set_aside, start,
+};
 use crate::config::Config;
 use crate::session::format::Settings;
 use crate::session::{self, CreateError, catalog};
@@ -17,14 +20,18 @@ use sculptd_geometry::job::Job;
 const CLOSING: Duration = Duration::from_secs(10);
 
 /// Opens the visit in `folder` that the last run did not end, in place of `fresh`, and starts to
-/// record visits. An installation whose visits cannot be recorded runs without; `notices` says so.
+/// record visits. A visit whose work the last run still put into the gallery is over; `audit` gets
+/// its line, if the last run wrote none. An installation whose visits cannot be recorded runs without; `notices` says so.
 pub fn begin(
-    folder: &Path,
+    (folder, audit): (&Path, &Path),
     first: &mut Start,
     fresh: Begun,
     config: &Config,
     notices: &mut Vec<String>,
 ) -> (Begun, Option<VisitRecording>) {
+    if let Err(e) = finish_putting_away(folder, audit, notices) {
+        notices.push(format!("the last visit's work may come to the gallery twice: {e}"));
+    }
     let (mut begun, recorded) = match recover(folder, &first.forms, config, notices) {
         Ok(Some((visit, interrupted))) => {
             first.interrupted = Some(interrupted);
@@ -46,6 +53,7 @@ pub fn begin(
     let film = first.film.clone();
     match start(folder, VisitStart { plain, settings, film }, begun.journal.take()) {
         Ok(recording) => {
+            first.putting_away = Some(folder.join(PUTTING_AWAY));
             first.news = Some(recording.news.clone());
             first.health = Some(recording.health.clone());
             (begun, Some(recording))
@@ -55,6 +63,41 @@ pub fn begin(
             (begun, None)
         }
     }
+}
+
+/// Removes the file of a visit whose work is in the gallery: the last run was killed in between.
+fn finish_putting_away(
+    folder: &Path,
+    audit: &Path,
+    notices: &mut Vec<String>,
+) -> std::io::Result<()> {
+    let visit = folder.join(VISIT_FILE);
+    let work = match std::fs::read_to_string(folder.join(PUTTING_AWAY)) {
+        Ok(work) => work,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(e) => return Err(e),
+    };
+    let work = Path::new(&work);
+    if visit.exists() && work.is_file() {
+        let name = work.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        notices.push(format!("the last visit is over: its work is {name} in the gallery"));
+        catalog::remove(&visit)?;
+        let lines = std::fs::read_to_string(audit).unwrap_or_default();
+        if !audit.as_os_str().is_empty() && !lines.contains(&format!("\"{name}\"")) {
+            let line = VisitLine {
+                visit: 0,
+                seconds: 0,
+                dabs: 0,
+                kept: true,
+                work: Some(name),
+                interrupted: true,
+                exhibit: None,
+                percent: None,
+            };
+            gallery::audit(audit, &line)?;
+        }
+    }
+    remove_note(&visit)
 }
 
 /// Opens the file of the last visit. A run before this one that lost its screen may still be

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::hours::Hours;
+use super::hours::{DimHours, Hours};
 use sculptd_clay::brush::BrushKind;
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +33,10 @@ pub struct KioskConfig {
     /// What becomes of a visit that a kill or a power cut interrupted.
     pub interrupted: Interrupted,
     pub attract: Vec<PathBuf>,
+    /// Time for which each work of the gallery wall is shown, seconds; 0: no wall.
+    pub wall_s: f64,
+    /// Mesh files, and folders of them, on the gallery wall beside the works of the day.
+    pub curated: Vec<PathBuf>,
     /// The brush that every visitor begins with; empty: that of the configuration.
     pub brush: String,
     /// Its radius, as a share of the object's bounding radius; 0 keeps the brush's radius.
@@ -55,6 +59,10 @@ pub struct HoursSettings {
     pub open: Vec<String>,
     /// Darkness of the screen while the installation is closed, from 0 (as usual) to 1 (black).
     pub dim: f32,
+    /// See [`DimHours::parse`]: darkness of the screen while nobody is here.
+    pub dim_at: Vec<String>,
+    /// Times at which nothing plays and nothing is spoken, in the form of `open`.
+    pub quiet: Vec<String>,
 }
 
 /// What becomes of a visit that a kill or a power cut interrupted.
@@ -99,6 +107,18 @@ pub struct ScreenSettings {
     pub scan_s: f64,
     /// Name of the clay's material; empty: clay.
     pub material: String,
+    /// Ways to sculpt that pictures explain.
+    pub hints: Vec<Hint>,
+}
+
+/// A way to sculpt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hint {
+    Pen,
+    Touch,
+    OneHand,
+    TwoHands,
 }
 
 impl Default for FleetSettings {
@@ -110,8 +130,14 @@ impl Default for FleetSettings {
 
 impl Default for ScreenSettings {
     fn default() -> Self {
-        let material = String::new();
-        ScreenSettings { text: 1.0, contrast: false, seated: false, scan_s: 0.0, material }
+        ScreenSettings {
+            text: 1.0,
+            contrast: false,
+            seated: false,
+            scan_s: 0.0,
+            material: String::new(),
+            hints: vec![Hint::Pen, Hint::Touch],
+        }
     }
 }
 
@@ -135,6 +161,8 @@ impl Default for KioskConfig {
             audit: PathBuf::new(),
             interrupted: Interrupted::default(),
             attract: vec![],
+            wall_s: 20.0,
+            curated: vec![],
             brush: String::new(),
             radius: 0.0,
             screen: ScreenSettings::default(),
@@ -212,6 +240,12 @@ impl KioskConfig {
             return Err(format!("hours.dim = {dim}: expected a number from 0 to 1"));
         }
         Hours::parse(&self.hours.open).map_err(|e| format!("hours.open: {e}"))?;
+        Hours::parse(&self.hours.quiet).map_err(|e| format!("hours.quiet: {e}"))?;
+        DimHours::parse(&self.hours.dim_at).map_err(|e| format!("hours.dim_at: {e}"))?;
+        if self.wall_s != 0.0 && !(5.0..=600.0).contains(&self.wall_s) {
+            let text = format!("wall_s = {}: expected 0, or a number from 5 to 600", self.wall_s);
+            return Err(text);
+        }
         if !self.fleet.name.is_empty() && self.fleet.key.as_os_str().is_empty() {
             return Err("fleet.name needs fleet.key: `sculptd fleet key` makes one".into());
         }
@@ -291,7 +325,7 @@ fn code_of(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Texts of a screen; `{seconds}`, `{percent}`, `{length}` and `{time}` are replaced by numbers.
+/// Texts of a screen; words in braces, such as `{seconds}`, are replaced by numbers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Language {
@@ -340,6 +374,26 @@ pub struct Language {
     pub opens: String,
     /// During cleaning.
     pub cleaning: String,
+    /// Asks for consent before a work is shared, and says what that means; `{minutes}` is replaced.
+    pub consent: String,
+    pub consent_about: String,
+    pub yes: String,
+    pub no: String,
+    /// Ends the farewell.
+    pub done: String,
+    /// How long a link is good.
+    pub expires: String,
+    /// On the page of a shared work: deletes it, after a question; and the answer.
+    pub delete: String,
+    pub delete_sure: String,
+    pub deleted: String,
+    /// Beside the pictures of a pen, a finger, one hand and two hands.
+    pub hint_pen: String,
+    pub hint_touch: String,
+    pub hint_hand: String,
+    pub hint_hands: String,
+    /// Label of a work on the gallery wall; `{number}` is replaced.
+    pub work: String,
 }
 
 impl Language {

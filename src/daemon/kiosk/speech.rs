@@ -36,7 +36,7 @@ impl Speech {
         self.said = Some(now.stage);
         match now.stage {
             Stage::Attract => Some(self.welcome.clone()),
-            Stage::Working | Stage::Closed => None,
+            Stage::Working | Stage::Farewell | Stage::Closed => None,
             Stage::Countdown => {
                 Some(self.countdown.replace("{seconds}", &now.seconds_left.to_string()))
             }

@@ -19,6 +19,8 @@ pub use super::names::sent;
 use super::names::{OUTGOING, SENT, number, works};
 use sculptd_geometry::io::write_beside;
 
+/// Start of the name of a note that a sent work is to be deleted.
+const WITHDRAWN: &str = "withdrawn-";
 /// The first wait after a refusal, and the longest.
 const WAIT: Duration = Duration::from_millis(500);
 const LONGEST: Duration = Duration::from_secs(60);
@@ -84,6 +86,39 @@ impl SpoolTarget {
             SpoolTarget::Bucket(bucket) => bucket.put(name, bytes, stop),
         }
     }
+
+    /// Deletes one file, if it exists.
+    fn delete(&self, name: &str, stop: &AtomicBool) -> Result<(), String> {
+        #[cfg(not(feature = "s3"))]
+        let _ = stop; // A folder answers at once.
+        match self {
+            SpoolTarget::Folder(folder) if !folder.is_dir() => {
+                Err(format!("{}: there is no such folder", folder.display()))
+            }
+            SpoolTarget::Folder(folder) => match std::fs::remove_file(folder.join(name)) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    Err(format!("{}: {e}", folder.display()))
+                }
+                _ => Ok(()),
+            },
+            #[cfg(feature = "s3")]
+            SpoolTarget::Bucket(bucket) => bucket.delete(name, stop),
+        }
+    }
+}
+
+/// Deletes at the destination the works that were deleted here.
+fn withdraw(to: &SpoolTarget, folder: &Path, stop: &AtomicBool) -> Result<(), String> {
+    let said = |e: std::io::Error| format!("{}: {e}", folder.display());
+    let notes = std::fs::read_dir(folder.join(OUTGOING)).map_err(said)?;
+    for note in notes.filter_map(Result::ok) {
+        let name = note.file_name().to_string_lossy().into_owned();
+        let Some(work) = name.strip_prefix(WITHDRAWN) else { continue };
+        to.delete(work, stop)?;
+        to.delete(&work.replace(".glb", ".png"), stop)?;
+        std::fs::remove_file(note.path()).map_err(said)?;
+    }
+    Ok(())
 }
 
 impl Spool {
@@ -139,6 +174,20 @@ impl Spool {
     pub fn wake(&self) {
         let _ = self.wake.try_send(());
     }
+
+    /// Returns a function that has a work deleted where it was sent to. It works after a restart
+    /// and a dead network too.
+    pub fn withdrawer(&self, folder: &Path) -> impl Fn(&Path) + Send + Sync + use<> {
+        let (wake, folder) = (self.wake.clone(), folder.join(OUTGOING));
+        move |work| {
+            let Some(name) = work.file_name() else { return };
+            let note = folder.join(format!("{WITHDRAWN}{}", name.to_string_lossy()));
+            if let Err(e) = write_beside(&note, |_| Ok(())) {
+                tracing::error!("gallery: {}: {e}", note.display());
+            }
+            let _ = wake.try_send(());
+        }
+    }
 }
 
 impl Drop for Spool {
@@ -161,6 +210,7 @@ fn send_next(
     page: &mut Vec<u8>,
     stop: &AtomicBool,
 ) -> Result<bool, String> {
+    withdraw(to, folder, stop)?;
     let all = waiting(folder).map_err(|e| e.to_string())?;
     let Some(name) = all.first() else {
         let Some(now) = read(&folder.join("index.html"))?.filter(|now| now != page) else {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::names::works;
+use super::wall::written_since;
 use sculptd_geometry::io::write_beside;
 
 /// Errors that are kept for the page.
@@ -110,11 +111,7 @@ pub fn hottest_celsius() -> Option<f32> {
 /// # Errors
 /// Returns the system's error. Without such a work there is no file.
 pub fn export(gallery: &Path, since: u64) -> std::io::Result<PathBuf> {
-    let new_enough = |name: &&String| {
-        let written = std::fs::metadata(gallery.join(name.as_str())).and_then(|m| m.modified());
-        let age = written.ok().and_then(|t| t.duration_since(std::time::UNIX_EPOCH).ok());
-        age.is_some_and(|t| t.as_secs() >= since)
-    };
+    let new_enough = |name: &&String| written_since(&gallery.join(name.as_str()), since);
     let all = works(gallery)?;
     let names: Vec<&String> = all.iter().filter(new_enough).collect();
     let (Some(first), Some(last)) = (names.first(), names.last()) else {

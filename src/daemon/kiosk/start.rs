@@ -1,5 +1,6 @@
 //! What visitors start from.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -41,6 +42,10 @@ pub struct Start {
     ///
     /// [`VisitRecording::news`]: super::visit_journal::VisitRecording::news
     pub news: Option<cc::Sender<VisitNews>>,
+    /// The note that names the work of the visit that is being put away; see [`recovery`].
+    ///
+    /// [`recovery`]: super::recovery
+    pub putting_away: Option<PathBuf>,
     /// State of the visits' files.
     pub health: Option<Health>,
 }
@@ -90,7 +95,15 @@ impl Start {
     pub fn free(plain: Arc<TriMesh>, camera: Camera, brush: BrushSettings) -> Start {
         let forms = vec![StartForm { plain, brush, exhibit: None }];
         let film = Arc::default();
-        Start { forms, camera, film, interrupted: None, news: None, health: None }
+        Start {
+            forms,
+            camera,
+            film,
+            interrupted: None,
+            news: None,
+            putting_away: None,
+            health: None,
+        }
     }
 }
 
@@ -110,7 +123,6 @@ fn first_brush(kiosk: &KioskConfig, presets: &Presets, now: BrushSettings) -> Br
 #[derive(Debug)]
 pub(super) struct BuiltForms {
     forms: Vec<(StartForm, Clay)>,
-    camera: Camera,
 }
 
 impl BuiltForms {
@@ -118,7 +130,7 @@ impl BuiltForms {
         let build =
             |form: &StartForm| Ok((form.clone(), Clay::build(&form.plain, &Job::default())?));
         let forms = start.forms.iter().map(build).collect::<Result<_, BuildError>>()?;
-        Ok(BuiltForms { forms, camera: start.camera })
+        Ok(BuiltForms { forms })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -132,10 +144,10 @@ impl BuiltForms {
 
     /// Returns the command that resets everything, with a copy of the form's clay: a reset costs by
     /// the number of pages, so a visitor's first stroke is not lost.
-    pub(super) fn reset(&self, index: usize) -> QueuedCommand {
+    pub(super) fn reset(&self, index: usize, camera: Camera) -> QueuedCommand {
         let (form, built) = &self.forms[index];
         let clay = NewClay::new(form.plain.clone(), false);
-        let beginning = Beginning { clay, camera: self.camera, brush: form.brush };
+        let beginning = Beginning { clay, camera, brush: form.brush };
         let command = Command::Begin(Box::new(beginning));
         let copy = built.duplicate(built.object_id());
         QueuedCommand::with_payload(command, Payload::Clay(Box::new(copy)))

@@ -21,12 +21,15 @@ use crate::session::{self, Health, SessionWriter, catalog};
 use crate::tick::Journal;
 use sculptd_clay::brush::BrushSettings;
 use sculptd_devices::Sample;
-use sculptd_engine::command::Command;
+use sculptd_engine::command::{Beginning, Command};
 use sculptd_engine::world::World;
 use sculptd_geometry::TriMesh;
 
 /// Name of the file of the visit in progress.
 pub const VISIT_FILE: &str = "visit.sculpt";
+/// Name of the note that holds the path of the work that the visit becomes, as long as the visit's
+/// file exists beside the work.
+pub const PUTTING_AWAY: &str = "putting-away";
 
 /// The tick thread's end: records the visit in progress.
 #[derive(Debug)]
@@ -85,11 +88,14 @@ impl VisitJournal {
         }
     }
 
-    /// Begins a visit to the clay `plain` with the commands that follow the reset.
-    fn begin(&mut self, tick: u64, samples: &[Sample], (plain, after): (Arc<TriMesh>, &[Command])) {
+    /// Begins a visit with a reset and the commands that follow it.
+    fn begin(&mut self, tick: u64, samples: &[Sample], (begin, after): (&Beginning, &[Command])) {
         self.visiting = true;
-        self.begins_with = Some(plain);
-        let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
+        self.begins_with = Some(begin.clay.plain.clone());
+        // The file begins with the camera of its settings; the visit, with that of the reset.
+        let camera = Command::Camera(begin.camera);
+        let first = [camera].into_iter().chain(self.desktop.iter().chain(after).cloned());
+        let first: Vec<Command> = first.collect();
         let mut early = EarlyInput::new(tick);
         early.add(tick, samples, &first);
         self.early = Some(early);
@@ -119,7 +125,7 @@ impl Journal for VisitJournal {
         self.take_file();
         let layout = commands.iter().rfind(|c| matches!(c, Command::DesktopLayout(_)));
         let reset = commands.iter().enumerate().rev().find_map(|(at, command)| match command {
-            Command::Begin(begin) => Some((at, &begin.clay.plain)),
+            Command::Begin(begin) => Some((at, begin)),
             _ => None,
         });
         match (reset, &mut self.now, &mut self.early) {
@@ -132,10 +138,10 @@ impl Journal for VisitJournal {
                 }
             }
             (None, None, None) => {}
-            (Some((at, plain)), ..) => {
+            (Some((at, begin)), ..) => {
                 self.end();
                 if !self.film.load(Relaxed) {
-                    self.begin(tick, samples, (plain.clone(), &commands[at + 1..]));
+                    self.begin(tick, samples, (begin, &commands[at + 1..]));
                 }
             }
         }
@@ -240,6 +246,17 @@ pub fn set_aside(file: &Path, name: &str) -> std::io::Result<PathBuf> {
     Ok(to)
 }
 
+/// Removes the note [`PUTTING_AWAY`] beside a visit's file, if it exists.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn remove_note(visit: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(visit.with_file_name(PUTTING_AWAY)) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}
+
 /// The thread that makes and removes the files, for those who must not wait for a disk.
 struct VisitFolder {
     path: PathBuf,
@@ -334,7 +351,11 @@ impl VisitFolder {
                 tracing::error!("kiosk: the gallery took no work: it is in {}", to.display());
             }),
         };
-        if let Err(e) = done {
+        let noted = match work {
+            Some(_) => remove_note(&self.path),
+            None => Ok(()),
+        };
+        if let Err(e) = done.and(noted) {
             tracing::error!("kiosk: {}: {e}", path.display());
         }
         self.show(trouble);

@@ -2,7 +2,7 @@
 //! whoever runs it, states come out. It has no clock, no IO and no threads.
 
 use super::access::{FleetSeal, FleetWay, open_sealed};
-use super::request::{FleetAction, FleetAnswer, FleetOutcome, from_json, to_json};
+use super::request::{FleetAction, FleetAnswer, FleetOutcome, StaffOrder, from_json, to_json};
 use super::request_guard::{Admission, RequestGuard};
 use super::settings_files::TrialStart;
 use super::state::InstallationState;
@@ -26,6 +26,11 @@ pub trait InstallationPort {
     /// # Errors
     /// Why not.
     fn restart_visit(&mut self) -> Result<String, String>;
+    /// Presses a button of the staff page.
+    ///
+    /// # Errors
+    /// Why not.
+    fn staff(&mut self, order: StaffOrder) -> Result<String, String>;
     /// The newest lines of the log, the oldest first.
     fn log_lines(&mut self, most: usize) -> Vec<String>;
     /// Puts settings in place, on trial. `Ok(false)`: they are in place already.
@@ -140,6 +145,7 @@ impl Installation {
         let done = match action {
             FleetAction::Message { text } => port.show(&text),
             FleetAction::RestartVisit => port.restart_visit(),
+            FleetAction::Staff { order } => port.staff(order),
             FleetAction::Logs { lines } => {
                 return FleetOutcome::Logs { lines: port.log_lines(lines as usize) };
             }

@@ -15,6 +15,7 @@ use arc_swap::ArcSwap;
 use super::access::state_tag;
 use super::fleet_link::InstallationLink;
 use super::installation::{Installation, InstallationIdentity, InstallationPort};
+use super::request::StaffOrder;
 use super::settings_files::{SettingsFiles, TrialStart};
 use super::state::{
     DeviceKind, DeviceLine, ErrorCounts, FrameTimes, InstallationState, SettingsState, TickTimes,
@@ -28,6 +29,7 @@ use sculptd_daemon::adaptors::{Adaptors, DeviceStanding, StandingKind};
 use sculptd_daemon::disk_space::free_bytes;
 use sculptd_daemon::kiosk::Stage;
 use sculptd_daemon::kiosk::desk::KioskDesk;
+use sculptd_daemon::kiosk::staff::StaffRequest;
 use sculptd_daemon::window_link::{WindowLink, WindowStanding};
 use sculptd_devices::Clock;
 
@@ -170,13 +172,23 @@ impl DaemonPort {
         let view = self.run.desk.view.lock().unwrap_or_else(PoisonError::into_inner);
         let visit = view.map_or_else(VisitState::default, |v| VisitState {
             stage: match v.stage {
-                Stage::Attract | Stage::Closed => VisitStage::Attract,
+                Stage::Attract | Stage::Farewell | Stage::Closed => VisitStage::Attract,
                 Stage::Working => VisitStage::Working,
                 Stage::Countdown => VisitStage::Countdown,
             },
             visits: v.visits,
+            closed: v.stage == Stage::Closed,
+            ..VisitState::default()
         });
         drop(view);
+        let facts = self.run.desk.staff.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let (today, kept_today) = (facts.visits_today, facts.kept_today);
+        let (mean_s, cleaning) = (facts.mean_s, facts.cleaning);
+        let visit = VisitState { today, kept_today, mean_s, cleaning, ..visit };
+        let exported = facts.exported.map(|done| match done {
+            Ok(file) => file.display().to_string(),
+            Err(why) => why,
+        });
         let slow = self.slow.take().filter(|(at, ..)| now_us < at + SLOW_US);
         let (at, disk_free_bytes, devices) = slow.unwrap_or_else(|| {
             let lines = self.run.adaptors.standing().into_iter().take(MAX_DEVICES);
@@ -192,6 +204,8 @@ impl DaemonPort {
             version: env!("CARGO_PKG_VERSION").into(),
             visit,
             errors: ErrorCounts { errors, warnings, last },
+            celsius: facts.celsius,
+            exported: exported.map(|text| shortened(&text, MAX_LINE).to_owned()),
             disk_free_bytes,
             devices,
             ticks: TickTimes {
@@ -241,12 +255,29 @@ impl InstallationPort for DaemonPort {
 
     fn restart_visit(&mut self) -> Result<String, String> {
         let view = self.run.desk.view.lock().unwrap_or_else(PoisonError::into_inner);
-        if view.is_none_or(|v| matches!(v.stage, Stage::Attract | Stage::Closed)) {
+        if view.is_none_or(|v| !matches!(v.stage, Stage::Working | Stage::Countdown)) {
             return Ok("nobody was there".into());
         }
         drop(view);
         self.run.desk.finished.store(true, Relaxed);
         Ok("the visit ends".into())
+    }
+
+    fn staff(&mut self, order: StaffOrder) -> Result<String, String> {
+        let (request, note) = match order {
+            StaffOrder::Clean => (StaffRequest::Cleaning(true), "it closes for cleaning"),
+            StaffOrder::Open => (StaffRequest::Cleaning(false), "it opens again"),
+            StaffOrder::Export if self.part.gallery.as_os_str().is_empty() => {
+                return Err("it has no gallery".into());
+            }
+            StaffOrder::Export => {
+                (StaffRequest::Export, "it packs today's works; the list names the file")
+            }
+            StaffOrder::Restart => (StaffRequest::Restart, "it starts again"),
+            StaffOrder::End => (StaffRequest::End, "it ends for good"),
+        };
+        self.run.desk.ask_from_fleet(request);
+        Ok(note.into())
     }
 
     fn log_lines(&mut self, most: usize) -> Vec<String> {

@@ -40,6 +40,11 @@ pub enum FleetAction {
     },
     /// Ends the visit as if the visitor had pressed "finished", and puts everything back.
     RestartVisit,
+    /// A button of the installation's staff page.
+    Staff {
+        /// Which one.
+        order: StaffOrder,
+    },
     /// The newest lines of the log.
     Logs {
         /// Number of lines, 1 to 1000.
@@ -66,6 +71,23 @@ pub enum FleetAction {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         revision: Option<String>,
     },
+}
+
+/// A button of an installation's staff page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum StaffOrder {
+    /// Closes for cleaning.
+    Clean,
+    /// Opens again after cleaning.
+    Open,
+    /// Packs the works of today into one file in the gallery.
+    Export,
+    /// Ends the program and starts it again.
+    Restart,
+    /// Ends the program for good.
+    End,
 }
 
 impl FleetAction {

@@ -32,6 +32,12 @@ pub struct InstallationState {
     pub visit: VisitState,
     /// Errors and warnings of this run.
     pub errors: ErrorCounts,
+    /// The hottest sensor, degrees Celsius; absent: there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub celsius: Option<f32>,
+    /// Result of the last export of this run: the path of the file, or the reason for its failure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exported: Option<String>,
     /// Bytes that are free where sculptures are kept; absent where that cannot be told.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk_free_bytes: Option<u64>,
@@ -57,6 +63,21 @@ pub struct VisitState {
     pub stage: VisitStage,
     /// Visits of this run that have ended.
     pub visits: u64,
+    /// Visits that ended today, and works of today in the gallery.
+    #[serde(default)]
+    pub today: u64,
+    /// See `today`.
+    #[serde(default)]
+    pub kept_today: u64,
+    /// Mean length of the visits of this run, seconds.
+    #[serde(default)]
+    pub mean_s: u64,
+    /// True if no visitor may come: outside the opening hours, or during cleaning.
+    #[serde(default)]
+    pub closed: bool,
+    /// True during cleaning.
+    #[serde(default)]
+    pub cleaning: bool,
 }
 
 /// Stage of a visit.
@@ -160,6 +181,7 @@ impl InstallationState {
             && self.visit == other.visit
             && self.errors == other.errors
             && self.devices == other.devices
+            && self.exported == other.exported
             && self.settings == other.settings
             && self.accepted == other.accepted
             && (&self.name, &self.version) == (&other.name, &other.version)

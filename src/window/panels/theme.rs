@@ -58,6 +58,18 @@ pub fn apply(ctx: &egui::Context, light: bool) {
     });
 }
 
+/// For a screen in a hall: text at least 7:1 on its ground.
+pub fn clear(ctx: &egui::Context) {
+    let dark = ctx.global_style().visuals.dark_mode;
+    ctx.global_style_mut(|s| {
+        let v = &mut s.visuals;
+        v.weak_text_color = Some(Color32::from_gray(if dark { 196 } else { 68 }));
+        if dark {
+            v.selection.bg_fill = Color32::from_rgb(112, 58, 34);
+        }
+    });
+}
+
 /// For people who see little: white on black, outlines of two points, what is chosen in yellow.
 pub fn strong(ctx: &egui::Context) {
     let mut v = Visuals::dark();

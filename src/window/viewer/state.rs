@@ -35,7 +35,7 @@ use super::version_pictures::VersionPictures;
 use super::wall_probe::WallBall;
 use super::wiring::Wiring;
 use crate::language::{set_current, tr};
-use crate::look::{CutPlane, MATERIALS, Material};
+use crate::look::{CutPlane, material_index};
 use crate::panels::hand_menu::MenuBall;
 use crate::panels::state::{FrameFigures, KeyMap, ObjectVersion, UiState, Views};
 use sculptd_camera::camera_thread::CameraPreview;
@@ -226,8 +226,7 @@ impl WindowState {
             Some(_) => PreferencesFile::nothing(),
         };
         if let Some(kiosk) = &wiring.kiosk {
-            let named = |m: &Material| m.short_name() == kiosk.show.material;
-            ui_state.look.material = MATERIALS.iter().position(named).unwrap_or(0);
+            ui_state.look.material = material_index(&kiosk.show.material).unwrap_or(0);
         }
         set_current(wiring.translations.choose(&ui_state.prefs.language));
         for (path, error) in &wiring.translations.wrong {

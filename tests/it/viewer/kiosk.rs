@@ -12,15 +12,16 @@ use sculptd_daemon::kiosk::desk::{KioskDesk, Screen, VisitResult};
 use sculptd_daemon::kiosk::exhibit::score::Score;
 use sculptd_daemon::kiosk::exhibit::{self, Exhibit, forms};
 use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
-use sculptd_daemon::kiosk::{KioskConfig, Stage, View};
+use sculptd_daemon::kiosk::{Hint, KioskConfig, Stage, View};
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
+use sculptd_window::look::{MATERIALS, material_index};
 use sculptd_window::panels::state::FrameFigures;
 use sculptd_window::panels::{Tab, UiRequest, kiosk};
 
 use super::panels::{State, state};
 
-fn screen() -> Screen {
+pub(super) fn screen() -> Screen {
     let words = KioskConfig::default()
         .every_language(sculptd::settings::LANGUAGES)
         .expect("the built-in languages");
@@ -31,7 +32,7 @@ fn screen() -> Screen {
         show: Default::default(),
         watch: None,
         exhibits: vec![],
-        dim: 0.0,
+        share_minutes: 30.0,
     }
 }
 
@@ -40,7 +41,7 @@ fn at(screen: &Screen, stage: Stage, visits: u64) {
     *screen.desk.view.lock().expect("a ui_state") = Some(view);
 }
 
-fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
+pub(super) fn harness(screen: &Screen, size: [f32; 2]) -> Harness<'static, State> {
     let screen = screen.clone();
     let show = move |ui: &mut egui::Ui, s: &mut State| {
         let view = sculptd_window::panels::View {
@@ -184,43 +185,88 @@ fn staff_types_a_number_that_is_not_shown() {
 
 #[cfg(unix)]
 #[test]
-fn the_last_visitor_s_work_goes_home_by_a_code_in_every_language() {
+fn a_visitor_consents_in_any_language_and_gets_a_code() {
     use sculptd_daemon::kiosk::share::Link;
-    use sculptd_daemon::qr_code::{Code, Invitation};
-    let mut screen = screen();
-    let page = "http://192.168.100.200:8710/#0123456789abcdef0123456789abcdef".to_owned();
-    let code = Code::of(&page).expect("a code");
-    screen.watch = Some(Invitation { url: page, code });
+    use sculptd_daemon::qr_code::Code;
+    let screen = screen();
+    at(&screen, Stage::Working, 0);
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    h.get_by_label("Deutsch").click();
+    h.run_steps(3);
+    screen.desk.touched.store(false, Relaxed);
+    screen.desk.asks_consent.store(true, Relaxed);
+    // The visit has ended, and the visitor's language stays.
+    at(&screen, Stage::Farewell, 1);
+    h.run_steps(3);
+    h.get_by_label_contains("für 30 Minuten");
+    assert!(h.query_by_label("Fertig").is_none(), "there are no tools");
+    h.get_by_label("Nein, danke").click();
+    h.run_steps(3);
+    assert!(screen.desk.finished.swap(false, Relaxed) && !screen.desk.consents.load(Relaxed));
+    h.get_by_label("Code zeigen").click();
+    h.run_steps(3);
+    assert!(screen.desk.consents.swap(false, Relaxed) && !screen.desk.finished.load(Relaxed));
     let url = "http://192.168.100.200:65535/0123456789abcdef0123456789abcdef".to_owned();
     let code = Code::of(&url).expect("a code");
-    *screen.desk.link.lock().expect("a ui_state") =
-        Some(Link { url: url.clone(), code, until_us: u64::MAX });
-    for size in [[1280.0, 720.0], [1920.0, 1080.0]] {
-        at(&screen, Stage::Attract, 0);
-        let mut h = harness(&screen, size);
-        let inside = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
-        for (i, language) in screen.words.iter().enumerate() {
-            h.state_mut().ui_state.pad.language = i;
-            h.run_steps(3);
-            // Without a font for its letters, English stands in.
-            let english = &screen.words[0];
-            let drawn = h.query_by_label(&language.kept).map_or(english, |_| language);
-            let place = |text: &String| {
-                let rect = h.get_by_label(text).rect();
-                assert!(inside.contains_rect(rect), "{text} is cut: {rect:?}");
-                rect
-            };
-            let work = [&drawn.kept, &drawn.fetch, &url].map(place);
-            let watch = place(&drawn.watch);
-            let middle = [&drawn.welcome, &drawn.turn].map(place);
-            let apart = |r: &egui::Rect| !r.intersects(watch);
-            assert!(work.iter().chain(&middle).all(apart), "{}: {watch:?}", drawn.name);
-        }
-        // Gone with the next visitor's first touch, whatever the keeper still holds.
-        at(&screen, Stage::Working, 0);
+    let link = Link { url: url.clone(), code, until_us: u64::MAX };
+    *screen.desk.link.lock().expect("a ui_state") = Some(link);
+    screen.desk.asks_consent.store(false, Relaxed);
+    h.run_steps(3);
+    h.get_by_label(&url);
+    h.get_by_label("Der Code gilt 30 min");
+    h.get_by_label("Schluss").click();
+    h.run_steps(3);
+    assert!(screen.desk.finished.swap(false, Relaxed));
+    // Gone with the farewell, whatever the keeper still holds; and the language with it.
+    at(&screen, Stage::Attract, 1);
+    h.run_steps(3);
+    assert!(h.query_by_label(&url).is_none());
+    h.get_by_label("Touch to sculpt");
+}
+
+#[test]
+fn the_clay_has_the_material_of_the_settings() {
+    // The settings file names every material.
+    let text = include_str!("../../../config/kiosk.toml");
+    let line = text.lines().find(|line| line.starts_with("material = ")).expect("the setting");
+    let names = line.split_once("the clay's: ").expect("a list").1.split(", ");
+    let found: Vec<usize> = names.map(|name| material_index(name).expect(name)).collect();
+    assert_eq!(found, (0..MATERIALS.len()).collect::<Vec<_>>());
+    assert_eq!((material_index(""), material_index("cheese")), (Some(0), None));
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("kiosk.toml");
+    sculptd_geometry::io::write_beside(&file, |out| {
+        out.write_all(b"[screen]\nmaterial = \"cheese\"\n")
+    })
+    .expect("written");
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_sculptd"))
+        .args(["run", "--kiosk", "--headless", "--kiosk-config"])
+        .arg(&file)
+        .output()
+        .expect("runs");
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(3), "{said}");
+    assert!(said.contains("screen.material = \"cheese\": expected clay, porcelain"), "{said}");
+}
+
+#[test]
+fn a_visitor_who_has_not_sculpted_yet_sees_how() {
+    let mut screen = screen();
+    screen.show.hints = vec![Hint::Pen, Hint::Touch, Hint::OneHand, Hint::TwoHands];
+    let english = screen.words[0].clone();
+    let all = [&english.hint_pen, &english.hint_touch, &english.hint_hand, &english.hint_hands];
+    at(&screen, Stage::Attract, 0);
+    let mut h = harness(&screen, [1280.0, 720.0]);
+    all.iter().for_each(|text| _ = h.get_by_label(text));
+    at(&screen, Stage::Working, 0);
+    let set = |h: &mut Harness<'_, State>, steps| {
+        h.state_mut().published.undo_steps = steps;
         h.run_steps(3);
-        assert!(h.query_by_label(&url).is_none());
-    }
+    };
+    set(&mut h, 0);
+    all.iter().for_each(|text| _ = h.get_by_label(text));
+    set(&mut h, 1);
+    all.iter().for_each(|text| assert!(h.query_by_label(text).is_none(), "{text}"));
 }
 
 #[test]
@@ -262,7 +308,7 @@ fn one_switch_presses_what_is_lit_and_all_lies_within_reach() {
     assert!(h.state().asked.is_empty() && !finished());
 }
 
-fn exhibits() -> Vec<Arc<Exhibit>> {
+pub(super) fn exhibits() -> Vec<Arc<Exhibit>> {
     let open =
         |name: &&str| Arc::new(exhibit::open(Path::new(name), &Job::default()).expect("known"));
     forms::NAMES.iter().map(open).collect()
@@ -437,11 +483,11 @@ fn the_staff_page_shows_figures_and_asks_twice_before_the_end() {
 
 #[test]
 fn a_closed_installation_says_when_it_opens_and_has_no_tools() {
-    let mut screen = screen();
-    screen.dim = 0.6;
+    let screen = screen();
     let closed = |cleaning| {
         let opens_at = Some(9 * 60 + 5);
-        let view = View { stage: Stage::Closed, cleaning, opens_at, ..View::default() };
+        let view =
+            View { stage: Stage::Closed, cleaning, opens_at, dim_percent: 60, ..View::default() };
         *screen.desk.view.lock().expect("a desk") = Some(view);
     };
     closed(false);

@@ -97,6 +97,7 @@ pub fn install(request: &InstallRequest) -> Result<SetupReport, SetupError> {
     let written = write(root, &mut record, &wanted);
     rustix::process::umask(mask);
     written?;
+    read_back(root, &wanted)?;
     report.commands = commands(root).iter().map(|words| system_command(root, words)).collect();
     Ok(report)
 }
@@ -125,6 +126,18 @@ fn write(
             FileContent::Settings => put(&path, text, 0o640).map_err(at(&path))?,
             FileContent::TabletRules => put(&path, text, 0o644).map_err(at(&path))?,
             FileContent::Text(_, mode) => put(&path, text, mode).map_err(at(&path))?,
+        }
+    }
+    Ok(())
+}
+
+/// Compares the files with what was written: only then is the system set up.
+fn read_back(root: &Path, wanted: &[(&InstalledFile, String)]) -> Result<(), SetupError> {
+    for (file, text) in wanted {
+        let path = below(root, file.path);
+        if content_of(&path).map_err(at(&path))?.as_ref() != Some(text) {
+            let why = "it does not hold what was written; check the disk and install again";
+            return Err(at(&path)(io::Error::other(why)));
         }
     }
     Ok(())
@@ -251,6 +264,26 @@ mod tests {
         assert_eq!(read.gallery, Path::new("/home/ann/gallery"));
         assert_eq!(read.audit, Path::new("/home/ann/visits.log"));
         assert_eq!(read.idle_s, crate::kiosk::KioskConfig::default().idle_s);
+    }
+
+    #[test]
+    fn a_file_that_does_not_hold_what_was_written_fails_the_install() {
+        let root = tempfile::tempdir().expect("a folder");
+        let wanted: Vec<(&InstalledFile, String)> =
+            FILES.iter().map(|file| (file, format!("text of {}", file.path))).collect();
+        for (file, text) in &wanted {
+            let path = below(root.path(), file.path);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+            put(&path, text, 0o644).expect("written");
+        }
+        read_back(root.path(), &wanted).expect("all is as written");
+        let (file, _) = wanted[3];
+        let path = below(root.path(), file.path);
+        put(&path, "text of", 0o644).expect("written");
+        let said = read_back(root.path(), &wanted).expect_err("half of it").to_string();
+        assert!(said.contains(file.path) && said.contains("install again"), "{said}");
+        std::fs::remove_file(&path).expect("removed");
+        assert!(read_back(root.path(), &wanted).is_err(), "it is missing");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::simulated::Random;
 use sculptd_network::fleet::access::{FleetKey, FleetSeal, FleetWay, open_sealed};
 use sculptd_network::fleet::installation::{Installation, InstallationIdentity, InstallationPort};
 use sculptd_network::fleet::registry::{FleetChange, FleetRegistry};
-use sculptd_network::fleet::request::{FleetAction, from_json, to_json};
+use sculptd_network::fleet::request::{FleetAction, StaffOrder, from_json, to_json};
 use sculptd_network::fleet::requester::Requester;
 use sculptd_network::fleet::rollout::{Rollout, RolloutEnd, RolloutPlan, RolloutStep};
 use sculptd_network::fleet::settings_files::{TrialStart, revision_of};
@@ -50,6 +50,10 @@ impl InstallationPort for Disk {
     fn restart_visit(&mut self) -> Result<String, String> {
         self.visits_ended += 1;
         Ok("ended".into())
+    }
+
+    fn staff(&mut self, order: StaffOrder) -> Result<String, String> {
+        Err(format!("{order:?}: there is no page"))
     }
 
     fn log_lines(&mut self, most: usize) -> Vec<String> {

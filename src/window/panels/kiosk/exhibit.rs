@@ -26,7 +26,7 @@ pub(super) fn step_of<'a>(screen: &'a Screen, now: &View) -> Option<&'a ExhibitS
 pub(super) fn choice(
     ctx: &egui::Context,
     free: egui::Rect,
-    words: &Language,
+    (words, work): (&Language, Option<String>),
     now: &View,
     screen: &Screen,
     scan: &mut Scan,
@@ -36,7 +36,12 @@ pub(super) fn choice(
         let fits = ((free.width() - 80.0 + gap) / (CARD + gap)).floor().max(1.0) as usize;
         let fits = fits.min(screen.exhibits.len());
         ui.set_width(CARD * fits as f32 + gap * (fits - 1) as f32);
-        ui.vertical_centered(|ui| ui.label(RichText::new(&words.choose).size(30.0)));
+        ui.vertical_centered(|ui| {
+            if let Some(work) = work {
+                ui.label(RichText::new(work).size(24.0));
+            }
+            ui.label(RichText::new(&words.choose).size(30.0));
+        });
         let all: Vec<_> = screen.exhibits.iter().enumerate().collect();
         for row in all.chunks(fits) {
             ui.horizontal_top(|ui| {

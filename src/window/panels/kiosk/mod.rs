@@ -5,6 +5,8 @@ use std::sync::atomic::Ordering::Relaxed;
 
 mod closed;
 mod exhibit;
+mod farewell;
+mod hints;
 mod parts;
 mod staff;
 
@@ -18,7 +20,7 @@ use parts::{Scan, large, place, text_size};
 use sculptd_clay::brush::BrushKind;
 use sculptd_daemon::kiosk::desk::Screen;
 use sculptd_daemon::kiosk::exhibit::ExhibitTool;
-use sculptd_daemon::kiosk::{Language, Stage, View as KioskView};
+use sculptd_daemon::kiosk::{Hint, Language, Stage, View as KioskView};
 use sculptd_daemon::qr_code::Invitation;
 use sculptd_engine::command::Command;
 
@@ -38,6 +40,7 @@ pub fn ui(
     let ctx = ui.ctx().clone();
     if ui_state.applied.is_none() {
         theme::apply(&ctx, ui_state.prefs.light);
+        theme::clear(&ctx);
         if screen.show.contrast {
             theme::strong(&ctx);
         }
@@ -53,7 +56,8 @@ pub fn ui(
     fonts::speak(&ctx, view.translations, ui_state);
     let Some(now) = screen.desk.view.lock().ok().and_then(|v| *v) else { return };
     let pad = &mut ui_state.pad;
-    if pad.visits != now.visits {
+    // The farewell speaks the visitor's language.
+    if pad.visits != now.visits && now.stage != Stage::Farewell {
         *pad = KioskPad { visits: now.visits, ..KioskPad::default() };
     }
     let Some(words) = shown_words(&ctx, screen, pad) else { return };
@@ -61,7 +65,11 @@ pub fn ui(
     if scan.pressed && now.stage == Stage::Attract {
         screen.desk.touched.store(true, Relaxed);
     }
-    let whole = ctx.content_rect();
+    closed::darken(&ctx, &now);
+    let mut whole = ctx.content_rect();
+    if now.stage == Stage::Attract && !now.staff {
+        whole = closed::drifting(&ctx, whole);
+    }
     let mut free = whole;
     if screen.show.seated {
         // The lower half can be reached from a chair.
@@ -75,7 +83,7 @@ pub fn ui(
     }
     pad.ends = false;
     if now.stage == Stage::Closed {
-        closed::ui(&ctx, whole, words, screen, &now);
+        closed::ui(&ctx, whole, words, &now);
     } else {
         // During a visit to an exhibit its form needs the room.
         let folded = now.stage == Stage::Working && now.exhibit.is_some() && !pad.unfolded;
@@ -87,6 +95,7 @@ pub fn ui(
     told_staff(&ctx, free, screen, &mut scan);
     match now.stage {
         Stage::Closed => {}
+        Stage::Farewell => farewell::ui(&ctx, free, words, screen, &mut scan),
         Stage::Attract => {
             attract(&ctx, (whole, free), words, &now, screen, &mut scan);
             if let Some(page) = &screen.watch {
@@ -97,6 +106,9 @@ pub fn ui(
             // The keypad needs the room.
             if pad.typed.is_none() {
                 exhibit::task(&ctx, whole, words, (screen, &now), pad, &mut scan);
+            }
+            if view.state.undo_steps == 0 {
+                hints::column(&ctx, whole, words, &screen.show.hints);
             }
             let shown = (words, screen, &now);
             tools(&ctx, free, view, shown, pad, (out, &mut scan));
@@ -129,46 +141,44 @@ fn attract(
     screen: &Screen,
     scan: &mut Scan,
 ) {
+    let hints = &screen.show.hints;
+    let work = now.work.filter(|number| *number > 0);
+    let work = work.map(|number| words.work.replace("{number}", &number.to_string()));
     match screen.exhibits.as_slice() {
-        [] => said(ctx, free, &words.welcome, &words.turn),
-        [one] => said(ctx, free, one.manifest.title.get(&words.code), &words.welcome),
-        _ => exhibit::choice(ctx, free, words, now, screen, scan),
+        [] => said(ctx, free, (work, &words.welcome, &words.turn), (words, hints)),
+        [one] => {
+            let title = one.manifest.title.get(&words.code);
+            said(ctx, free, (work, title, &words.welcome), (words, hints));
+        }
+        _ => exhibit::choice(ctx, free, (words, work), now, screen, scan),
     }
     let result = screen.desk.result.lock().ok().and_then(|result| *result);
-    #[cfg(unix)]
-    let link = screen.desk.link.lock().ok().and_then(|link| link.clone());
-    #[cfg(not(unix))]
-    let link: Option<Invitation> = None;
-    if result.is_none() && link.is_none() {
-        return;
-    }
-    place(ctx, "kept", whole, Align2::RIGHT_CENTER, |ui| {
-        ui.vertical_centered(|ui| {
-            if let Some(result) = result {
-                exhibit::result(ui, words, &result);
-            }
-            if let Some(link) = &link {
-                ui.add(egui::Label::new(RichText::new(&words.kept).size(26.0)).extend());
-                ui.add_space(10.0);
-                // Beside a score there is less room.
-                let side = if result.is_some() { 240.0 } else { 360.0 };
-                qr_code::ui(ui, &link.code, side);
-                ui.add_space(10.0);
-                ui.add(egui::Label::new(RichText::new(&words.fetch).size(20.0)).extend());
-                ui.label(RichText::new(&link.url).size(13.0).monospace());
-            }
+    if let Some(result) = result {
+        place(ctx, "kept", whole, Align2::RIGHT_CENTER, |ui| {
+            ui.vertical_centered(|ui| exhibit::result(ui, words, &result));
         });
-    });
+    }
 }
 
-fn said(ctx: &egui::Context, free: egui::Rect, text: &str, below: &str) {
+/// The invitation, below the number of the work that is shown, and the hints.
+fn said(
+    ctx: &egui::Context,
+    free: egui::Rect,
+    (work, text, below): (Option<String>, &str, &str),
+    (words, hints): (&Language, &[Hint]),
+) {
     place(ctx, "said", free, Align2::CENTER_BOTTOM, |ui| {
+        let most = free.width() - 80.0;
         let widest = text_size(ui, text, 44.0).x.max(text_size(ui, below, 20.0).x);
-        ui.set_width(widest.ceil().min(free.width() - 80.0));
+        ui.set_width(widest.max(hints::width(hints, most)).ceil().min(most));
         ui.vertical_centered(|ui| {
+            if let Some(work) = work {
+                ui.label(RichText::new(work).size(24.0));
+            }
             ui.label(RichText::new(text).size(44.0));
             ui.label(RichText::new(below).size(20.0));
         });
+        hints::rows(ui, words, hints);
     });
 }
 

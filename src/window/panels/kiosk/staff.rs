@@ -6,7 +6,6 @@ use egui::{Align2, RichText, vec2};
 use super::parts::{Scan, TARGET, large, place};
 use crate::language::{current, tr};
 use crate::panels::state::{KioskPad, View};
-use crate::panels::theme;
 use sculptd_daemon::kiosk::View as KioskView;
 use sculptd_daemon::kiosk::desk::Screen;
 use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
@@ -69,7 +68,7 @@ fn exported(ui: &mut egui::Ui, facts: &StaffFacts) {
 }
 
 fn metrics(ui: &mut egui::Ui, facts: &StaffFacts, view: &View<'_>) {
-    let quiet = theme::quiet(ui);
+    let quiet = ui.visuals().weak_text_color();
     let row = |ui: &mut egui::Ui, name: String, value: String| {
         ui.label(RichText::new(name).size(16.0).color(quiet));
         ui.label(RichText::new(value).size(16.0));
@@ -146,7 +145,9 @@ fn buttons(
     if screen.exhibits.len() > 1 {
         ui.add_space(8.0);
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
-        ui.label(RichText::new(tr!("staff-exhibit")).size(16.0).color(theme::quiet(ui)));
+        ui.label(
+            RichText::new(tr!("staff-exhibit")).size(16.0).color(ui.visuals().weak_text_color()),
+        );
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         for (i, exhibit) in screen.exhibits.iter().enumerate() {
             let title = exhibit.manifest.title.get(current().code());
