@@ -41,7 +41,7 @@ fn hollow(vertices: usize) -> TriMesh {
     ball
 }
 
-/// What is measured beside the ticks.
+/// The measurement beside the ticks.
 #[derive(Debug, Clone)]
 enum Beside {
     Map(MeasuredSide),
@@ -51,7 +51,7 @@ enum Beside {
 /// Time between two scores during a visit.
 const SCORE_REST: Duration = Duration::from_millis(300);
 
-/// What the score's thread does: the newest snapshot, then a rest.
+/// Scores the newest snapshot, then rests.
 fn score(goal: &Goal, newest: &cc::Receiver<(Snapshot, Vec3)>, stop: &AtomicBool) {
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
     while !stop.load(Relaxed) {

@@ -83,6 +83,16 @@ pub struct NewExhibitArgs {
     /// side.
     #[arg(long, value_name = "MM", default_value_t = 0.0)]
     pub tolerance: f64,
+    /// The axis of the file that points up; default: z for STL and 3MF, y for other formats.
+    #[arg(long, value_name = "AXIS")]
+    pub up: Option<UpAxis>,
+}
+
+/// An axis that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum UpAxis {
+    Y,
+    Z,
 }
 
 /// Facts of an exhibit.
@@ -171,7 +181,10 @@ fn settings(args: &NewExhibitArgs) -> Result<NewExhibit, Fail> {
         }
     }
     let stem = |path: &Path| path.file_stem().map(|s| s.to_string_lossy().into_owned());
+    let extension = args.goal.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let prints = extension.is_some_and(|e| matches!(e.as_str(), "stl" | "3mf"));
     Ok(NewExhibit {
+        z_up: args.up.map_or(prints, |up| up == UpAxis::Z),
         name: stem(&args.out).unwrap_or_default(),
         title: args.title.clone().or_else(|| stem(&args.goal)).unwrap_or_default(),
         text: args.text.clone(),

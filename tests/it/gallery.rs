@@ -9,7 +9,7 @@ use std::time::{Duration, SystemTime};
 
 use crate::waiting::until;
 use sculptd_daemon::kiosk::KioskConfig;
-use sculptd_daemon::kiosk::share::{Share, ShareTexts};
+use sculptd_daemon::kiosk::share::{Share, ShareTexts, remove_leftovers};
 use sculptd_daemon::kiosk::spool::Spool;
 use sculptd_daemon::kiosk::{gallery, spool};
 use sculptd_daemon::qr_code::Code;
@@ -248,6 +248,12 @@ fn a_visitor_sees_the_work_in_3_d_takes_it_home_and_deletes_it() {
     assert_eq!(stls(), 1);
     clock.set_us(601_000_000);
     share.drop_expired();
+    assert_eq!(stls(), 0);
+    // A killed run leaves its files, and the next start removes them.
+    share.link(&other).expect("a link");
+    std::mem::forget(share);
+    assert_eq!(stls(), 1);
+    remove_leftovers(&here).expect("removed");
     assert_eq!(stls(), 0);
 }
 

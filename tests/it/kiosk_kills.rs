@@ -265,7 +265,7 @@ fn bytes(folder: &Path, without: &str) -> u64 {
 /// Limit of the time from a touch to the beginning of its visit, in microseconds.
 const BEGINS_US: u64 = 1_000_000;
 
-/// What was measured in a day of visits.
+/// Measurements of a day of visits.
 #[derive(Debug, Clone, Copy, Default)]
 struct Day {
     /// Most bytes on the disk beside the gallery and the audit.

@@ -33,6 +33,10 @@ const DAY: &str = "days_of_visits_fill_no_disk_and_each_killed_visit_goes_on";
 const DISK: &str = "a_full_disk_is_seen_to_be_reported_and_to_be_over";
 const FILMS: &str = "a_session_leaves_out_the_films_between_visits";
 const GUESSING: &str = "the_staff_s_number_opens_their_page_and_guessing_is_slow";
+const CONSENT: &str = "a_visitor_consents_in_any_language_and_gets_a_code";
+const DRIFT: &str = "texts_drift_while_nobody_is_here_and_stand_still_during_a_visit";
+const FAREWELL: &str = "a_visitor_who_ends_a_visit_gets_a_farewell_and_one_who_left_does_not";
+const HINTS: &str = "a_visitor_who_has_not_sculpted_yet_sees_how";
 const HOT_PLUG: &str = "devices/src/scenarios/hot_plug.rs";
 const INSTALL: &str =
     "an_install_writes_its_list_once_and_an_uninstall_leaves_the_system_as_it_was";
@@ -51,10 +55,34 @@ const SPEECH: &str = "each_stage_is_said_once_when_it_begins";
 const STAFF_FIGURES: &str = "the_staff_page_shows_figures_and_asks_twice_before_the_end";
 const STAFF_WAITS: &str = "a_visit_waits_while_the_staff_page_is_open";
 const SWITCH: &str = "one_switch_presses_what_is_lit_and_all_lies_within_reach";
+const TAKEN_HOME: &str = "a_visitor_sees_the_work_in_3_d_takes_it_home_and_deletes_it";
+const WALL: &str = "curated_works_and_those_of_today_take_turns_and_too_large_ones_are_left_out";
 const TRIED: &str = "a_trial_reports_what_it_saw_and_what_it_could_not_try";
 const VISIT: &str = "a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out";
 
-const KIOSK_PROMISES: [Promise; 54] = [
+const KIOSK_PROMISES: [Promise; 68] = [
+    ("after each one up to three works turn once, with their number", VISIT, KIOSK),
+    ("those of the day, and curated ones", WALL, "src/daemon/kiosk/wall.rs"),
+    ("is left out, with a line in the log", WALL, "src/daemon/kiosk/wall.rs"),
+    ("The texts drift slowly", DRIFT, VIEWER),
+    ("The first touch begins a visit on the start form, whatever is shown", VISIT, KIOSK),
+    ("until the visitor's first stroke", HINTS, VIEWER),
+    ("It asks for consent", CONSENT, VIEWER),
+    ("shows the work in 3-D, offers it as GLB and STL", TAKEN_HOME, GALLERY),
+    ("from where `gallery_store` sent it", TAKEN_HOME, GALLERY),
+    ("The link expires after `share_minutes`", TAKEN_HOME, GALLERY),
+    ("after a minute without a touch", FAREWELL, CYCLE),
+    ("A visitor who walks away gets no farewell", FAREWELL, CYCLE),
+    (
+        "how dark it is at these times while nobody is here",
+        "an_evening_is_darker_and_a_night_darker_still",
+        "src/daemon/kiosk/hours.rs",
+    ),
+    (
+        "shows the same figures and has the same buttons",
+        "staff_see_ask_and_roll_out_over_real_processes",
+        "tests/it/fleet.rs",
+    ),
     ("`install` writes these files", INSTALL, SETUP),
     ("prints the PIN of the staff page", INSTALL, SETUP),
     ("It makes the user `visitor`", INSTALL, SETUP),

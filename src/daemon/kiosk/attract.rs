@@ -14,7 +14,7 @@ use sculptd_engine::camera::Camera;
 /// Works of the wall between two films.
 const WORKS: usize = 3;
 
-/// What plays now.
+/// The state of the attract loop.
 #[derive(Debug, Clone, Copy)]
 enum Playing {
     Nothing,
@@ -26,7 +26,7 @@ enum Playing {
     },
 }
 
-/// What the loop must do for the attract loop.
+/// A request to the sculpt loop.
 #[derive(Debug)]
 pub(super) enum AttractAct {
     /// Reset everything: a film begins.

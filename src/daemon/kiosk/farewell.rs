@@ -37,6 +37,8 @@ impl Farewell {
             return Ok(Farewell::default());
         }
         let at = crate::metrics::address(&config.share).map_err(|e| format!("share: {e}"))?;
+        share::remove_leftovers(&config.gallery)
+            .map_err(|e| format!("{}: {e}", config.gallery.display()))?;
         let deleted: share::Deleted = match spool {
             None => Box::new(|_| {}),
             Some(spool) => Box::new(spool.withdrawer(&config.gallery)),

@@ -381,7 +381,7 @@ pub struct Language {
     pub no: String,
     /// Ends the farewell.
     pub done: String,
-    /// How long a link is good.
+    /// Says for how long a link works.
     pub expires: String,
     /// On the page of a shared work: deletes it, after a question; and the answer.
     pub delete: String,

@@ -28,7 +28,7 @@ use sculptd_geometry::job::Job;
 
 /// Links that are good at a time; the oldest goes first.
 const LINKS: usize = 1024;
-/// What the page may load.
+/// Sources that the page may load.
 const PAGE_LOADS: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'self'; connect-src 'self'";
 /// Shows the work, and deletes it.
@@ -74,7 +74,7 @@ impl SharedWork {
 /// Called after a visitor deleted a work, with the path that it had.
 pub type Deleted = Box<dyn Fn(&Path) + Send + Sync>;
 
-/// What a share's pages need.
+/// Texts of a share's pages.
 pub struct ShareTexts {
     /// The page speaks the first of these that the visitor's browser asks for. Never empty.
     pub languages: Vec<Language>,
@@ -183,6 +183,20 @@ impl Share {
     }
 }
 
+/// Removes the STL files that an earlier run left in a gallery.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn remove_leftovers(gallery: &Path) -> std::io::Result<()> {
+    let entries = match std::fs::read_dir(gallery.join(OUTGOING)) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        entries => entries?,
+    };
+    let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
+    let mut stls = paths.filter(|path| path.extension().is_some_and(|e| e == "stl"));
+    stls.try_for_each(std::fs::remove_file)
+}
+
 impl Drop for Share {
     fn drop(&mut self) {
         if let Ok(links) = self.links.lock() {
@@ -255,7 +269,7 @@ fn delete(file: &Path, links: &SharedWorks, texts: &ShareTexts) {
     (texts.deleted)(file);
 }
 
-/// Returns the language that a browser prefers among those that we have, or our first one.
+/// Returns the language that a browser prefers among ours, or our first one.
 fn language_of<'a>(request: &Request<()>, all: &'a [Language]) -> Option<&'a Language> {
     let wanted = request.headers().get(ACCEPT_LANGUAGE).and_then(|value| value.to_str().ok());
     // A browser lists them in the order of its preference.

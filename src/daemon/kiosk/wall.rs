@@ -130,7 +130,7 @@ struct Shelf {
 }
 
 impl Shelf {
-    /// Returns the curated works, and then those that were kept since `since`.
+    /// Returns the curated works, and then those of the gallery since `since`.
     fn all(&self, since: u64) -> Vec<PathBuf> {
         let mut all = Vec::new();
         for place in &self.curated {

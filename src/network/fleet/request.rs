@@ -42,7 +42,7 @@ pub enum FleetAction {
     RestartVisit,
     /// A button of the installation's staff page.
     Staff {
-        /// Which one.
+        /// The button.
         order: StaffOrder,
     },
     /// The newest lines of the log.

@@ -250,6 +250,28 @@ fn the_clay_has_the_material_of_the_settings() {
 }
 
 #[test]
+fn texts_drift_while_nobody_is_here_and_stand_still_during_a_visit() {
+    let screen = screen();
+    let places = |stage| {
+        at(&screen, stage, 0);
+        let mut h = harness(&screen, [1280.0, 720.0]);
+        let name = if stage == Stage::Attract { "Touch to sculpt" } else { "Finished" };
+        let place = |h: &mut Harness<'_, State>, time: f64| {
+            h.input_mut().time = Some(time);
+            h.run_steps(2);
+            h.get_by_label(name).rect().center()
+        };
+        [0.0, 4.0, 150.0, 300.0].map(|time| place(&mut h, time))
+    };
+    let drifts = places(Stage::Attract);
+    assert!((drifts[1] - drifts[0]).length() < 3.0, "slowly: {drifts:?}");
+    assert!((drifts[2] - drifts[0]).length() > 10.0, "{drifts:?}");
+    assert!((drifts[3] - drifts[2]).length() > 10.0, "{drifts:?}");
+    let still = places(Stage::Working);
+    assert!(still.iter().all(|place| *place == still[0]), "{still:?}");
+}
+
+#[test]
 fn a_visitor_who_has_not_sculpted_yet_sees_how() {
     let mut screen = screen();
     screen.show.hints = vec![Hint::Pen, Hint::Touch, Hint::OneHand, Hint::TwoHands];

@@ -1,6 +1,6 @@
 //! A new exhibit from a mesh: the mesh is the goal, and the start is a block around it.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::score::Goal;
 use super::{Exhibit, Manifest, StepManifest, Texts, pack};
@@ -37,6 +37,8 @@ pub struct NewExhibit {
     /// Distance from the goal up to which a place counts as right; 0: a fiftieth of its longest
     /// side.
     pub tolerance: f64,
+    /// The file's z axis points up, as in programs for printing; otherwise its y axis does.
+    pub z_up: bool,
 }
 
 /// Makes an exhibit. The second value says what was done to the goal, one sentence each.
@@ -71,6 +73,9 @@ pub fn create(
         let fewer = quadric(&plain.to_poly(), target, job).map_err(|e| e.to_string())?;
         plain = fewer.triangulate().0;
         notes.push(format!("the goal has {} triangles of {found}", plain.triangles.len()));
+    }
+    if settings.z_up {
+        plain.positions.iter_mut().for_each(|p| *p = Vec3::new(p.x, p.z, -p.y));
     }
     place(&mut plain, settings.size);
     let (lo, hi) = plain.bounds();
@@ -176,6 +181,22 @@ mod tests {
         assert!(score.too_little == 0.0 && score.too_much > 2.9, "{score:?}");
         assert_eq!(goal.tolerance, 2.0);
         assert!(goal_of(&made, 2).is_err_and(|e| e.contains("from 1 to 1")));
+    }
+
+    #[test]
+    fn the_axis_that_points_up_in_the_file_points_up_on_the_screen() {
+        let mut post = shapes::uv_sphere(1.0, 16, 32);
+        post.positions.iter_mut().for_each(|p| p.z *= 3.0);
+        for (z_up, tall) in [(true, 1), (false, 2)] {
+            let settings = NewExhibit { title: "A post".into(), z_up, ..Default::default() };
+            let (made, _) = create(&post, &settings, &Job::default()).expect("made");
+            let goal = goal_of(&made, 1).expect("a goal");
+            let (lo, hi) = goal.mesh.bounds();
+            assert_eq!((hi - lo).max_position(), tall, "{lo} {hi}");
+            assert!(lo.y.abs() < 1e-4);
+            // It is turned and not mirrored.
+            assert!(goal.score(&goal.mesh, &Job::default()).expect("scored").near > 0.99);
+        }
     }
 
     #[test]

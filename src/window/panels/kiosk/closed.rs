@@ -12,7 +12,7 @@ const DRIFT: f32 = 24.0;
 /// See [`DRIFT`], seconds.
 const DRIFT_S: f64 = 600.0;
 
-/// Darkens what lies behind the texts, as the hours say.
+/// Darkens the ground of the texts, as the hours say.
 pub(super) fn darken(ctx: &egui::Context, now: &View) {
     if now.dim_percent > 0 {
         let alpha = u32::from(now.dim_percent.min(100)) * 255 / 100;
