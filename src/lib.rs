@@ -160,6 +160,8 @@
 //!   against the goal of an exhibit during a visit. Waits for: the next goal, time.
 //! * `sculptd-export`, made by `daemon::kiosk::keeper`: packs the works of today into one file,
 //!   once.
+//! * `sculptd-wall`, made by `daemon::kiosk::wall`: reads the next work of the gallery wall, one at
+//!   a time. Ends with the installation.
 //! * `sculptd-gallery`, made by `daemon::kiosk::spool`: sends finished sculptures to their
 //!   destination. Waits for: the disk, the network.
 //! * `sculptd-player`, made by `daemon::live_run`: plays recordings as devices. Waits for: the

@@ -221,6 +221,7 @@ fn gallery_day() {
             seconds: 2,
             dabs: 3,
             kept: true,
+            work: None,
             interrupted: false,
             exhibit: None,
             percent: None,

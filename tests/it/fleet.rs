@@ -47,7 +47,8 @@ fn write(path: &Path, text: &str) {
     write_beside(path, |out| out.write_all(text.as_bytes())).expect("written");
 }
 
-/// The settings file of an installation, with a gallery. The first one listens, the others connect to it.
+/// The settings file of an installation, with a gallery. The first one listens, the others connect
+/// to it.
 fn installation(staff: &Staff, name: &str, listens: bool) -> PathBuf {
     let path = |ending: &str| staff.home.path().join(format!("{name}{ending}"));
     let key = path(".key").display().to_string();
@@ -57,8 +58,8 @@ fn installation(staff: &Staff, name: &str, listens: bool) -> PathBuf {
     let gallery = path("-works");
     std::fs::create_dir(&gallery).expect("made");
     let text = format!(
-        "idle_s = 45.0\ngallery = {gallery:?}\n\n[fleet]\nname = \"{fleet}\"\nkey = \"{key}\"\n{way} = [\"{endpoint}\"]\n\
-         multicast = false\n"
+        "idle_s = 45.0\ngallery = {gallery:?}\n\n[fleet]\nname = \"{fleet}\"\nkey = \"{key}\"\n\
+         {way} = [\"{endpoint}\"]\nmulticast = false\n"
     );
     write(&path(".toml"), &text);
     path(".toml")

@@ -277,7 +277,8 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     keeper.desk.finished.store(true, Relaxed);
     until("the farewell", || stage() == Some(Stage::Farewell));
     until("the question", || keeper.desk.asks_consent.load(Relaxed));
-    assert_eq!(gallery::works(&dir.path().join("works")).expect("listed").len(), 2);
+    let audit = std::fs::read_to_string(dir.path().join("audit.jsonl")).expect("lines");
+    assert_eq!(gallery::works(&dir.path().join("works")).expect("listed").len(), 2, "{audit}");
     #[cfg(unix)]
     {
         let link = || keeper.desk.link.lock().expect("a desk").clone();
@@ -367,6 +368,10 @@ fn a_choice_that_comes_after_the_touch_is_the_visit_s() {
     .expect("keeps");
     let hash = || live.published.load_full().mesh.hash();
     until("the film sculpts", || live.published.load_full().figures.dabs > 20);
+    // A window with other proportions than the settings: pens would miss by the difference.
+    let camera = || live.published.load_full().camera;
+    live.commands.try_send(Command::Camera(Camera { aspect: 1.25, ..camera() })).expect("taken");
+    until("the window's proportions", || camera().aspect == 1.25);
     // As a press on the screen elsewhere.
     keeper.desk.touched.store(true, Relaxed);
     until("a visit begins with the form that is shown", || hash() == hashes[0]);
@@ -387,6 +392,7 @@ fn a_choice_that_comes_after_the_touch_is_the_visit_s() {
     }
     sender.flush();
     until("the visitor sculpts", || hash() != hashes[1]);
+    assert_eq!(camera().aspect, 1.25, "no reset changes the proportions");
     until("the input is in the file", || recording.health.written.load(Relaxed) > 0);
     stop.store(true, Relaxed);
     keeper.thread.join().expect("the keeper ends");

@@ -321,11 +321,11 @@ fn night(home: tempfile::TempDir) -> tempfile::TempDir {
     ended(daemon, rustix::process::Signal::TERM)
 }
 
-/// Days of twenty visits to two exhibits, with opening hours; for a visit in each day the place that
-/// works are sent to is gone, and the last visit is killed, goes on and is put away. A month by
+/// Days of twenty visits to two exhibits, with opening hours. During a visit of each day the place
+/// that works are sent to is gone; the last visit is killed, goes on and is put away. A month by
 /// `SCULPTD_LONG`, which takes forty minutes, or as many days as `SCULPTD_DAYS` says. Disk, memory
-/// and descriptors stay flat beside the gallery and the line of each visit; each visit begins within
-/// a second of the touch, and no first stroke is wiped.
+/// and descriptors stay flat beside the gallery and the line of each visit. Each visit begins
+/// within a second of the touch, and no first stroke is wiped.
 #[test]
 fn days_of_visits_fill_no_disk_and_each_killed_visit_goes_on() {
     let asked = std::env::var("SCULPTD_DAYS").ok().and_then(|d| d.parse().ok());

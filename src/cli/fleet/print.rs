@@ -57,11 +57,12 @@ pub fn list(fleet: &str, registry: &FleetRegistry, json: bool) {
             let s = &*e.state;
             let what = if e.is_here() { stage(s) } else { "LOST" };
             let disk = s.disk_free_bytes.map_or("?".into(), |b| format!("{} GiB", b >> 30));
+            let today = s.visit.today;
             let connected = s.devices.iter().filter(|d| d.connected).count();
             writeln!(
                 out,
-                "{name:<20} {what:<10} {:>9} {:>9} {:>9} {disk:>9} {:>9} {:>6.2} ms {:>8}  {:<7}  {}{}",
-                s.visit.today,
+                "{name:<20} {what:<10} {today:>9} {:>9} {:>9} {disk:>9} {:>9} {:>6.2} ms {:>8}  \
+                 {:<7}  {}{}",
                 s.visit.visits,
                 s.errors.errors,
                 format!("{connected}/{}", s.devices.len()),

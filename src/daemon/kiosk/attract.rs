@@ -16,7 +16,7 @@ const WORKS: usize = 3;
 
 /// The state of the attract loop.
 #[derive(Debug, Clone, Copy)]
-enum Playing {
+enum AttractState {
     Nothing,
     Film,
     /// A work of the wall, with its number.
@@ -46,7 +46,7 @@ pub(super) struct AttractLoop {
     wall: Option<Wall>,
     /// Time that a work of the wall is shown, in which it turns once, microseconds.
     each_us: u64,
-    playing: Playing,
+    playing: AttractState,
     began_us: u64,
     /// Works shown since the last film.
     works: usize,
@@ -79,7 +79,7 @@ impl AttractLoop {
             films.push(AttractRecording::own(DeviceId(ATTRACT_IDS.start)));
         }
         let wall = Wall::start(config).map_err(|e| format!("the gallery wall: {e}"))?;
-        let (playing, each_us) = (Playing::Nothing, (config.wall_s * 1e6) as u64);
+        let (playing, each_us) = (AttractState::Nothing, (config.wall_s * 1e6) as u64);
         let (film, began_us, works) = (0, 0, WORKS);
         Ok(AttractLoop { films, film, wall, each_us, playing, began_us, works, camera, brush })
     }
@@ -87,7 +87,7 @@ impl AttractLoop {
     /// The number of the work on the wall, 0 for a curated one; `None`: a film plays, or nothing.
     pub fn work(&self) -> Option<u64> {
         match self.playing {
-            Playing::Work { number, .. } => Some(number),
+            AttractState::Work { number, .. } => Some(number),
             _ => None,
         }
     }
@@ -102,21 +102,21 @@ impl AttractLoop {
     ) -> Option<AttractAct> {
         let since = now_us.saturating_sub(self.began_us);
         match self.playing {
-            Playing::Film => {
+            AttractState::Film => {
                 if !self.films[self.film].play(self.began_us, since, to) {
                     self.film = (self.film + 1) % self.films.len();
-                    self.playing = Playing::Nothing;
+                    self.playing = AttractState::Nothing;
                 }
                 return None;
             }
             // The visitor may have deleted it.
-            Playing::Work { camera, .. }
+            AttractState::Work { camera, .. }
                 if since < self.each_us && self.wall.as_ref().is_some_and(Wall::shown_exists) =>
             {
                 let turned = since as f32 / self.each_us as f32 * std::f32::consts::TAU;
                 return Some(AttractAct::Turn(Camera { yaw: camera.yaw + turned, ..camera }));
             }
-            Playing::Work { .. } | Playing::Nothing => {}
+            AttractState::Work { .. } | AttractState::Nothing => {}
         }
         self.began_us = now_us;
         let work = match &mut self.wall {
@@ -129,19 +129,19 @@ impl AttractLoop {
         let Some(work) = work else {
             self.works = 0;
             self.films[self.film].rewind();
-            self.playing = Playing::Film;
+            self.playing = AttractState::Film;
             return Some(AttractAct::Film);
         };
         self.works += 1;
         let number = work.number();
         let (command, camera) = work.show(Camera { aspect, ..self.camera }, self.brush);
-        self.playing = Playing::Work { number, camera };
+        self.playing = AttractState::Work { number, camera };
         Some(AttractAct::Work(Box::new(command)))
     }
 
     /// Stops what plays.
     pub fn stop(&mut self, now_us: u64, to: &mut Sender) {
-        if let Playing::Film = std::mem::replace(&mut self.playing, Playing::Nothing) {
+        if let AttractState::Film = std::mem::replace(&mut self.playing, AttractState::Nothing) {
             self.films[self.film].stop(now_us, to);
         }
     }

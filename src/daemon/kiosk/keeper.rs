@@ -476,13 +476,15 @@ impl KioskThread {
         (self.form, self.step) = (Some(form), 0);
         self.rests = self.rests && film;
         self.start.film.store(film, Relaxed);
-        let command = self.built.reset(form, self.in_view(self.start.camera));
+        // The window has its proportions, whatever the settings say.
+        let aspect = self.published.load().camera.aspect;
+        let command = self.built.reset(form, Camera { aspect, ..self.start.camera });
         if !self.send(command) {
             return;
         }
         if let Some(news) = self.start.news.as_ref().filter(|_| !film) {
             let form = self.built.get(form);
-            let _ = news.send(VisitNews::Begins(form.plain.clone(), Box::new(form.brush)));
+            let _ = news.send(VisitNews::Begins(form.plain.clone(), Box::new(form.brush), aspect));
         }
     }
 
@@ -529,13 +531,6 @@ impl KioskThread {
                 let _ = self.commands.try_send(Command::Camera(camera));
             }
         }
-    }
-
-    /// Returns a camera with the proportions of the view, which a reset does not change. In a tall
-    /// view it moves back, so that a form is as far from the sides as it was from above and below.
-    fn in_view(&self, camera: Camera) -> Camera {
-        let aspect = self.published.load().camera.aspect;
-        Camera { aspect, distance: camera.distance / aspect.min(1.0), ..camera }
     }
 
     /// Stops what plays.

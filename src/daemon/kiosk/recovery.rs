@@ -21,7 +21,8 @@ const CLOSING: Duration = Duration::from_secs(10);
 
 /// Opens the visit in `folder` that the last run did not end, in place of `fresh`, and starts to
 /// record visits. A visit whose work the last run still put into the gallery is over; `audit` gets
-/// its line, if the last run wrote none. An installation whose visits cannot be recorded runs without; `notices` says so.
+/// its line, if the last run wrote none. An installation whose visits cannot be recorded runs
+/// without; `notices` has a line about it.
 pub fn begin(
     (folder, audit): (&Path, &Path),
     first: &mut Start,

@@ -194,8 +194,8 @@ impl Drop for Spool {
     /// Waiting sculptures remain on the disk.
     fn drop(&mut self) {
         self.stand.stop.store(true, Relaxed);
-        let (closed, _) = cc::bounded(1);
-        drop(std::mem::replace(&mut self.wake, closed));
+        // Others may hold the channel: it does not close. A full one wakes the thread too.
+        let _ = self.wake.try_send(());
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

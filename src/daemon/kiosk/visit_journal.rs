@@ -3,9 +3,9 @@
 //!
 //! A visit begins with a reset to a start clay, so its file holds that clay once and the visit's
 //! input alone. The file is made before the visit. If the visitor begins with the clay of another
-//! exhibit, another file is made, and the input waits for it. Of everything before the visit only
-//! the layout of the desktop outlives the reset; the file begins with it. Attract films are not
-//! recorded.
+//! exhibit or in a view of other proportions, another file is made, and the input waits for it. Of
+//! everything before the visit only the layout of the desktop outlives the reset; the file begins
+//! with it. Attract films are not recorded.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,8 +41,8 @@ pub struct VisitJournal {
     visiting: bool,
     /// The visit's input for as long as its file is still being made.
     early: Option<EarlyInput>,
-    /// The clay that the visit began with.
-    begins_with: Option<Arc<TriMesh>>,
+    /// The clay that the visit began with, and the width of the view over its height.
+    begins_with: Option<(Arc<TriMesh>, f32)>,
     prepared: cc::Receiver<PreparedFile>,
     /// Takes the file of each visit that ended, `None` if the visit was not recorded; and files
     /// that begin with another clay than the visit.
@@ -55,6 +55,7 @@ pub struct VisitJournal {
 struct PreparedFile {
     writer: SessionWriter,
     plain: Arc<TriMesh>,
+    aspect: f32,
 }
 
 /// Encoded input of a visit that began before its file was made.
@@ -91,11 +92,8 @@ impl VisitJournal {
     /// Begins a visit with a reset and the commands that follow it.
     fn begin(&mut self, tick: u64, samples: &[Sample], (begin, after): (&Beginning, &[Command])) {
         self.visiting = true;
-        self.begins_with = Some(begin.clay.plain.clone());
-        // The file begins with the camera of its settings; the visit, with that of the reset.
-        let camera = Command::Camera(begin.camera);
-        let first = [camera].into_iter().chain(self.desktop.iter().chain(after).cloned());
-        let first: Vec<Command> = first.collect();
+        self.begins_with = Some((begin.clay.plain.clone(), begin.camera.aspect));
+        let first: Vec<Command> = self.desktop.iter().chain(after).cloned().collect();
         let mut early = EarlyInput::new(tick);
         early.add(tick, samples, &first);
         self.early = Some(early);
@@ -108,7 +106,10 @@ impl VisitJournal {
         while self.early.is_some()
             && let Ok(next) = self.prepared.try_recv()
         {
-            if !self.begins_with.as_ref().is_some_and(|plain| Arc::ptr_eq(plain, &next.plain)) {
+            let fits = |(plain, aspect): &(Arc<TriMesh>, f32)| {
+                Arc::ptr_eq(plain, &next.plain) && *aspect == next.aspect
+            };
+            if !self.begins_with.as_ref().is_some_and(fits) {
                 // One file at a time is prepared, so there is room.
                 let _ = self.ended.try_send(Some(next.writer));
                 continue;
@@ -169,8 +170,8 @@ pub struct VisitStart {
 /// News of a visit, for the thread that makes the files.
 #[derive(Debug)]
 pub enum VisitNews {
-    /// A visit begins with this clay and this brush.
-    Begins(Arc<TriMesh>, Box<BrushSettings>),
+    /// A visit begins with this clay and this brush, in a view of this width over its height.
+    Begins(Arc<TriMesh>, Box<BrushSettings>, f32),
     /// A visit has ended.
     PutAway(PutAway),
 }
@@ -277,9 +278,15 @@ impl VisitFolder {
         while let Ok(news) = calls.recv() {
             let work = match news {
                 VisitNews::PutAway(work) => work,
-                VisitNews::Begins(plain, _) if Arc::ptr_eq(&plain, &self.start.plain) => continue,
-                VisitNews::Begins(plain, brush) => {
+                VisitNews::Begins(plain, _, aspect)
+                    if Arc::ptr_eq(&plain, &self.start.plain)
+                        && aspect == self.start.settings.camera.aspect =>
+                {
+                    continue;
+                }
+                VisitNews::Begins(plain, brush, aspect) => {
                     self.start.plain = plain;
+                    self.start.settings.camera.aspect = aspect;
                     self.start.settings.brush = *brush;
                     // The tick thread hands the file back: unused, or with a visit that began
                     // with another clay a moment ago. What was not recorded comes as `None`.
@@ -318,9 +325,9 @@ impl VisitFolder {
         match session::create_with(&self.path, &*start.plain, &start.settings, health) {
             Ok((writer, thread)) => {
                 // The tick thread takes one at a time, so there is room.
-                let plain = start.plain.clone();
+                let (plain, aspect) = (start.plain.clone(), start.settings.camera.aspect);
                 if let Some(prepare) = &self.prepare {
-                    let _ = prepare.try_send(PreparedFile { writer, plain });
+                    let _ = prepare.try_send(PreparedFile { writer, plain, aspect });
                 }
                 self.open = Some(thread);
                 self.show(None);

@@ -144,6 +144,8 @@ impl WindowState {
             invitation: wiring.invitation.as_ref(),
             demo_runs: wiring.clock.now_us() < wiring.demo_until_us,
         };
+        let side = self.config.width.min(self.config.height) as f32;
+        self.ui_state.screen_scale = side / self.window.scale_factor() as f32 / 1080.0;
         let ui_state = &mut self.ui_state;
         let context = self.egui.egui_ctx().clone();
         self.drawn_demo = view.demo_runs;

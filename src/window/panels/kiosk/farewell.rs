@@ -26,39 +26,39 @@ pub(super) fn ui(
     screen: &Screen,
     scan: &mut Scan,
 ) {
-    let link = link(screen);
-    let name = if link.is_some() { "farewell code" } else { "farewell" };
-    place(ctx, name, free, Align2::RIGHT_CENTER, |ui| match &link {
-        Some((link, _)) if free.height() < LOW => {
+    // Two areas: one that grows would be placed by its former size.
+    let Some(link) = link(screen) else {
+        return place(ctx, "farewell", free, Align2::RIGHT_CENTER, |ui| {
+            ui.set_width(WIDTH);
+            ui.vertical_centered(|ui| consent(ui, words, screen, scan));
+        });
+    };
+    place(ctx, "farewell code", free, Align2::RIGHT_CENTER, |ui| {
+        if free.height() < LOW {
             ui.horizontal_top(|ui| {
                 qr_code::ui(ui, &link.code, CODE);
-                ui.vertical(|ui| texts(ui, words, (screen, scan), link));
+                ui.vertical(|ui| texts(ui, words, (screen, scan), &link));
             });
-        }
-        Some((link, _)) => {
+        } else {
             ui.vertical_centered(|ui| {
                 ui.set_width(WIDTH);
                 qr_code::ui(ui, &link.code, CODE);
                 ui.add_space(10.0);
-                texts(ui, words, (screen, scan), link);
+                texts(ui, words, (screen, scan), &link);
             });
-        }
-        None => {
-            ui.set_width(WIDTH);
-            ui.vertical_centered(|ui| consent(ui, words, screen, scan));
         }
     });
 }
 
 /// The link to the work, if the visitor consented.
 #[cfg(unix)]
-fn link(screen: &Screen) -> Option<(Invitation, u64)> {
+fn link(screen: &Screen) -> Option<Invitation> {
     let link = screen.desk.link.lock().ok()?.clone()?;
-    Some((Invitation { url: link.url, code: link.code }, link.until_us))
+    Some(Invitation { url: link.url, code: link.code })
 }
 
 #[cfg(not(unix))]
-fn link(_: &Screen) -> Option<(Invitation, u64)> {
+fn link(_: &Screen) -> Option<Invitation> {
     None
 }
 

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, RichText, Sense, Stroke, vec2};
 
-use super::parts::{place, text_size};
+use super::parts::place;
 use crate::panels::theme;
 use sculptd_daemon::kiosk::{Hint, Language};
 
@@ -30,7 +30,7 @@ pub(super) fn rows(ui: &mut egui::Ui, words: &Language, hints: &[Hint]) {
     let each = SIDE + TEXT + 3.0 * ui.spacing().item_spacing.x;
     let fits = ((ui.available_width() / each).floor() as usize).max(1);
     for row in hints.chunks(fits) {
-        ui.horizontal(|ui| row.iter().for_each(|hint| one(ui, words, *hint)));
+        ui.horizontal_top(|ui| row.iter().for_each(|hint| one(ui, words, *hint)));
     }
 }
 
@@ -48,7 +48,7 @@ fn one(ui: &mut egui::Ui, words: &Language, hint: Hint) {
         Hint::OneHand => &words.hint_hand,
         Hint::TwoHands => &words.hint_hands,
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_top(|ui| {
         let (picture, _) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::hover());
         let canvas = Canvas {
             painter: ui.painter(),
@@ -62,9 +62,11 @@ fn one(ui: &mut egui::Ui, words: &Language, hint: Hint) {
             Hint::OneHand => canvas.one_hand(),
             Hint::TwoHands => canvas.two_hands(),
         }
+        let font = egui::FontId::proportional(16.0);
+        let size = ui.painter().layout(text.clone(), font, Color32::WHITE, TEXT).size();
         ui.vertical(|ui| {
-            let width = text_size(ui, text, 16.0).x.ceil().min(TEXT);
-            ui.set_width(width);
+            ui.set_width(TEXT);
+            ui.add_space(((SIDE - size.y) / 2.0).max(0.0));
             ui.label(RichText::new(text).size(16.0));
         });
     });

@@ -44,9 +44,13 @@ pub fn ui(
         if screen.show.contrast {
             theme::strong(&ctx);
         }
-        ctx.set_zoom_factor(screen.show.text);
         fonts::load_for(&ctx, view.translations, screen.words.iter().map(|w| w.name.as_str()));
         ui_state.applied = Some((ui_state.prefs.light, 100));
+    }
+    // A wall of a screen is seen from further away.
+    let zoom = screen.show.text * ui_state.screen_scale.clamp(1.0, 4.0);
+    if (ctx.zoom_factor() - zoom).abs() > 1e-3 {
+        ctx.set_zoom_factor(zoom);
     }
     // The menu of the hands speaks the language of the screen, where the window has it.
     let chosen = screen.words.get(ui_state.pad.language).or(screen.words.first());

@@ -32,6 +32,9 @@ use sculptd_daemon::remesh_job::Wanted;
 #[derive(Debug, Default)]
 pub struct UiState {
     pub look: Look,
+    /// Shorter side of the window over 1080 points, for screens that nobody sets up by hand; 0: not
+    /// known.
+    pub screen_scale: f32,
     pub prefs: Preferences,
     pub tab: Tab,
     pub hidden: bool,
