@@ -262,6 +262,13 @@ fn bytes(folder: &Path, without: &str) -> u64 {
         .sum()
 }
 
+/// A first stroke, which is still going on when its visit has begun.
+const FIRST_STROKE: &str = r#"{
+    "points": [[0.4, 0.5, 0.8, 0], [0.45, 0.5, 0.8, 300], [0.5, 0.55, 0.8, 600],
+               [0.55, 0.5, 0.8, 900], [0.6, 0.5, 0.8, 1200]],
+    "space": "view"
+}"#;
+
 /// Limit of the time from a touch to the beginning of its visit, in microseconds.
 const BEGINS_US: u64 = 1_000_000;
 
@@ -287,7 +294,7 @@ fn come(daemon: &Daemon, clock: &sculptd_devices::Clock) -> u64 {
     let mut took = 0;
     std::thread::scope(|scope| {
         let touched = clock.now_us();
-        let stroke = scope.spawn(|| daemon.ctl("stroke", Some(STROKE)));
+        let stroke = scope.spawn(|| daemon.ctl("stroke", Some(FIRST_STROKE)));
         until("a visit begins", || begun() > before);
         // With the start of the program that asks for the stroke.
         took = clock.now_us() - touched;

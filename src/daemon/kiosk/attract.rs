@@ -139,8 +139,9 @@ impl AttractLoop {
         Some(AttractAct::Work(Box::new(command)))
     }
 
-    /// Stops what plays.
+    /// Stops what plays. Next is a film, which shows the next exhibit.
     pub fn stop(&mut self, now_us: u64, to: &mut Sender) {
+        self.works = WORKS;
         if let AttractState::Film = std::mem::replace(&mut self.playing, AttractState::Nothing) {
             self.films[self.film].stop(now_us, to);
         }

@@ -287,7 +287,7 @@ fn every_screen_in_every_language_at_three_sizes_has_whole_clear_texts() {
             // The harness has a copy of the screen: it is made after the case is set.
             let mut first = super::panels::state(sculptd_window::panels::Tab::Look);
             set(&mut screen, &mut first);
-            let mut h = harness(&screen, size);
+            let mut h = harness(&screen, size.map(|side| side * scale));
             h.set_pixels_per_point(scale);
             std::mem::swap(&mut h.state_mut().published, &mut first.published);
             h.state_mut().devices = first.devices;
