@@ -5,7 +5,7 @@ mod random_kills;
 #[cfg(target_os = "linux")]
 pub mod service;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -118,7 +118,10 @@ fn a_kill_while_a_work_is_put_away_keeps_it_once() {
     visit(&daemon);
     let home = ended(daemon, rustix::process::Signal::KILL);
     let folder = home.path().join("sculptd/kiosk");
-    let kept = std::fs::read(folder.join("visit.sculpt")).expect("the visit");
+    // The visit's file, and SQLite's beside it.
+    let all = std::fs::read_dir(&folder).expect("the visit").map(|e| e.expect("a file").path());
+    let kept: Vec<(PathBuf, Vec<u8>)> =
+        all.map(|file| (file.clone(), std::fs::read(&file).expect("read"))).collect();
     // It goes on, and is put away.
     let daemon = installation(home, LONG);
     until("it says so", || daemon.has_told("the last visit was interrupted"));
@@ -130,7 +133,7 @@ fn a_kill_while_a_work_is_put_away_keeps_it_once() {
         let put = |file: &Path, bytes: &[u8]| {
             sculptd_geometry::io::write_beside(file, |out| out.write_all(bytes)).expect("written");
         };
-        put(&folder.join("visit.sculpt"), &kept);
+        kept.iter().for_each(|(file, bytes)| put(file, bytes));
         put(
             &folder.join("putting-away"),
             home.join("works").join(name).to_str().expect("text").as_bytes(),

@@ -139,11 +139,15 @@ impl AttractLoop {
         Some(AttractAct::Work(Box::new(command)))
     }
 
-    /// Stops what plays. Next is a film, which shows the next exhibit.
-    pub fn stop(&mut self, now_us: u64, to: &mut Sender) {
+    /// Stops what plays. Next is a film, which shows the next exhibit. Returns true if a film was
+    /// stopped, by a last sample of the time `now_us`.
+    pub fn stop(&mut self, now_us: u64, to: &mut Sender) -> bool {
         self.works = WORKS;
-        if let AttractState::Film = std::mem::replace(&mut self.playing, AttractState::Nothing) {
+        let before = std::mem::replace(&mut self.playing, AttractState::Nothing);
+        let was_film = matches!(before, AttractState::Film);
+        if was_film {
             self.films[self.film].stop(now_us, to);
         }
+        was_film
     }
 }

@@ -39,6 +39,8 @@ use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
+/// Longest wait for the end of a film, microseconds.
+const FILM_ENDS_US: u64 = 200_000;
 /// Interval at which the calendar and the staff page are looked at, microseconds.
 const SLOW_US: u64 = 1_000_000;
 
@@ -533,9 +535,19 @@ impl KioskThread {
         }
     }
 
-    /// Stops what plays.
+    /// Stops what plays, and waits until the loop has taken the film's last sample: a tick takes
+    /// commands first, so a film would sculpt on the clay of the reset that follows.
     fn stop_film(&mut self) {
-        self.attract.stop(self.clock.now_us(), &mut self.sender);
+        let now = self.clock.now_us();
+        if !self.attract.stop(now, &mut self.sender) {
+            return;
+        }
+        let quiet = cc::never::<()>();
+        while self.published.load().figures.newest_us < now
+            && self.clock.now_us() < now + FILM_ENDS_US
+        {
+            let _ = quiet.recv_timeout(Duration::from_millis(1));
+        }
     }
 
     /// While it is closed nothing moves, on clean clay.
