@@ -213,7 +213,7 @@ pub fn permitted_post<'a>(
     if !request.headers().contains_key(header::ORIGIN) {
         return Err((StatusCode::FORBIDDEN, "only a page of ours may ask for this"));
     }
-    permitted_method(request, at, name, Method::POST)
+    permitted_method(request, at, name, &Method::POST)
 }
 
 /// As [`permitted`], also for pages that this server gave out: an `Origin` must be our own.
@@ -225,14 +225,14 @@ pub fn permitted_to_page<'a>(
     at: SocketAddr,
     name: &str,
 ) -> Result<&'a str, Refusal> {
-    permitted_method(request, at, name, Method::GET)
+    permitted_method(request, at, name, &Method::GET)
 }
 
 fn permitted_method<'a>(
     request: &'a Request<()>,
     at: SocketAddr,
     name: &str,
-    method: Method,
+    method: &Method,
 ) -> Result<&'a str, Refusal> {
     const BAD: Refusal = (StatusCode::BAD_REQUEST, "not a request");
     let headers = request.headers();
