@@ -136,7 +136,7 @@ pub struct TextRepair {
     /// The height of a capital letter.
     #[cfg_attr(test, schemars(range(min = LENGTH.min, max = LENGTH.max)))]
     pub height: f64,
-    /// How far it rises from the surface; below 0 how deep it is engraved.
+    /// Height above the surface; below 0 it is engraved to this depth.
     #[cfg_attr(test, schemars(range(min = -LENGTH.max, max = LENGTH.max)))]
     pub relief: f64,
 }

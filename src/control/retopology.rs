@@ -126,7 +126,7 @@ pub struct SymmetriseReply {
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     pub layers_baked: u64,
-    /// What must be known of the figures, one sentence each.
+    /// Remarks on the figures, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
@@ -169,7 +169,7 @@ pub struct DecimateReply {
     pub seconds: f64,
     /// Layers that were baked into the surface, which is another one now.
     pub layers_baked: u64,
-    /// What must be known of the figures, one sentence each.
+    /// Remarks on the figures, one sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
 }

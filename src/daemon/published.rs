@@ -47,6 +47,8 @@ pub struct Published {
     /// The tracked volume over the work.
     pub volume: Volume,
     pub pens: [Option<(DeviceId, PenPoint)>; SHOWN_PENS],
+    /// The devices whose pens press.
+    pub pressing: [Option<DeviceId>; SHOWN_PENS],
     /// Position and normal of the last dab of each drawing pen; see [`World::last_dabs`].
     pub last_dabs: [Option<(DeviceId, [Vec3; 2])>; SHOWN_PENS],
     /// Position of each pen in range, as shares of its tablet's area.
@@ -126,6 +128,11 @@ type ShownPens = (
     [Option<(DeviceId, glam::Vec2)>; SHOWN_PENS],
 );
 
+fn pressing(world: &World) -> [Option<DeviceId>; SHOWN_PENS] {
+    let mut all = world.pressing();
+    std::array::from_fn(|_| all.next())
+}
+
 fn shown_pens(world: &World) -> ShownPens {
     let (mut pens, mut last_dabs, mut tablets) =
         ([None; SHOWN_PENS], [None; SHOWN_PENS], [None; SHOWN_PENS]);
@@ -171,6 +178,7 @@ impl Published {
             middle: world.middle(),
             volume: *world.volume(),
             pens,
+            pressing: pressing(world),
             last_dabs,
             tablets,
             draft: world.curve_stroke().cloned().unwrap_or_default(),
@@ -204,6 +212,7 @@ impl Published {
         self.brush_radius = ahead.brush_radius();
         self.draft = ahead.curve_stroke().cloned().unwrap_or_default();
         (self.pens, self.last_dabs, self.tablets) = shown_pens(ahead);
+        self.pressing = pressing(ahead);
     }
 
     /// Returns the person whose hands are tracked, if not the local person.

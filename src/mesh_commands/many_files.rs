@@ -47,7 +47,7 @@ pub(super) struct TestCase<'a> {
     pub why: &'a str,
 }
 
-/// What became of a file.
+/// Fate of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TestOutcome {
     Passed,

@@ -108,7 +108,7 @@ pub enum Map {
 /// Draft of so many degrees above the limit, and more, has the last colour.
 const ENOUGH_DRAFT: f32 = 10.0;
 
-/// What a map of angles compares with.
+/// Limit of a map of angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleMap {
     /// The build direction, or the direction in which a mould opens; in the world, one long.
@@ -287,7 +287,7 @@ pub struct Look {
     /// The ends of the map's scale.
     #[serde(skip)]
     pub scale: (f32, f32),
-    /// What a map of angles compares with.
+    /// Limit of a map of angles.
     #[serde(skip)]
     pub angles: AngleMap,
     /// The plane in front of which nothing is drawn.

@@ -1,6 +1,6 @@
 //! Raised and engraved text: the outlines of a font, drawn out into solids.
 //!
-//! The text lies on the plane that touches the surface at its middle. Where the surface bends under
+//! The text is in the plane that touches the surface at its middle. Where the surface bends under
 //! it, raised letters begin below the lowest place of the surface and end above the highest, so
 //! that each is at least as high as asked; engraved ones likewise are at least as deep.
 
@@ -28,9 +28,9 @@ const LINE: f64 = 1.6;
 pub const MOST_LETTERS: usize = 200;
 /// Places along a text, and across it, at which the surface is felt.
 const FELT: (usize, usize) = (33, 9);
-/// The sine of the least angle between a face and the direction in which letters stand on it.
+/// The sine of the least angle between a face's normal and the upright direction of its letters.
 const UPRIGHT: f64 = 0.05;
-/// How far a solid reaches past the surface on its other side, as a share of the letters' height.
+/// Length of a solid on the other side of the surface, as a share of the letters' height.
 const BEYOND: f64 = 0.1;
 
 /// A text to be raised from a part, or engraved into it. Lengths are in the mesh's unit.
@@ -46,7 +46,7 @@ pub struct Lettering {
     pub upright: DVec3,
     /// The height of a capital letter.
     pub height: f64,
-    /// How far the letters rise from the surface; below 0 how deep they are engraved.
+    /// Height of the letters above the surface; below 0 they are engraved to this depth.
     pub relief: f64,
 }
 
@@ -71,7 +71,7 @@ pub struct LetteringPlan {
 ///
 /// # Errors
 /// Returns an error if the text is empty or too long, if the font lacks one of its characters, if
-/// the text does not lie on the surface as a whole, and if the job was cancelled.
+/// a part of the text is beside the surface, and if the job was cancelled.
 pub fn plan_lettering(
     solid: &PolyMesh,
     asked: &Lettering,

@@ -69,7 +69,7 @@ pub enum RepairError {
     /// A text that cannot be drawn.
     #[error("the text cannot be drawn: {0}")]
     Text(String),
-    /// A text that does not lie on the surface as a whole.
+    /// A text of which a part is beside the surface.
     #[error(
         "the text is {wide:.2} wide and {tall:.2} tall, and the surface ends or drops away under \
          it. Move it, or make it smaller"

@@ -26,10 +26,9 @@ const OPPOSED: f64 = 0.766;
 const ONE_FACE: f64 = 0.94;
 /// The share of the trace that keeps a corner of nearly parallel faces from sliding along them.
 const STIFF: f64 = 1e-3;
-/// How far towards its face's centre a corner is measured: a share of that way and of the limit.
+/// A corner is measured at this share of the way to its face's centre, or of the limit.
 const BESIDE: f64 = 0.05;
-/// What a wall gets beyond the limit, as a share of it: coordinates are rounded, and the rounds are
-/// few.
+/// A wall gets this share of the limit more: coordinates are rounded, and the rounds are few.
 const SPARE: f64 = 2e-4;
 /// Places that are named.
 const NAMED: usize = 5;

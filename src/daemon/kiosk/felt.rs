@@ -17,7 +17,10 @@ pub(super) fn touch(state: &Published) -> Option<Vec<(u16, [f32; 3])>> {
     let mut felt: Vec<(u16, [f32; 3])> = Vec::new();
     for (id, pen) in state.pens.iter().flatten() {
         if !ATTRACT_IDS.contains(&id.0) {
-            felt.push((id.0, [pen.view.x, pen.view.y, pen.pressure]));
+            // Some pens report a resting pressure in the air.
+            let presses = state.pressing.iter().flatten().any(|p| p == id);
+            let pressure = if presses { pen.pressure.max(f32::MIN_POSITIVE) } else { 0.0 };
+            felt.push((id.0, [pen.view.x, pen.view.y, pressure]));
         }
     }
     let visitors = state.hand_devices.iter().flatten().any(|id| !ATTRACT_IDS.contains(&id.0));

@@ -347,7 +347,7 @@ pub struct Language {
     pub smooth: String,
     pub undo: String,
     pub staff: String,
-    /// How to turn the work and to come nearer.
+    /// Turning the work and coming nearer.
     pub turn: String,
     pub wrong_pin: String,
     /// Too many wrong PINs were entered.

@@ -176,7 +176,7 @@ pub enum VisitNews {
     PutAway(PutAway),
 }
 
-/// What became of a visit's work.
+/// Fate of a visit's work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PutAway {
     /// The file of the visit is of no use any more.

@@ -148,6 +148,12 @@ impl World {
         })
     }
 
+    /// Returns the devices whose pens press.
+    pub fn pressing(&self) -> impl Iterator<Item = DeviceId> + '_ {
+        let open = self.pens.iter().filter(|s| self.is_shown(s.device) && s.track.is_open());
+        open.map(|s| s.device)
+    }
+
     /// Returns the position of each pen in range on its tablet: shares of the tablet's area.
     pub fn tablets(&self) -> impl Iterator<Item = (DeviceId, glam::Vec2)> + '_ {
         let shown = self.pens.iter().filter(|s| self.is_shown(s.device));

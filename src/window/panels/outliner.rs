@@ -87,7 +87,7 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, ui_state: &mut UiState, out: &mut 
     ui.separator();
 }
 
-/// What can be added.
+/// Things that can be added.
 fn add(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     for (name, shape) in PRIMITIVES {
         if ui.button(tr!(name)).clicked() {
@@ -239,7 +239,7 @@ fn menu(
     }
 }
 
-/// What is done most to the active object, in a row.
+/// A row of the most frequent actions on the active object.
 fn buttons(
     ui: &mut egui::Ui,
     scene: &SceneView,

@@ -99,7 +99,7 @@ pub fn quiet(ui: &egui::Ui) -> Color32 {
     quiet_of(!ui.visuals().dark_mode)
 }
 
-/// What cannot be pressed now.
+/// Controls that cannot be pressed now.
 pub fn faint(ui: &egui::Ui) -> Color32 {
     quiet(ui).gamma_multiply(if ui.visuals().dark_mode { 0.58 } else { 0.7 })
 }

@@ -194,7 +194,7 @@ class DecimateReply(TypedDict):
     volume: float
     # The volume before.
     volume_before: float
-    # What must be known of the figures, one sentence each.
+    # Remarks on the figures, one sentence each.
     warnings: NotRequired[Sequence[str]]
 
 # A hole that was drilled.
@@ -1173,6 +1173,8 @@ class SymmetriseReply(TypedDict):
     layers_baked: int
     # Duration, in seconds.
     seconds: float
+    # Pairs of triangles that cross each other.
+    self_intersections: int
     # Triangles of the new mesh.
     triangles: int
     # Vertices of the new mesh.
@@ -1181,7 +1183,7 @@ class SymmetriseReply(TypedDict):
     volume: float
     # The volume before.
     volume_before: float
-    # What must be known of the figures, one sentence each.
+    # Remarks on the figures, one sentence each.
     warnings: NotRequired[Sequence[str]]
 
 # State of knowledge about the desktop's mapping of a tablet.
@@ -1212,7 +1214,7 @@ class TextRepair(TypedDict):
     at: Sequence[float]
     # The height of a capital letter.
     height: float
-    # How far it rises from the surface; below 0 how deep it is engraved.
+    # Height above the surface; below 0 it is engraved to this depth.
     relief: float
     # The text; a line break begins a line.
     text: str
