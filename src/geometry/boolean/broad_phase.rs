@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn the_grid_loses_no_pair() {
         let job = Job::default();
-        let (a, b) = (icosphere(1.0, 12).to_poly(), icosphere(0.9, 9).to_poly());
+        let (a, b) = (icosphere(1.0, 16).to_poly(), icosphere(0.8, 12).to_poly());
         for shift in
             [DVec3::ZERO, DVec3::new(0.7, 0.3, 0.2), DVec3::new(1.9, 0.0, 0.0), DVec3::splat(3.0)]
         {
