@@ -70,10 +70,7 @@ pub fn ui(
         screen.desk.touched.store(true, Relaxed);
     }
     closed::darken(&ctx, &now);
-    let mut whole = ctx.content_rect();
-    if now.stage == Stage::Attract && !now.staff {
-        whole = closed::drifting(&ctx, whole);
-    }
+    let whole = ctx.content_rect();
     let mut free = whole;
     if screen.show.seated {
         // The lower half can be reached from a chair.
@@ -146,13 +143,15 @@ fn attract(
     scan: &mut Scan,
 ) {
     let hints = &screen.show.hints;
+    // What can be pressed stays where it is: the press begins the visit.
+    let texts = closed::drifting(ctx, free);
     let work = now.work.filter(|number| *number > 0);
     let work = work.map(|number| words.work.replace("{number}", &number.to_string()));
     match screen.exhibits.as_slice() {
-        [] => said(ctx, free, (work, &words.welcome, &words.turn), (words, hints)),
+        [] => said(ctx, texts, (work, &words.welcome, &words.turn), (words, hints)),
         [one] => {
             let title = one.manifest.title.get(&words.code);
-            said(ctx, free, (work, title, &words.welcome), (words, hints));
+            said(ctx, texts, (work, title, &words.welcome), (words, hints));
         }
         _ => exhibit::choice(ctx, free, (words, work), now, screen, scan),
     }
