@@ -121,7 +121,7 @@ fn a_place_that_is_none_is_said_before_visitors_come() {
 }
 
 /// The texts of every language.
-fn texts(deleted: impl Fn(&Path) + Send + Sync + 'static) -> ShareTexts {
+fn texts(deleted: impl Fn(&Path) -> std::io::Result<()> + Send + Sync + 'static) -> ShareTexts {
     let languages = KioskConfig::default().every_language(sculptd::settings::LANGUAGES);
     ShareTexts { languages: languages.expect("built-in"), deleted: Box::new(deleted) }
 }
@@ -150,7 +150,7 @@ fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
     let clock = Clock::manual();
     let at = "127.0.0.1:0".parse().expect("an address");
     let minute = Duration::from_secs(60);
-    let share = Share::start(at, "", (minute, clock.clone()), texts(|_| {})).expect("listens");
+    let share = Share::start(at, "", (minute, clock.clone()), texts(|_| Ok(()))).expect("listens");
     let at = share.address();
     let link = share.link(&path).expect("a link");
     let rest = link.url.strip_prefix(&format!("http://{at}")).expect("our address").to_owned();
@@ -177,6 +177,29 @@ fn a_link_gives_one_work_to_whoever_has_it_until_it_expires() {
     clock.set_us(61_000_000);
     assert_eq!(get(at, &file, &host).0, 404);
     check_code(&link.code);
+}
+
+#[test]
+fn a_work_that_cannot_be_deleted_is_not_said_to_be() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = gallery::keep(dir.path(), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
+    let at = "127.0.0.1:0".parse().expect("an address");
+    let lasts = (Duration::from_secs(600), Clock::manual());
+    let share = Share::start(at, "", lasts, texts(|_| Ok(()))).expect("listens");
+    let at = share.address();
+    let link = share.link(&path).expect("a link");
+    let rest = link.url.strip_prefix(&format!("http://{at}")).expect("our address").to_owned();
+    let own = format!("Host: {at}\r\nOrigin: http://{at}");
+    let delete = || ask("POST", at, &format!("{rest}/delete"), &own).0;
+    // A folder of the picture's name cannot be removed as a file.
+    let picture = path.with_extension("png");
+    std::fs::remove_file(&picture).expect("removed");
+    std::fs::create_dir(&picture).expect("made");
+    assert_eq!(delete(), 500);
+    std::fs::remove_dir(&picture).expect("removed");
+    assert_eq!(delete(), 200, "the link is still good");
+    assert!(!path.exists());
+    assert_eq!(delete(), 404);
 }
 
 #[test]
@@ -281,7 +304,7 @@ fn a_name_of_ours_is_answered_to() {
     let path = gallery::keep(Path::new(dir.path()), &shapes::uv_sphere(1.0, 6, 8)).expect("kept");
     let at = "127.0.0.1:0".parse().expect("an address");
     let lasts = (Duration::from_secs(60), Clock::manual());
-    let share = Share::start(at, "museum.local", lasts, texts(|_| {})).expect("listens");
+    let share = Share::start(at, "museum.local", lasts, texts(|_| Ok(()))).expect("listens");
     let at = share.address();
     let link = share.link(&path).expect("a link");
     let rest =

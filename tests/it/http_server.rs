@@ -20,7 +20,7 @@ fn share_of(bytes: usize) -> (tempfile::TempDir, Share, String, Vec<u8>) {
     std::fs::write(&path, &content).expect("written");
     let at = "127.0.0.1:0".parse().expect("an address");
     let hour = Duration::from_secs(3600);
-    let texts = ShareTexts { languages: vec![], deleted: Box::new(|_| {}) };
+    let texts = ShareTexts { languages: vec![], deleted: Box::new(|_| Ok(())) };
     let share = Share::start(at, "", (hour, Clock::monotonic()), texts).expect("listens");
     let link = share.link(&path).expect("a link");
     let token = link.url.rsplit('/').next().expect("a token").to_owned();

@@ -40,7 +40,7 @@ impl Farewell {
         share::remove_leftovers(&config.gallery)
             .map_err(|e| format!("{}: {e}", config.gallery.display()))?;
         let deleted: share::Deleted = match spool {
-            None => Box::new(|_| {}),
+            None => Box::new(|_| Ok(())),
             Some(spool) => Box::new(spool.withdrawer(&config.gallery)),
         };
         let lasts = Duration::from_secs_f64(config.share_minutes * 60.0);

@@ -62,17 +62,22 @@ struct SharedWork {
 }
 
 impl SharedWork {
+    fn delete_stl(&self) -> std::io::Result<()> {
+        match std::fs::remove_file(&self.stl) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
+            _ => Ok(()),
+        }
+    }
+
     fn remove_stl(&self) {
-        if let Err(e) = std::fs::remove_file(&self.stl)
-            && e.kind() != std::io::ErrorKind::NotFound
-        {
+        if let Err(e) = self.delete_stl() {
             tracing::warn!("share: {}: {e}", self.stl.display());
         }
     }
 }
 
-/// Called after a visitor deleted a work, with the path that it had.
-pub type Deleted = Box<dyn Fn(&Path) + Send + Sync>;
+/// Has a work deleted in other places too; called before it is deleted here.
+pub type Deleted = Box<dyn Fn(&Path) -> std::io::Result<()> + Send + Sync>;
 
 /// Texts of a share's pages.
 pub struct ShareTexts {
@@ -214,6 +219,10 @@ fn answer(
     texts: &ShareTexts,
 ) -> Result<Answer, Refusal> {
     const GONE: Refusal = (StatusCode::NOT_FOUND, "this does not exist, or no longer");
+    const KEPT: Refusal = (
+        StatusCode::INTERNAL_SERVER_ERROR,
+        "the work was not deleted; try again, or ask the staff",
+    );
     let path = match *request.method() {
         Method::POST => permitted_post(request, at, name)?,
         _ => permitted_to_page(request, at, name)?,
@@ -228,7 +237,10 @@ fn answer(
     if *request.method() == Method::POST {
         return match asked {
             "delete" => {
-                delete(&good.file, links, texts);
+                delete(&good.file, links, texts).map_err(|e| {
+                    tracing::error!("share: {}: not deleted: {e}", good.file.display());
+                    KEPT
+                })?;
                 Ok(Answer::text("text/plain; charset=utf-8", "deleted\n".into()))
             }
             _ => Err(GONE),
@@ -251,22 +263,18 @@ fn answer(
     }
 }
 
-/// Deletes a work and every link to it.
-fn delete(file: &Path, links: &SharedWorks, texts: &ShareTexts) {
-    if let Ok(mut links) = links.lock() {
-        links.retain(|_, work| {
-            let other = work.file != file;
-            if !other {
-                work.remove_stl();
-            }
-            other
-        });
+/// Deletes a work, its copy as STL, and then every link to it. After an error the links are still
+/// good, so that the visitor can try again.
+fn delete(file: &Path, links: &SharedWorks, texts: &ShareTexts) -> std::io::Result<()> {
+    (texts.deleted)(file)?;
+    gallery::remove(file)?;
+    let mut links = links.lock().map_err(|_| std::io::Error::other("a thread ended by a bug"))?;
+    for work in links.values().filter(|work| work.file == file) {
+        work.delete_stl()?;
     }
-    match gallery::remove(file) {
-        Ok(()) => tracing::info!("share: a visitor deleted {}", file.display()),
-        Err(e) => tracing::error!("share: {}: {e}", file.display()),
-    }
-    (texts.deleted)(file);
+    links.retain(|_, work| work.file != file);
+    tracing::info!("share: a visitor deleted {}", file.display());
+    Ok(())
 }
 
 /// Returns the language that a browser prefers among ours, or our first one.

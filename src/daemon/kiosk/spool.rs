@@ -177,15 +177,17 @@ impl Spool {
 
     /// Returns a function that has a work deleted where it was sent to. It works after a restart
     /// and a dead network too.
-    pub fn withdrawer(&self, folder: &Path) -> impl Fn(&Path) + Send + Sync + use<> {
+    pub fn withdrawer(
+        &self,
+        folder: &Path,
+    ) -> impl Fn(&Path) -> std::io::Result<()> + Send + Sync + use<> {
         let (wake, folder) = (self.wake.clone(), folder.join(OUTGOING));
         move |work| {
-            let Some(name) = work.file_name() else { return };
+            let Some(name) = work.file_name() else { return Ok(()) };
             let note = folder.join(format!("{WITHDRAWN}{}", name.to_string_lossy()));
-            if let Err(e) = write_beside(&note, |_| Ok(())) {
-                tracing::error!("gallery: {}: {e}", note.display());
-            }
+            write_beside(&note, |_| Ok(()))?;
             let _ = wake.try_send(());
+            Ok(())
         }
     }
 }

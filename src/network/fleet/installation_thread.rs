@@ -265,16 +265,21 @@ impl InstallationPort for DaemonPort {
 
     fn staff(&mut self, order: StaffOrder) -> Result<String, String> {
         let (request, note) = match order {
-            StaffOrder::Clean => (StaffRequest::Cleaning(true), "it closes for cleaning"),
-            StaffOrder::Open => (StaffRequest::Cleaning(false), "it opens again"),
+            StaffOrder::Clean => (
+                StaffRequest::Cleaning(true),
+                "it was told to close for cleaning; the list shows when it has",
+            ),
+            StaffOrder::Open => {
+                (StaffRequest::Cleaning(false), "it was told to open; the list shows when it has")
+            }
             StaffOrder::Export if self.part.gallery.as_os_str().is_empty() => {
                 return Err("it has no gallery".into());
             }
             StaffOrder::Export => {
-                (StaffRequest::Export, "it packs today's works; the list names the file")
+                (StaffRequest::Export, "it was told to pack today's works; the list names the file")
             }
-            StaffOrder::Restart => (StaffRequest::Restart, "it starts again"),
-            StaffOrder::End => (StaffRequest::End, "it ends for good"),
+            StaffOrder::Restart => (StaffRequest::Restart, "it was told to restart"),
+            StaffOrder::End => (StaffRequest::End, "it was told to end for good"),
         };
         self.run.desk.ask_from_fleet(request);
         Ok(note.into())
