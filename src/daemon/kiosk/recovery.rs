@@ -79,11 +79,7 @@ fn finish_putting_away(
         Err(e) => return Err(e),
     };
     let work = Path::new(&work);
-    let created = std::fs::metadata(&visit).and_then(|m| m.created()).ok();
-    let written = std::fs::metadata(work).and_then(|m| m.modified()).ok();
-    // A note that an earlier visit left behind says nothing of this one.
-    let is_of_visit = created.zip(written).is_none_or(|(created, written)| created <= written);
-    if is_of_visit && visit.exists() && work.is_file() {
+    if visit.exists() && work.is_file() {
         let name = work.file_name().unwrap_or_default().to_string_lossy().into_owned();
         notices.push(format!("the last visit is over: its work is {name} in the gallery"));
         catalog::remove(&visit)?;
