@@ -51,6 +51,7 @@ CHAPTERS = [
         ("Ready to print, ready to mould", "check.md"),
         ("Join from a phone or an iPad", "join.md"),
         ("A kiosk, from an empty computer to opening day", "kiosk.md"),
+        ("An exhibit in fifteen minutes", "exhibits.md"),
         ("A fleet of installations", "fleet.md"),
         ("One sculpture, several people", "together.md"),
         ("Troubleshooting", "troubleshooting.md"),

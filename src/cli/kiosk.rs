@@ -4,15 +4,17 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::kiosk_check;
 #[cfg(unix)]
 use super::kiosk_setup;
 #[cfg(target_os = "linux")]
 use super::kiosk_trial;
 use super::run::{self as run_command, RunArgs};
 use super::{Fail, Outcome, answer};
+use crate::settings::LANGUAGES;
 use sculptd_daemon::kiosk::exhibit::create::{NewExhibit, create, goal_of};
 use sculptd_daemon::kiosk::exhibit::score::Score;
-use sculptd_daemon::kiosk::exhibit::{self, Exhibit, pack};
+use sculptd_daemon::kiosk::exhibit::{self, Exhibit, Texts, pack};
 use sculptd_geometry::io::{MAX_FILE, read_in_millimetres};
 use sculptd_geometry::job::Job;
 
@@ -40,6 +42,12 @@ pub enum KioskCommand {
         /// A folder or .zip file, or figurine, pot or relief.
         exhibit: PathBuf,
     },
+    /// Check the settings of an installation and all that they name, and print what visitors will
+    /// find.
+    Check {
+        /// The file, such as /etc/sculptd/kiosk.toml.
+        settings: PathBuf,
+    },
     /// Write an exhibit as one .zip file, or as a folder that you can edit.
     Pack {
         /// A folder or .zip file, or figurine, pot or relief.
@@ -66,13 +74,17 @@ pub struct NewExhibitArgs {
     /// The new exhibit: a .zip file, or else a folder that you can edit.
     #[arg(long, short, value_name = "PACK")]
     pub out: PathBuf,
-    /// Title on the screen; default: the name of the mesh file.
-    #[arg(long)]
-    pub title: Option<String>,
-    /// What to do, in one sentence; default: a usual one in eight languages. More languages: edit
-    /// exhibit.toml.
-    #[arg(long, default_value = "")]
-    pub text: String,
+    /// Title on the screen, in English or, as de=TEXT, in another language; once for each language.
+    /// Without it: the name of the mesh file.
+    #[arg(long, value_name = "TEXT")]
+    pub title: Vec<String>,
+    /// The task, in one sentence, in English or, as de=TEXT, in another language; once for each
+    /// language. Without one in English, languages left out have a usual sentence.
+    #[arg(long, value_name = "TEXT")]
+    pub text: Vec<String>,
+    /// Tools on the screen, in this order: carve, add, smooth, or brushes by name.
+    #[arg(long, value_delimiter = ',', default_value = "carve,add,smooth")]
+    pub tools: Vec<String>,
     /// Longest time for a visit, minutes; 0: no limit.
     #[arg(long, default_value_t = 8.0)]
     pub minutes: f64,
@@ -143,10 +155,11 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
         KioskCommand::Show { exhibit } => print(&facts(&open(exhibit, &job)?, &job)?, json),
         KioskCommand::Preview { exhibit } => {
             open(exhibit, &job)?;
-            let args =
-                RunArgs { kiosk: true, exhibit: vec![exhibit.clone()], ..RunArgs::default() };
+            let exhibit = vec![exhibit.clone()];
+            let args = RunArgs { kiosk: true, preview: true, exhibit, ..RunArgs::default() };
             return run_command::run(&args, json);
         }
+        KioskCommand::Check { settings } => return kiosk_check::run(settings, json),
         KioskCommand::Pack { exhibit, to } => {
             pack::write(&open(exhibit, &job)?, to).map_err(Fail::Input)?;
             let file = Some(to.clone());
@@ -161,7 +174,8 @@ pub fn run(command: &KioskCommand, json: bool) -> Outcome {
                 let (percent, much, little) = (score.percent(), score.too_much, score.too_little);
                 writeln!(
                     out,
-                    "{percent} % is done; too much up to {much:.3}, too little up to {little:.3}"
+                    "{percent} % is done; too much up to {much:.3} mm, too little up to \
+                     {little:.3} mm"
                 )
             });
         }
@@ -186,12 +200,27 @@ fn settings(args: &NewExhibitArgs) -> Result<NewExhibit, Fail> {
     Ok(NewExhibit {
         z_up: args.up.map_or(prints, |up| up == UpAxis::Z),
         name: stem(&args.out).unwrap_or_default(),
-        title: args.title.clone().or_else(|| stem(&args.goal)).unwrap_or_default(),
-        text: args.text.clone(),
+        title: match args.title.is_empty() {
+            true => Texts::new(&stem(&args.goal).unwrap_or_default()),
+            false => by_language(&args.title),
+        },
+        text: by_language(&args.text),
+        tools: args.tools.clone(),
         minutes: args.minutes,
         size: args.size,
         tolerance: args.tolerance,
     })
+}
+
+/// Texts of the form `de=TEXT`; one without a code is in English.
+fn by_language(all: &[String]) -> Texts {
+    let one = |text: &String| match text.split_once('=') {
+        Some((code, text)) if LANGUAGES.iter().any(|(known, _)| *known == code) => {
+            (code.to_owned(), text.to_owned())
+        }
+        _ => ("en".to_owned(), text.clone()),
+    };
+    Texts(all.iter().map(one).collect())
 }
 
 fn facts(exhibit: &Exhibit, job: &Job) -> Result<ExhibitAnswer, Fail> {
@@ -230,12 +259,12 @@ fn print(facts: &ExhibitAnswer, json: bool) {
             if let (Some(triangles), Some(tolerance), Some(score)) =
                 (step.goal_triangles, step.tolerance, &step.at_start)
             {
-                writeln!(out, "    goal: {triangles} triangles, right within {tolerance}")?;
+                writeln!(out, "    goal: {triangles} triangles, right within {tolerance} mm")?;
                 let (much, little) = (score.too_much, score.too_little);
                 writeln!(
                     out,
-                    "    at the start there is too much up to {much:.1}, too little up to \
-                     {little:.1}"
+                    "    at the start there is too much up to {much:.1} mm, too little up to \
+                     {little:.1} mm"
                 )?;
             }
         }

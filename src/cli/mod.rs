@@ -33,6 +33,7 @@ pub mod fleet_part;
 #[cfg(feature = "network")]
 pub mod invite;
 mod kiosk;
+mod kiosk_check;
 mod kiosk_settings;
 #[cfg(unix)]
 mod kiosk_setup;

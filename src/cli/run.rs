@@ -62,6 +62,9 @@ pub struct RunArgs {
     /// repeated.
     #[arg(long, value_name = "PACK", requires = "kiosk")]
     pub exhibit: Vec<PathBuf>,
+    /// Nothing of the visits is kept, not even for a restart.
+    #[arg(skip)]
+    pub preview: bool,
     /// End after this many seconds of the loop's time.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     pub limit_s: Option<f64>,
@@ -247,7 +250,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             brushes: own_brushes(args.brushes.as_deref())?,
             languages: LANGUAGES,
             // The people of a shared sculpture hold its work already.
-            visits: (args.kiosk && session.is_none() && !is_shared).then(library::visits).flatten(),
+            visits: (args.kiosk && !args.preview && session.is_none() && !is_shared)
+                .then(library::visits)
+                .flatten(),
             kiosk,
             demo_devices: false,
             drawn_hands: false,
@@ -306,6 +311,10 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
             }
             if let Some(next) = open_next.lock().ok().and_then(|n| n.clone()) {
                 return library::open(&next, args.config.as_deref());
+            }
+            if args.preview {
+                eprintln!("sculptd: the preview has ended; nothing was kept");
+                return Ok(());
             }
             report(&summary, args.stats.as_deref(), json)
         };

@@ -30,6 +30,8 @@ pub struct QueuedCommand {
     pub t_us: Option<u64>,
     /// The hold that this command starts, or whose holder sent it.
     pub hold: Option<InputHold>,
+    /// A visit of an installation begins with it: see [`crate::kiosk::visit_door`].
+    pub begins_visit: bool,
 }
 
 /// Result of a command, and the tick of its effect.
@@ -59,7 +61,14 @@ pub enum NoAnswer {
 
 impl From<Command> for QueuedCommand {
     fn from(command: Command) -> Self {
-        QueuedCommand { command, payload: None, answer: None, t_us: None, hold: None }
+        QueuedCommand {
+            command,
+            payload: None,
+            answer: None,
+            t_us: None,
+            hold: None,
+            begins_visit: false,
+        }
     }
 }
 

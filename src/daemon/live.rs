@@ -21,6 +21,7 @@ use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand, command_
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
 use crate::input_hold::LoopHold;
+use crate::kiosk::visit_door::{VisitDoor, WaitingVisitor};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
 use crate::people::{PeopleHere, SharedEnd};
 use crate::priority::raise_priority;
@@ -65,6 +66,19 @@ pub struct Live {
     thread: JoinHandle<Ended>,
 }
 
+/// Input of the loop beside the samples.
+#[derive(Debug, Default)]
+pub struct LiveInput {
+    /// Samples taken a tick, at most.
+    pub drain_per_tick: usize,
+    /// Active tablet controls.
+    pub actions: Option<TabletActions>,
+    /// Door of an installation.
+    pub door: Option<Arc<VisitDoor>>,
+    /// With it the world steps only that input.
+    pub shared: Option<Box<dyn SharedInput>>,
+}
+
 /// A loop that has ended, with all that it held.
 #[derive(Debug)]
 pub struct Ended {
@@ -87,6 +101,10 @@ pub enum LiveError {
 }
 
 impl Live {
+    /// Starts without tablet controls, visitors and others at the sculpture.
+    ///
+    /// # Errors
+    /// Returns [`LiveError::Start`] if a thread cannot start.
     pub fn start(
         world: World,
         receiver: Receiver,
@@ -95,36 +113,21 @@ impl Live {
         drain_per_tick: usize,
         journal: Option<Box<dyn Journal>>,
     ) -> Result<Self, LiveError> {
-        Live::start_with(world, receiver, clock, config, (drain_per_tick, None), journal)
+        let input = LiveInput { drain_per_tick, ..LiveInput::default() };
+        Live::start_with(world, receiver, clock, config, input, journal)
     }
 
-    /// As [`Live::start`], with active tablet controls.
+    /// As [`Live::start`], with all that may come beside the samples.
     ///
     /// # Errors
     /// Returns [`LiveError::Start`] if a thread cannot start.
     pub fn start_with(
-        world: World,
-        receiver: Receiver,
-        clock: Clock,
-        config: LoopConfig,
-        drain: (usize, Option<TabletActions>),
-        journal: Option<Box<dyn Journal>>,
-    ) -> Result<Self, LiveError> {
-        Live::start_shared(world, receiver, clock, config, drain, journal, None)
-    }
-
-    /// As [`Live::start_with`]; with `shared`, the world steps only that input.
-    ///
-    /// # Errors
-    /// Returns [`LiveError::Start`] if a thread cannot start.
-    pub fn start_shared(
         mut world: World,
         receiver: Receiver,
         clock: Clock,
         config: LoopConfig,
-        (drain_per_tick, actions): (usize, Option<TabletActions>),
+        input: LiveInput,
         journal: Option<Box<dyn Journal>>,
-        shared: Option<Box<dyn SharedInput>>,
     ) -> Result<Self, LiveError> {
         let (commands, inbox) = command_queue(COMMANDS);
         let garbage = GarbageThread::start().map_err(LiveError::Start)?;
@@ -144,12 +147,13 @@ impl Live {
             publisher,
             stopped,
             rate_hz: config.rate_hz,
-            drain_per_tick,
-            actions,
+            drain_per_tick: input.drain_per_tick,
+            actions: input.actions,
+            visitor: input.door.map(WaitingVisitor::new),
             journal,
             garbage,
             pages,
-            shared,
+            shared: input.shared,
             guests: guests.clone(),
             writing: Vec::new(),
             trail,
@@ -185,6 +189,7 @@ struct Ticking {
     rate_hz: u32,
     drain_per_tick: usize,
     actions: Option<TabletActions>,
+    visitor: Option<WaitingVisitor>,
     journal: Option<Box<dyn Journal>>,
     joiner: Option<BooleanJobs>,
     garbage: GarbageThread,
@@ -276,7 +281,7 @@ impl Ticking {
             // A command that needs the surface would finish the whole pending edit within this
             // tick.
             let mut edits = self.shared.is_none() && self.world.is_in_surface_edit();
-            let mut begins = false;
+            let (mut begins, mut visit_begins) = (false, false);
             for _ in 0..COMMANDS_PER_TICK {
                 let Some(mut queued) = now.next_command(&self.inbox) else { break };
                 if now.puts_off(&mut queued, self.receiver.waiting() > 0) {
@@ -307,6 +312,7 @@ impl Ticking {
                     // These are stepped after the hold.
                     now.later.append(&mut now.samples);
                 }
+                visit_begins |= queued.begins_visit;
                 begins |= self.shared.is_none() && queued.command.begins_surface_edit();
                 edits |= begins;
                 if let Some(shared) = &mut self.shared {
@@ -325,6 +331,9 @@ impl Ticking {
                 now.commands.push(queued.deliver(&mut self.world));
             }
             self.trail.send(&now.samples);
+            if let Some(visitor) = &mut self.visitor {
+                visitor.step(&mut now.samples, visit_begins, self.clock.now_us());
+            }
             if let Some(actions) = &mut self.actions {
                 let first = now.commands.len();
                 actions.take(&mut now.samples, &self.world, &mut now.commands);
@@ -410,6 +419,7 @@ impl Ticking {
         let waits = now.late.is_some() || !now.answers.is_empty();
         let waits = waits || !now.held.is_empty() || !now.later.is_empty();
         let waits = waits || now.hold.now().is_some();
+        let waits = waits || self.visitor.as_ref().is_some_and(WaitingVisitor::waits);
         self.shared.is_some()
             || matches!(self.clock, Clock::Manual(_))
             || waits

@@ -20,7 +20,7 @@ use crate::kiosk::settings::LanguageTexts;
 use crate::kiosk::start::Start;
 use crate::kiosk::unrecorded::WithoutFilms;
 use crate::kiosk::{KioskConfig, keeper, recovery};
-use crate::live::{Live, LiveError};
+use crate::live::{Live, LiveError, LiveInput};
 use crate::live_booleans;
 use crate::people::SharedEnd;
 #[cfg(unix)]
@@ -239,11 +239,14 @@ impl LiveRun {
         let actions = TabletActions::new(config.devices.actions.clone(), options.presets.clone())
             .with_controls(options.controls.clone())
             .with_models(models.of(adaptors.clone()));
-        let drain = (config.channel.drain_per_tick, Some(actions));
-        let (rate, shared) = (config.r#loop, options.shared.take());
-        let followed = shared.is_none();
-        let live =
-            Live::start_shared(begun.world, receiver, clock.clone(), rate, drain, journal, shared)?;
+        let input = LiveInput {
+            drain_per_tick: config.channel.drain_per_tick,
+            actions: Some(actions),
+            door: first.as_ref().map(|first| first.door.clone()),
+            shared: options.shared.take(),
+        };
+        let (rate, followed) = (config.r#loop, input.shared.is_none());
+        let live = Live::start_with(begun.world, receiver, clock.clone(), rate, input, journal)?;
         for history in history.iter().chain(&visit_history) {
             history.connect(live.commands.clone());
         }

@@ -35,8 +35,8 @@ fn distances(file: &Path, mesh: &TriMesh, folder: &Path) -> Vec<f64> {
     all.map(|d| d.as_f64().expect("a number")).collect()
 }
 
-/// The share of the area within `tolerance`, and the largest distance.
-fn share(mesh: &TriMesh, distances: &[f64], tolerance: f64) -> (f64, f64) {
+/// The share of the area within `tolerance`, the mean distance beyond it, and the largest distance.
+fn share(mesh: &TriMesh, distances: &[f64], tolerance: f64) -> [f64; 3] {
     let mut areas = vec![0.0; mesh.positions.len()];
     for t in &mesh.triangles {
         let [a, b, c] = t.map(|v| mesh.positions[v as usize].as_dvec3());
@@ -44,7 +44,9 @@ fn share(mesh: &TriMesh, distances: &[f64], tolerance: f64) -> (f64, f64) {
     }
     let near = areas.iter().zip(distances).filter(|(_, d)| d.abs() <= tolerance);
     let near: f64 = near.map(|(area, _)| area).sum();
-    (near / areas.iter().sum::<f64>(), distances.iter().copied().fold(0.0, f64::max))
+    let all = areas.iter().sum::<f64>();
+    let off = areas.iter().zip(distances).map(|(area, d)| area * (d.abs() - tolerance).max(0.0));
+    [near / all, off.sum::<f64>() / all, distances.iter().copied().fold(0.0, f64::max)]
 }
 
 #[test]
@@ -62,11 +64,14 @@ fn the_score_is_what_the_distance_command_measures() {
         let mesh =
             |path: &Path| read_mesh(path, &Job::default()).expect("a mesh").mesh.triangulate().0;
         let (of_start, of_goal) = (mesh(&start), mesh(&goal));
-        let (there, much) = share(&of_start, &distances(&goal, &of_start, dir.path()), tolerance);
-        let (back, little) = share(&of_goal, &distances(&start, &of_goal, dir.path()), tolerance);
-        for (key, expected) in
-            [("near", (there + back) / 2.0), ("too_much", much), ("too_little", little)]
-        {
+        let there = share(&of_start, &distances(&goal, &of_start, dir.path()), tolerance);
+        let back = share(&of_goal, &distances(&start, &of_goal, dir.path()), tolerance);
+        for (key, expected) in [
+            ("near", (there[0] + back[0]) / 2.0),
+            ("off", (there[1] + back[1]) / 2.0),
+            ("too_much", there[2]),
+            ("too_little", back[2]),
+        ] {
             let found = score[key].as_f64().expect("a number");
             assert!((found - expected).abs() < 1e-3, "{name} {key}: {found}, expected {expected}");
         }
@@ -81,6 +86,19 @@ fn an_exhibit_is_made_from_a_mesh_and_told_what_is_wrong() {
     sculptd_geometry::io::write_mesh(&dir.path().join("ring.stl"), &ring).expect("written");
     let made = sculptd(&["kiosk", "new-exhibit", &at("ring.stl"), "-o", &at("ring.zip")]);
     assert_eq!(made["title"], "ring");
+    assert!(made["notes"].to_string().contains("through: 1"), "{made}");
+    let more =
+        ["--title", "A ring", "--title", "de=Ein Ring", "--text=de=Finde ihn", "--tools=carve"];
+    let (from, to) = (at("ring.stl"), at("ring"));
+    let both = [&["kiosk", "new-exhibit", &from, "-o", &to][..], &more].concat();
+    sculptd(&both);
+    let text = std::fs::read_to_string(dir.path().join("ring/exhibit.toml")).expect("a text");
+    for line in
+        ["de = \"Ein Ring\"", "en = \"A ring\"", "de = \"Finde ihn\"", "tools = [\"carve\"]"]
+    {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert!(text.contains("en = \"It is hidden"), "the usual text in other languages: {text}");
     let shown = sculptd(&["kiosk", "show", &at("ring.zip")]);
     assert_eq!(shown["steps"], made["steps"]);
     assert!(made["steps"][0]["at_start"]["too_little"].as_f64() == Some(0.0), "{made}");

@@ -280,6 +280,35 @@ fn a_visitor_sees_the_work_in_3_d_takes_it_home_and_deletes_it() {
     assert_eq!(stls(), 0);
 }
 
+/// Where Node.js, Chromium and the packages of `src/web` are: the page in a real browser, on a
+/// telephone and a desk.
+#[test]
+fn a_browser_shows_turns_and_deletes_the_work() {
+    let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/web");
+    let runs = |name: &str| {
+        let out = std::process::Command::new(name).arg("--version").output();
+        out.is_ok_and(|out| out.status.success())
+    };
+    if !runs("node") || !runs("chromium") || !web.join("node_modules/ws").exists() {
+        println!("skipped: no node, chromium or node_modules of src/web");
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a folder");
+    let works = dir.path().join("works");
+    let path = gallery::keep(&works, &shapes::uv_sphere(1.0, 24, 48)).expect("kept");
+    let spool = Spool::start(&works, &dir.path().join("store").display().to_string());
+    let spool = spool.expect("a place");
+    let lasts = (Duration::from_secs(600), Clock::manual());
+    let at = "127.0.0.1:0".parse().expect("an address");
+    let share = Share::start(at, "", lasts, texts(spool.withdrawer(&works))).expect("listens");
+    let link = share.link(&path).expect("a link");
+    let mut test = std::process::Command::new("node");
+    test.current_dir(&web).arg("test/work.mjs").arg(&link.url).arg(&path).arg("chromium");
+    test.args(std::env::var_os("SCULPTD_SHOTS"));
+    assert!(test.status().expect("runs").success());
+    assert!(!path.exists() && !share.is_good(&link));
+}
+
 /// The three eyes of a QR code, seven squares each, at three corners and not at the fourth.
 fn check_code(code: &Code) {
     let dark = |x: usize, y: usize| code.dark[y * code.side + x];

@@ -8,7 +8,7 @@ use sculptd_daemon::kiosk::start::{Start, StartForm};
 use sculptd_daemon::kiosk::unrecorded::WithoutFilms;
 use sculptd_daemon::kiosk::visit_journal::{self, VisitStart};
 use sculptd_daemon::kiosk::{KioskConfig, Stage, gallery, keeper};
-use sculptd_daemon::live::Live;
+use sculptd_daemon::live::{Live, LiveInput};
 use sculptd_daemon::session;
 use sculptd_daemon::session::format::Settings;
 use sculptd_daemon::session::replay::replay;
@@ -192,7 +192,9 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     let start = Start::free(plain, camera, config.brush);
     let clock = Clock::monotonic();
     let (factory, receiver) = queue::channel(4096);
-    let live = Live::start(world, receiver, clock.clone(), LoopConfig::default(), 1024, None)
+    let input =
+        LiveInput { drain_per_tick: 1024, door: Some(start.door.clone()), ..LiveInput::default() };
+    let live = Live::start_with(world, receiver, clock.clone(), LoopConfig::default(), input, None)
         .expect("a loop");
     let kiosk = KioskConfig {
         // Longer than the busiest machine needs to reset the clay.
@@ -320,6 +322,76 @@ fn a_visit_from_the_attract_loop_to_the_gallery_and_staff_lets_out() {
     keeper.desk.ask(StaffRequest::End);
     until("staff is let out", || stop.load(Relaxed));
     assert!(!keeper.desk.again.load(Relaxed));
+    keeper.thread.join().expect("the keeper ends");
+    live.stop().expect("ends").world.verify_invariants().expect("sound");
+}
+
+/// A stroke that is over before the keeper has seen it: the reset that begins the visit comes after
+/// the whole stroke.
+#[test]
+fn the_first_stroke_is_whole_however_short_it_is() {
+    let config = Resolved::defaults(sculptd::presets()).config;
+    let plain = Arc::new(shapes::sphere_of_about(5_000));
+    let mesh = Clay::build(&plain, &Default::default()).expect("a ball");
+    let world = startup::world(mesh, &config);
+    let clean = world.hash();
+    let start = Start::free(plain, config.camera.camera(), config.brush);
+    let clock = Clock::monotonic();
+    let (factory, receiver) = queue::channel(4096);
+    let door = Some(start.door.clone());
+    let input = LiveInput { drain_per_tick: 1024, door, ..LiveInput::default() };
+    let live = Live::start_with(world, receiver, clock.clone(), LoopConfig::default(), input, None)
+        .expect("a loop");
+    let kiosk = KioskConfig { idle_s: 3600.0, ..KioskConfig::default() };
+    let words = kiosk.words(sculptd::settings::LANGUAGES).expect("English");
+    let stop = Arc::new(AtomicBool::new(false));
+    let given = (live.published.clone(), live.commands.clone());
+    let keeper = keeper::start(
+        (kiosk, std::slice::from_ref(&words)),
+        start,
+        given.0,
+        given.1,
+        &factory,
+        clock.clone(),
+        stop.clone(),
+    )
+    .expect("keeps");
+    let stage = || keeper.desk.view.lock().expect("a view").map(|v| v.stage);
+    let shown = || live.published.load_full();
+    let mut sender = factory.sender();
+    let mut made = Vec::new();
+    for round in 0..4 {
+        until("the film sculpts", || shown().figures.dabs > 20 && shown().mesh.hash() != clean);
+        assert_eq!(stage(), Some(Stage::Attract));
+        let t_us = clock.now_us();
+        for i in 0..20_u64 {
+            let pen = Pen {
+                in_range: i < 19,
+                tip: (1..18).contains(&i),
+                pos_mm: Vec2::new(40.0 + i as f32, 50.0),
+                area_mm: Vec2::splat(100.0),
+                pressure: Some(0.5),
+                ..Pen::default()
+            };
+            let (device, body) = (DeviceId(0), Body::Pen(pen));
+            let t_us = t_us.saturating_sub((20 - i) * 5_000);
+            sender.push(Sample { device, t_us, device_t_us: None, body });
+        }
+        sender.flush();
+        until("a visit begins", || stage() == Some(Stage::Working));
+        until("its stroke is there", || shown().undo_steps == 1);
+        until("the stroke is over", || {
+            let before = shown().mesh.hash();
+            pause(100);
+            shown().mesh.hash() == before
+        });
+        made.push(shown().mesh.hash());
+        assert_ne!(made[0], clean);
+        assert_eq!(made[round], made[0], "round {round}: the whole stroke, on clean clay");
+        keeper.desk.finished.store(true, Relaxed);
+        until("the visit is over", || stage() == Some(Stage::Attract));
+    }
+    stop.store(true, Relaxed);
     keeper.thread.join().expect("the keeper ends");
     live.stop().expect("ends").world.verify_invariants().expect("sound");
 }

@@ -219,3 +219,42 @@ fn systemd_finds_no_fault_in_the_service() {
         .collect();
     assert!(ours.is_empty(), "{ours:?}");
 }
+
+#[test]
+#[allow(clippy::disallowed_methods)] // Settings of a test.
+fn settings_are_checked_with_all_that_they_name() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("kiosk.toml");
+    let check = |text: &str| {
+        std::fs::write(&file, text).expect("written");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
+        let out = command.args(["--json", "kiosk", "check"]).arg(&file).output().expect("runs");
+        let told = String::from_utf8_lossy(&out.stderr).into_owned();
+        let answer: Value = serde_json::from_slice(&out.stdout).unwrap_or_default();
+        (out.status.code(), format!("{answer} {told}"))
+    };
+    let gallery = dir.path().join("works");
+    let good = format!(
+        "gallery = {gallery:?}\nlanguages = [\"en\", \"de\"]\nexhibits = [\"relief\"]\n\
+         staff_pin = \"4711\"\n[hours]\nopen = [\"daily 0:00-24:00\"]\n"
+    );
+    let (code, said) = check(&good);
+    assert_eq!(code, Some(0), "{said}");
+    for part in ["now it is open", "English, Deutsch,", "exhibit: ", "works", "behind its PIN"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!gallery.exists(), "a check makes nothing");
+    // One fault each.
+    for (old, new, expected) in [
+        (format!("{gallery:?}"), "\"/proc/works\"".to_owned(), "no work can be kept"),
+        ("relief".to_owned(), "a vase".to_owned(), "a vase"),
+        ("staff_pin".to_owned(), "attract = [\"none.hid\"]\nstaff_pin".to_owned(), "none.hid"),
+        ("staff_pin".to_owned(), "curated = [\"/none\"]\nstaff_pin".to_owned(), "/none"),
+    ] {
+        let (code, said) = check(&good.replace(&old, &new));
+        assert_eq!(code, Some(1), "{new}: {said}");
+        assert!(said.contains(expected) && said.contains("faults: 1"), "{new}: {said}");
+    }
+    let (code, said) = check("staff_pin = 1234");
+    assert!(code == Some(3) && said.contains("write it in quotes"), "{code:?} {said}");
+}

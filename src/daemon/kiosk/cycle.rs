@@ -6,8 +6,8 @@ const TRIES: u32 = 3;
 const LOCKED_S: f64 = 60.0;
 /// Time without a touch after which the staff page closes by itself, in seconds.
 const STAFF_S: f64 = 180.0;
-/// Time without a touch after which the farewell ends, in seconds.
-const FAREWELL_S: f64 = 60.0;
+/// Time without a touch after which the farewell ends, in seconds: with a question, and without.
+const FAREWELL_S: [f64; 2] = [60.0, 15.0];
 /// Time that a visit in progress has after closing time, in seconds.
 const GRACE_S: f64 = 300.0;
 
@@ -33,6 +33,15 @@ pub enum KioskAct {
     Begin,
     /// The visitor left: keep the sculpture if configured, then reset everything.
     End { seconds: u64 },
+}
+
+/// The next opening time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NextOpening {
+    /// Day of the week, Monday is 0; `None`: it is less than a day away.
+    pub weekday: Option<u32>,
+    /// Minute of the day.
+    pub minute: u32,
 }
 
 /// For a screen.
@@ -61,8 +70,8 @@ pub struct View {
     pub work: Option<u64>,
     /// Darkness of the screen, percent.
     pub dim_percent: u8,
-    /// The next opening time as a minute of the day; `None`: more than a day away.
-    pub opens_at: Option<u32>,
+    /// The next opening time; `None`: it is always open.
+    pub opens_next: Option<NextOpening>,
 }
 
 #[derive(Debug)]
@@ -77,8 +86,8 @@ pub struct Cycle {
     visits: u64,
     /// Tick at which the visit ends at the latest.
     ends: Option<u64>,
-    /// A visitor who ends a visit gets a farewell.
-    farewell: bool,
+    /// Ticks of the farewell of a visitor who ends a visit.
+    farewell: u64,
     /// No visitor may come.
     closed: bool,
     /// The tick of the staff's last touch while their page is open.
@@ -103,7 +112,7 @@ impl Cycle {
             touched: 0,
             visits: 0,
             ends: None,
-            farewell: false,
+            farewell: 0,
             closed: false,
             staff: None,
             wrong: 0,
@@ -112,8 +121,10 @@ impl Cycle {
         }
     }
 
-    /// A cycle in which visitors who end their visit get a farewell.
-    pub fn with_farewell(self, farewell: bool) -> Self {
+    /// A cycle in which visitors who end their visit get a farewell. `asks`: they are asked
+    /// something in it.
+    pub fn with_farewell(self, asks: bool) -> Self {
+        let farewell = (FAREWELL_S[usize::from(!asks)] * self.rate_hz) as u64;
         Cycle { farewell, ..self }
     }
 
@@ -186,12 +197,12 @@ impl Cycle {
             }
             Stage::Attract | Stage::Closed => {}
             Stage::Farewell => {
-                if done || self.now - self.touched >= (FAREWELL_S * self.rate_hz) as u64 {
+                if done || self.now - self.touched >= self.farewell {
                     self.end_farewell();
                 }
             }
             _ if done || self.ends.is_some_and(|ends| self.now >= ends) => {
-                return Some(self.end(self.farewell));
+                return Some(self.end(self.farewell > 0));
             }
             Stage::Working if self.now - self.touched >= self.idle => self.stage = Stage::Countdown,
             Stage::Countdown if touched => self.stage = Stage::Working,

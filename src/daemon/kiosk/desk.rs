@@ -45,6 +45,8 @@ pub struct KioskDesk {
     pub screen_gone: AtomicBool,
     /// Message from the fleet's staff to those on site, until dismissed.
     pub message: Mutex<Option<String>>,
+    /// The work of the visit that has ended is in the gallery.
+    pub kept: AtomicBool,
     /// The visitor is asked for consent to share the work.
     pub asks_consent: AtomicBool,
     /// The visitor gave it.
@@ -71,6 +73,7 @@ impl Default for KioskDesk {
             again: AtomicBool::default(),
             screen_gone: AtomicBool::default(),
             message: Mutex::default(),
+            kept: AtomicBool::default(),
             asks_consent: AtomicBool::default(),
             consents: AtomicBool::default(),
             #[cfg(unix)]

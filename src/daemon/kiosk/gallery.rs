@@ -61,6 +61,20 @@ pub fn next(folder: &Path) -> std::io::Result<PathBuf> {
     Ok(folder.join(format!("work-{next:06}.glb")))
 }
 
+/// Writes a file into a folder and removes it again. A folder that does not exist yet is not made:
+/// its nearest existing parent is tried.
+///
+/// # Errors
+/// Returns the system's error.
+pub fn takes_files(folder: &Path) -> std::io::Result<()> {
+    let exists = |folder: &&Path| folder.exists() || folder.as_os_str().is_empty();
+    let there = folder.ancestors().find(exists).unwrap_or(folder);
+    let there = if there.as_os_str().is_empty() { Path::new(".") } else { there };
+    let trial = there.join(format!(".sculptd-{}", std::process::id()));
+    std::fs::OpenOptions::new().write(true).create_new(true).open(&trial)?.write_all(b"a trial")?;
+    std::fs::remove_file(&trial)
+}
+
 /// Adds a picture, its sculpture and rewrites the page, in this order: each sculpture has its
 /// picture already. Each file is written under a temporary name and renamed. The page lists the
 /// folder, so the next call repairs an interruption between the two.
@@ -174,6 +188,18 @@ pub fn audit(file: &Path, line: &VisitLine) -> std::io::Result<()> {
 mod tests {
     use super::*;
     use sculptd_geometry::shapes;
+
+    #[test]
+    fn a_folder_that_takes_no_files_is_found_out_and_nothing_stays_in_one_that_does() {
+        let dir = tempfile::tempdir().expect("a folder");
+        for folder in [dir.path().to_path_buf(), dir.path().join("works/of/today")] {
+            takes_files(&folder).expect("takes them");
+        }
+        assert_eq!(std::fs::read_dir(dir.path()).expect("listed").count(), 0);
+        for folder in ["/proc/gallery", "/dev/null/gallery"] {
+            assert!(takes_files(Path::new(folder)).is_err(), "{folder}");
+        }
+    }
 
     #[test]
     fn half_a_work_is_not_in_the_gallery_and_the_next_work_mends_the_page() {

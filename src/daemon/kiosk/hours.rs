@@ -1,5 +1,6 @@
 //! Opening hours: spans of the day on days of the week, in local time.
 
+use super::cycle::NextOpening;
 use crate::local_time::LocalTime;
 
 /// Minutes of a day.
@@ -50,12 +51,14 @@ impl Hours {
         self.spans.is_empty() || self.spans.iter().any(holds)
     }
 
-    /// Returns the next opening time as a minute of the day, if it is less than a day away.
-    pub fn opens_next(&self, now: LocalTime) -> Option<u32> {
+    /// Returns the next opening time; `None` without opening hours.
+    pub fn opens_next(&self, now: LocalTime) -> Option<NextOpening> {
         let now = now.weekday * DAY + now.minute;
         let until = |&(from, _): &(u32, u32)| (from + 7 * DAY - now - 1) % (7 * DAY) + 1;
         let soonest = self.spans.iter().min_by_key(|span| until(span))?;
-        (until(soonest) < DAY).then_some(soonest.0 % DAY)
+        let far = until(soonest) >= DAY;
+        let weekday = far.then_some(soonest.0 / DAY % 7);
+        Some(NextOpening { weekday, minute: soonest.0 % DAY })
     }
 }
 
@@ -143,10 +146,11 @@ mod tests {
         ] {
             assert_eq!(week.is_open(time), open, "{time:?}");
         }
-        assert_eq!(week.opens_next(at(1, 9, 0)), Some(600));
-        assert_eq!(week.opens_next(at(4, 18, 0)), Some(660), "Saturday opens later");
-        assert_eq!(week.opens_next(at(6, 21, 0)), None, "Monday is closed");
-        assert_eq!(week.opens_next(at(0, 11, 0)), Some(600));
+        let next = |now| week.opens_next(now).map(|next| (next.weekday, next.minute));
+        assert_eq!(next(at(1, 9, 0)), Some((None, 600)));
+        assert_eq!(next(at(4, 18, 0)), Some((None, 660)), "Saturday opens later");
+        assert_eq!(next(at(6, 21, 0)), Some((Some(1), 600)), "Monday is closed");
+        assert_eq!(next(at(0, 11, 0)), Some((None, 600)));
     }
 
     #[test]

@@ -169,6 +169,13 @@ impl KioskThread {
     fn run(&mut self) {
         let cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
         let mut cycle = cycle.with_farewell(!self.config.share.is_empty());
+        let mut ticks = (self.clock.now_us(), 0u64);
+        if !self.config.gallery.as_os_str().is_empty()
+            && let Err(e) = gallery::takes_files(&self.config.gallery)
+        {
+            let gallery = self.config.gallery.display();
+            self.figures.error(format!("{gallery}: works cannot be kept: {e}"));
+        }
         self.look(&mut cycle);
         if self.start.interrupted.is_some() {
             cycle = cycle.resumed();
@@ -185,16 +192,26 @@ impl KioskThread {
             let now = touch(&self.published.load());
             // Something that lies still on the tablet is nobody.
             let pressed = self.desk.touched.swap(false, Relaxed);
+            let knocked = self.start.door.take_knock();
             let moved = now.is_some() && now != felt;
             // A pen in the air keeps a visit going, but begins none: a pointer that stands where
             // the window opens is no visitor.
             let comes = now.as_ref().is_some_and(|felt| felt.iter().any(is_at_work));
-            let touched = pressed || moved && (comes || cycle.view().stage != Stage::Attract);
+            let touched =
+                pressed || knocked || moved && (comes || cycle.view().stage != Stage::Attract);
             felt = now;
             let done = self.desk.finished.swap(false, Relaxed);
             let before = cycle.view().stage;
             let act = cycle.step(touched, done);
             self.carry_out(act, &mut cycle);
+            // A minute is a minute, whatever a turn of this loop takes.
+            ticks.1 += 1;
+            let due = (self.clock.now_us() - ticks.0) as f64 * 1e-6 * RATE_HZ;
+            while (ticks.1 as f64) < due.floor() {
+                ticks.1 += 1;
+                let act = cycle.step(false, false);
+                self.carry_out(act, &mut cycle);
+            }
             if before == Stage::Farewell && cycle.view().stage != Stage::Farewell {
                 self.farewell.clear(&self.desk);
             }
@@ -228,6 +245,9 @@ impl KioskThread {
             if !self.is_quiet() {
                 self.speech.say(&cycle.view());
             }
+            let now = cycle.view();
+            self.start.door.set_nobody(now.stage == Stage::Attract && !now.staff);
+            self.start.door.set_locked(now.stage == Stage::Closed);
             self.show(&cycle);
             let _ = quiet.recv_timeout(Duration::from_secs_f64(1.0 / RATE_HZ));
         }
@@ -246,7 +266,7 @@ impl KioskThread {
         now.exhibit = self.exhibit().and(self.form).filter(|_| now.work.is_none());
         now.step = self.step;
         now.cleaning = self.cleaning;
-        now.opens_at = self.wall.and_then(|wall| self.hours.opens_next(wall));
+        now.opens_next = self.wall.and_then(|wall| self.hours.opens_next(wall));
         let dim = match now.stage {
             Stage::Closed => self.config.hours.dim,
             Stage::Attract => self.wall.map_or(0.0, |wall| self.dim.at(wall)),
@@ -368,10 +388,14 @@ impl KioskThread {
             }
             Some(KioskAct::End { seconds }) => {
                 let kept = self.end_visit(seconds, cycle.view().visits);
-                if kept.is_none() {
+                self.desk.kept.store(kept.is_some(), Relaxed);
+                let result = self.desk.result.lock().is_ok_and(|result| result.is_some());
+                if kept.is_none() && !result {
                     cycle.end_farewell();
                 }
-                if let (Stage::Farewell, Some(work)) = (cycle.view().stage, kept) {
+                if let (Stage::Farewell, Some(work)) = (cycle.view().stage, kept)
+                    && !self.config.share.is_empty()
+                {
                     self.farewell.ask(work, &self.desk);
                 }
             }
@@ -480,8 +504,8 @@ impl KioskThread {
         self.start.film.store(film, Relaxed);
         // The window has its proportions, whatever the settings say.
         let aspect = self.published.load().camera.aspect;
-        let command = self.built.reset(form, Camera { aspect, ..self.start.camera });
-        if !self.send(command) {
+        let reset = self.built.reset(form, Camera { aspect, ..self.start.camera });
+        if !self.send(QueuedCommand { begins_visit: !film, ..reset }) {
             return;
         }
         if let Some(news) = self.start.news.as_ref().filter(|_| !film) {

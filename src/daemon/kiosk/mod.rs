@@ -8,6 +8,7 @@
 //! * Files (gallery, audit) appear complete or not at all, and contain nothing about the visitors.
 //! * A visit that a kill or a power cut interrupts goes on at the next start, or its work goes to
 //!   the gallery ([`visit_journal`]).
+//! * A visitor's first stroke is whole: it waits for the visit that it begins ([`visit_door`]).
 
 mod attract;
 #[cfg(feature = "s3")]
@@ -35,8 +36,9 @@ pub mod start;
 #[cfg(target_os = "linux")]
 pub mod trial;
 pub mod unrecorded;
+pub mod visit_door;
 pub mod visit_journal;
 pub mod wall;
 
-pub use cycle::{Cycle, KioskAct, Stage, View};
+pub use cycle::{Cycle, KioskAct, NextOpening, Stage, View};
 pub use settings::{FleetSettings, Hint, Interrupted, KioskConfig, Language, ScreenSettings};

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::NextOpening;
 use super::hours::{DimHours, Hours};
 use sculptd_clay::brush::BrushKind;
 use serde::{Deserialize, Serialize};
@@ -187,7 +188,8 @@ impl KioskConfig {
     /// # Errors
     /// Names the line, or the key and its range.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let config: KioskConfig = toml::from_str(text).map_err(|e| e.to_string())?;
+        let config: KioskConfig =
+            toml::from_str(text).map_err(|e| format!("{}{}", e, hint(&e.to_string())))?;
         config.check()?;
         Ok(config)
     }
@@ -276,8 +278,8 @@ impl KioskConfig {
         name.map(|name| name.parse().map_err(|e| format!("brush: {e}"))).transpose()
     }
 
-    /// Returns the texts to show: from the files in `languages`, or from the built-in ones. A text
-    /// that a file lacks is shown in English.
+    /// Returns the texts to show: from the files among `languages`, or from the built-in ones. A
+    /// text that a file lacks is shown in English.
     ///
     /// # Errors
     /// Returns a message if the language is unknown or its file is wrong.
@@ -285,7 +287,7 @@ impl KioskConfig {
         let english = built_in.iter().find(|(code, _)| *code == "en").map_or("", |(_, text)| text);
         for path in &self.languages {
             let name = path.display();
-            if code_of(path) == self.language {
+            if code_of(path) == self.language && !is_code(path, built_in) {
                 let text = std::fs::read_to_string(path).map_err(|e| format!("{name}: {e}"))?;
                 let words = Language::parse(&self.language, &text, english);
                 return words.map_err(|e| format!("{name}: {e}"));
@@ -307,7 +309,10 @@ impl KioskConfig {
     pub fn every_language(&self, built_in: LanguageTexts<'_>) -> Result<Vec<Language>, String> {
         let mut all = vec![self.words(built_in)?];
         let own = self.languages.iter().map(|path| code_of(path));
-        for language in built_in.iter().map(|(name, _)| (*name).to_owned()).chain(own) {
+        // Codes say which of the built-in ones may be chosen.
+        let chosen = self.languages.iter().any(|path| is_code(path, built_in));
+        let built = built_in.iter().filter(|_| !chosen).map(|(name, _)| (*name).to_owned());
+        for language in built.chain(own) {
             all.push(KioskConfig { language, ..self.clone() }.words(built_in)?);
         }
         let mut seen: Vec<String> = Vec::new();
@@ -317,6 +322,27 @@ impl KioskConfig {
             new
         });
         Ok(all)
+    }
+}
+
+/// Returns true for the code of a built-in language, without an ending and a folder.
+fn is_code(path: &Path, built_in: LanguageTexts<'_>) -> bool {
+    built_in.iter().any(|(code, _)| path == Path::new(code))
+}
+
+/// Returns advice on frequent mistakes in a file of settings, as a further line.
+fn hint(said: &str) -> String {
+    let unknown = said.split("unknown field `").nth(1).and_then(|rest| rest.split('`').next());
+    let known = toml::Table::try_from(KioskConfig::default()).unwrap_or_default();
+    match unknown {
+        Some(key) if known.contains_key(key) => {
+            format!("`{key}` belongs above the first line in brackets, such as [hours]\n")
+        }
+        _ if said.contains("expected a string") => "write it in quotes: \"1234\"\n".into(),
+        _ if said.contains("expected a sequence") => {
+            "write it in square brackets: [\"one\", \"another\"]\n".into()
+        }
+        _ => String::new(),
     }
 }
 
@@ -370,8 +396,13 @@ pub struct Language {
     pub result: String,
     /// Outside the opening hours.
     pub closed: String,
-    /// The time at which the installation opens again.
+    /// The time at which the installation opens again, within a day and later.
     pub opens: String,
+    pub opens_on: String,
+    /// The days of the week in the form that `opens_on` needs, Monday first, with commas between.
+    pub days: String,
+    /// The sign between whole and broken numbers.
+    pub decimal_sign: String,
     /// During cleaning.
     pub cleaning: String,
     /// Asks for consent before a work is shared, and says what that means; `{minutes}` is replaced.
@@ -414,6 +445,21 @@ impl Language {
         texts.try_into().map_err(|e| e.to_string())
     }
 
+    /// Returns the text for the next opening time.
+    pub fn opens_text(&self, next: NextOpening) -> String {
+        let time = format!("{}:{:02}", next.minute / 60, next.minute % 60);
+        let day = next.weekday.and_then(|day| self.days.split(',').nth(day as usize));
+        match day {
+            Some(day) => self.opens_on.replace("{day}", day.trim()).replace("{time}", &time),
+            None => self.opens.replace("{time}", &time),
+        }
+    }
+
+    /// Returns a number with one decimal.
+    pub fn decimal(&self, number: f64) -> String {
+        format!("{number:.1}").replace('.', &self.decimal_sign)
+    }
+
     /// Returns every text, for choosing a font that can draw them.
     pub fn all(&self) -> String {
         let texts = toml::Table::try_from(self).unwrap_or_default();
@@ -435,6 +481,44 @@ mod tests {
         assert!(Language::parse("xx", "undo = \"Back\"", english).is_err(), "it has no name");
         assert!(Language::parse("xx", "name = \"Own\"\nundoo = \"\"", english).is_err());
         assert!(words.all().contains("Back"));
+    }
+
+    #[test]
+    fn codes_choose_among_the_built_in_languages() {
+        let english = include_str!("../../../config/languages/en.toml");
+        let built_in =
+            [("en", english), ("de", "name = \"Deutsch\""), ("el", "name = \"Ελληνικά\"")];
+        let offered = |languages: &[&str]| {
+            let languages = languages.iter().map(PathBuf::from).collect();
+            let config = KioskConfig { languages, ..KioskConfig::default() };
+            let all = config.every_language(&built_in).expect("texts");
+            all.into_iter().map(|l| l.code).collect::<Vec<_>>()
+        };
+        assert_eq!(offered(&[]), ["en", "de", "el"]);
+        assert_eq!(offered(&["de"]), ["en", "de"], "the language of the settings is always there");
+    }
+
+    #[test]
+    fn frequent_mistakes_get_advice() {
+        for (text, advice) in [
+            ("[hours]\ndim = 0.5\nexhibits = [\"pot\"]", "`exhibits` belongs above"),
+            ("staff_pin = 1234", "write it in quotes"),
+            ("exhibits = \"pot\"", "write it in square brackets"),
+        ] {
+            let said = KioskConfig::parse(text).expect_err(text);
+            assert!(said.contains(advice), "{said}");
+        }
+        let said = KioskConfig::parse("[hours]\nopened = []").expect_err("unknown");
+        assert!(!said.contains("belongs above"), "{said}");
+    }
+
+    #[test]
+    fn the_next_opening_names_a_day_that_is_not_the_next() {
+        let english = include_str!("../../../config/languages/en.toml");
+        let words = Language::parse("en", english, english).expect("read");
+        let text = |weekday| words.opens_text(NextOpening { weekday, minute: 605 });
+        assert_eq!(text(None), "We open at 10:05");
+        assert_eq!(text(Some(1)), "We open on Tuesday at 10:05");
     }
 
     #[test]

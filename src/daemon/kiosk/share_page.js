@@ -117,7 +117,10 @@ const remove = document.querySelector("button");
 remove.addEventListener("click", async () => {
   if (!confirm(remove.dataset.sure)) return;
   const answer = await fetch(remove.dataset.at, { method: "POST" });
-  document.body.textContent = answer.ok ? remove.dataset.done : `${answer.status}`;
+  const said = answer.ok ? remove.dataset.done : await answer.text();
+  // What was not deleted stays on the page, to be tried again.
+  if (answer.ok) document.body.textContent = said;
+  else alert(said);
 });
 
 show();

@@ -8,6 +8,7 @@ use crossbeam_channel as cc;
 
 use super::KioskConfig;
 use super::exhibit::{self, Exhibit};
+use super::visit_door::VisitDoor;
 use super::visit_journal::VisitNews;
 use crate::command_queue::QueuedCommand;
 use crate::session::Health;
@@ -18,6 +19,9 @@ use sculptd_engine::command::{Beginning, Command, NewClay};
 use sculptd_engine::payload::Payload;
 use sculptd_geometry::TriMesh;
 use sculptd_geometry::job::Job;
+
+/// Distance of the camera, of its usual one: the screen's panels lie around the form, not over it.
+const ROOM: f32 = 1.2;
 
 /// A form that visitors start from.
 #[derive(Debug, Clone)]
@@ -36,6 +40,8 @@ pub struct Start {
     pub camera: Camera,
     /// Set while a reset begins an attract film, which no session records; cleared for a visit.
     pub film: Arc<AtomicBool>,
+    /// Holds a visitor's first stroke until the visit begins.
+    pub door: Arc<VisitDoor>,
     /// A visit that the last run did not end; its work is in the world.
     pub interrupted: Option<InterruptedVisit>,
     /// See [`VisitRecording::news`]; `None`: visits are not recorded one by one.
@@ -68,6 +74,7 @@ impl Start {
         plain: impl FnOnce() -> TriMesh,
     ) -> Result<Start, String> {
         let brush = first_brush(kiosk, presets, brush);
+        let camera = Camera { distance: camera.distance * ROOM, ..camera };
         let mut forms = Vec::new();
         for place in &kiosk.exhibits {
             let exhibit = exhibit::open(place, &Job::default())?;
@@ -94,11 +101,11 @@ impl Start {
     /// Returns a start with one form, for free sculpting.
     pub fn free(plain: Arc<TriMesh>, camera: Camera, brush: BrushSettings) -> Start {
         let forms = vec![StartForm { plain, brush, exhibit: None }];
-        let film = Arc::default();
         Start {
             forms,
             camera,
-            film,
+            film: Arc::default(),
+            door: Arc::default(),
             interrupted: None,
             news: None,
             putting_away: None,

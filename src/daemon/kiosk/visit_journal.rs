@@ -258,6 +258,10 @@ pub fn remove_note(visit: &Path) -> std::io::Result<()> {
     }
 }
 
+fn stale_note(e: &std::io::Error) -> String {
+    format!("a note of the visit before it cannot be removed ({PUTTING_AWAY}: {e})")
+}
+
 /// The thread that makes and removes the files, for those who must not wait for a disk.
 struct VisitFolder {
     path: PathBuf,
@@ -302,8 +306,13 @@ impl VisitFolder {
             // dropped here: its threads end only then.
             let recorded = self.ended.recv().map(|writer| writer.is_some());
             match recorded {
-                // The visit was not recorded: the file is the next one's.
-                Ok(false) if self.open.is_some() => {}
+                // The visit was not recorded: the file is the next one's, the note is not.
+                Ok(false) if self.open.is_some() => {
+                    if let Err(e) = remove_note(&self.path) {
+                        tracing::error!("kiosk: {}: {e}", self.path.display());
+                        self.show(Some(stale_note(&e)));
+                    }
+                }
                 Ok(_) => {
                     self.close(Some(work));
                     self.make();
@@ -319,10 +328,15 @@ impl VisitFolder {
         self.close(None);
     }
 
-    /// Makes the next visit's file.
+    /// Makes the next visit's file. A note of an earlier visit would end this one at a restart.
     fn make(&mut self) {
         let (start, health) = (&self.start, self.health.clone());
-        match session::create_with(&self.path, &*start.plain, &start.settings, health) {
+        let noted = if self.path.exists() { Ok(()) } else { remove_note(&self.path) };
+        let made = noted.map_err(|e| stale_note(&e)).and_then(|()| {
+            session::create_with(&self.path, &*start.plain, &start.settings, health)
+                .map_err(|e| e.to_string())
+        });
+        match made {
             Ok((writer, thread)) => {
                 // The tick thread takes one at a time, so there is room.
                 let (plain, aspect) = (start.plain.clone(), start.settings.camera.aspect);
@@ -358,11 +372,9 @@ impl VisitFolder {
                 tracing::error!("kiosk: the gallery took no work: it is in {}", to.display());
             }),
         };
-        let noted = match work {
-            Some(_) => remove_note(&self.path),
-            None => Ok(()),
-        };
-        if let Err(e) = done.and(noted) {
+        // While the file exists, the note says that its work is in the gallery.
+        let noted = || if work.is_some() { remove_note(&self.path) } else { Ok(()) };
+        if let Err(e) = done.and_then(|()| noted()) {
             tracing::error!("kiosk: {}: {e}", path.display());
         }
         self.show(trouble);
@@ -372,5 +384,40 @@ impl VisitFolder {
         if let Ok(mut fault) = self.health.fault.lock() {
             *fault = text;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Resolved;
+    use crate::startup::session_settings;
+    use sculptd_clay::brush::Presets;
+
+    /// The next visit must not be taken for one whose work is in the gallery.
+    #[test]
+    fn no_file_is_made_beside_a_note_that_cannot_be_removed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        // A folder of that name, which is removed like no file.
+        let note = folder.path().join(PUTTING_AWAY);
+        std::fs::create_dir(&note).expect("made");
+        let config = Resolved::defaults(&Presets::default()).config;
+        let plain = Arc::new(sculptd_geometry::shapes::sphere_of_about(1_000));
+        let start = || VisitStart {
+            plain: plain.clone(),
+            settings: session_settings(&config),
+            film: Arc::default(),
+        };
+        let run = || {
+            let VisitRecording { news, health, thread, journal, .. } =
+                super::start(folder.path(), start(), None).expect("starts");
+            drop((news, journal));
+            thread.join().expect("no panic");
+            health.trouble()
+        };
+        let told = run().expect("a fault");
+        assert!(told.contains("the next visit is not recorded: a note"), "{told}");
+        std::fs::remove_dir(&note).expect("removed");
+        assert_eq!(run(), None);
     }
 }

@@ -48,14 +48,15 @@ const OUTLIER: f64 = 4.0;
 /// The mean square of rounding to whole pixels, both axes: no fit is better.
 const ROUNDING: f64 = 1.0 / 6.0;
 /// Twice the logarithm of the likelihood by which a delay may be worse and still explain the pairs:
-/// the 99.9th percentile of χ² with one degree of freedom is 10.8.
-const LIKELY: f64 = 12.0;
+/// the 99.999th percentile of χ² with one degree of freedom is 19.5. It is asked after each few
+/// pairs, so that one chance in a thousand would come up once in some hundred hovers.
+const LIKELY: f64 = 20.0;
 /// Corners within so many pixels are the same.
 const SAME: f64 = 0.6;
 /// The same where the map that was known is contradicted.
 const SAME_BETTER: f64 = 1.0;
 /// Greatest uncertainty of a corner, three standard deviations, in pixels.
-const LEFT_TO_CHANCE: f64 = 1.6;
+const LEFT_TO_CHANCE: f64 = 1.4;
 /// The same where the map that was known is contradicted: any better one is taken.
 const LEFT_TO_BETTER: f64 = 4.0;
 /// A fit whose pairs lie farther off, pixels in the mean square's root, is none of this kind.

@@ -12,7 +12,7 @@ use sculptd_daemon::kiosk::desk::{KioskDesk, Screen, VisitResult};
 use sculptd_daemon::kiosk::exhibit::score::Score;
 use sculptd_daemon::kiosk::exhibit::{self, Exhibit, forms};
 use sculptd_daemon::kiosk::staff::{StaffFacts, StaffRequest};
-use sculptd_daemon::kiosk::{Hint, KioskConfig, Stage, View};
+use sculptd_daemon::kiosk::{Hint, KioskConfig, NextOpening, Stage, View};
 use sculptd_engine::command::Command;
 use sculptd_geometry::job::Job;
 use sculptd_window::look::{MATERIALS, material_index};
@@ -353,7 +353,7 @@ fn apart(h: &Harness<'_, State>, size: [f32; 2], texts: &[String], what: &str) {
 fn an_exhibit_in_every_language_without_overlaps() {
     let mut screen = screen();
     screen.exhibits = exhibits();
-    let score = Score { near: 0.9, done: 0.876, too_much: 12.34, too_little: 3.21 };
+    let score = Score { near: 0.9, off: 0.5, done: 0.876, too_much: 12.34, too_little: 3.21 };
     for size in [[1280.0, 720.0], [1920.0, 1080.0], [1080.0, 1920.0]] {
         at(&screen, Stage::Attract, 0);
         let mut h = harness(&screen, size);
@@ -393,8 +393,8 @@ fn an_exhibit_in_every_language_without_overlaps() {
                 texts.push(exhibit.manifest.title.get(&drawn.code).into());
                 texts.push(exhibit.steps[0].text.get(&drawn.code).into());
                 texts.push(drawn.near.replace("{percent}", "87"));
-                texts.push(drawn.too_much.replace("{length}", "12.3"));
-                texts.push(drawn.too_little.replace("{length}", "3.2"));
+                texts.push(drawn.too_much.replace("{length}", &drawn.decimal(12.34)));
+                texts.push(drawn.too_little.replace("{length}", &drawn.decimal(3.21)));
                 texts.push(drawn.time_left.replace("{time}", "2:05"));
                 texts.extend(
                     [&drawn.goal, &drawn.compare, &drawn.finish, &drawn.undo].map(Clone::clone),
@@ -450,7 +450,7 @@ fn a_visitor_chooses_an_exhibit_hides_the_goal_and_compares() {
     h.run_steps(3);
     assert_eq!((h.state().ui_state.pad.ghost, h.state().ui_state.pad.compares), (None, false));
     // The result of the last visit.
-    let score = Score { near: 0.95, done: 0.9361, too_much: 1.0, too_little: 2.0 };
+    let score = Score { near: 0.95, off: 0.2, done: 0.9361, too_much: 1.0, too_little: 2.0 };
     *screen.desk.result.lock().expect("a desk") = Some(VisitResult { exhibit: 1, score });
     at(&screen, Stage::Attract, 1);
     h.run_steps(3);
@@ -507,9 +507,9 @@ fn the_staff_page_shows_figures_and_asks_twice_before_the_end() {
 fn a_closed_installation_says_when_it_opens_and_has_no_tools() {
     let screen = screen();
     let closed = |cleaning| {
-        let opens_at = Some(9 * 60 + 5);
+        let opens_next = Some(NextOpening { weekday: None, minute: 9 * 60 + 5 });
         let view =
-            View { stage: Stage::Closed, cleaning, opens_at, dim_percent: 60, ..View::default() };
+            View { stage: Stage::Closed, cleaning, opens_next, dim_percent: 60, ..View::default() };
         *screen.desk.view.lock().expect("a desk") = Some(view);
     };
     closed(false);

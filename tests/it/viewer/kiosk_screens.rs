@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use sculptd_daemon::kiosk::desk::{Screen, VisitResult};
 use sculptd_daemon::kiosk::exhibit::score::Score;
 use sculptd_daemon::kiosk::staff::StaffFacts;
-use sculptd_daemon::kiosk::{Hint, Stage, View};
+use sculptd_daemon::kiosk::{Hint, NextOpening, Stage, View};
 use sculptd_daemon::qr_code::{Code, Invitation};
 
 use super::kiosk::{exhibits, harness, screen};
@@ -35,7 +35,7 @@ fn stage(stage: Stage) -> View {
 }
 
 fn score() -> Score {
-    Score { near: 0.9, done: 0.876, too_much: 12.34, too_little: 3.21 }
+    Score { near: 0.9, off: 0.5, done: 0.876, too_much: 12.34, too_little: 3.21 }
 }
 
 fn visit(screen: &mut Screen, exhibit: usize) {
@@ -91,7 +91,8 @@ const CASES: [Case; 15] = [
         show(screen, stage(Stage::Farewell));
     }),
     ("closed", |screen, _| {
-        show(screen, View { opens_at: Some(605), dim_percent: 60, ..stage(Stage::Closed) });
+        let opens_next = Some(NextOpening { weekday: Some(2), minute: 605 });
+        show(screen, View { opens_next, dim_percent: 60, ..stage(Stage::Closed) });
     }),
     ("cleaning", |screen, _| show(screen, View { cleaning: true, ..stage(Stage::Closed) })),
     ("keypad", |screen, state| {

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::score::Goal;
 use super::{Exhibit, Manifest, StepManifest, Texts, pack};
+use sculptd_geometry::check::{self, MeshReport};
 use sculptd_geometry::decimate::{DecimationTarget, quadric};
 use sculptd_geometry::distance::DistanceSolid;
 use sculptd_geometry::implicit::surface;
@@ -27,9 +28,11 @@ const GOAL_TRIANGLES: usize = 120_000;
 pub struct NewExhibit {
     pub name: String,
     /// Title on the screen.
-    pub title: String,
-    /// Text that tells visitors what to do; empty: a usual one, in eight languages.
-    pub text: String,
+    pub title: Texts,
+    /// Text that tells visitors what to do; languages left out have a usual one.
+    pub text: Texts,
+    /// Tools on the screen; none: carve, add and smooth.
+    pub tools: Vec<String>,
     /// Longest time for a visit, minutes; 0: no limit.
     pub minutes: f64,
     /// Scale the goal to this length of its longest side; 0: keep its size.
@@ -50,7 +53,8 @@ pub fn create(
     settings: &NewExhibit,
     job: &Job,
 ) -> Result<(Exhibit, Vec<String>), String> {
-    let mut notes = Vec::new();
+    let found = check::report(goal, true, job).map_err(|e| e.to_string())?;
+    let mut notes = doubts(&found);
     let mut plain = goal.triangulate().0;
     let solid = DistanceSolid::build(&plain, job).map_err(|e| e.to_string())?;
     if !solid.topology.closed {
@@ -87,11 +91,16 @@ pub fn create(
         // Two figures, so that the file is easy to read.
         false => two_figures(longest * TOLERANCE),
     };
-    let text = match settings.text.is_empty() {
-        true => usual_text(),
-        false => Texts::new(&settings.text),
-    };
-    let tools = ["carve", "add", "smooth"].map(str::to_owned).to_vec();
+    let mut text = usual_text();
+    if settings.text.0.contains_key("en") {
+        // A usual text beside one of the museum's own would contradict it.
+        text = Texts::default();
+    }
+    text.0.extend(settings.text.0.clone());
+    let mut tools = settings.tools.clone();
+    if tools.is_empty() {
+        tools = ["carve", "add", "smooth"].map(str::to_owned).to_vec();
+    }
     let step = StepManifest { goal: "goal.ply".into(), tolerance, tools, ghost: true, text };
     let manifest = Manifest {
         start: "start.ply".into(),
@@ -99,11 +108,36 @@ pub fn create(
         radius: 0.18,
         strength: 1.0,
         symmetry: 1,
-        title: Texts::new(&settings.title),
+        title: settings.title.clone(),
         step: vec![step],
     };
     let meshes = [("start.ply", &start), ("goal.ply", &plain)];
     Ok((pack::of_meshes(&settings.name, &manifest, &meshes, job)?, notes))
+}
+
+/// Returns notes on features of a goal that make it hard to carve.
+fn doubts(goal: &MeshReport) -> Vec<String> {
+    let mut notes = Vec::new();
+    if goal.components > 1 {
+        notes.push(format!(
+            "the goal has {} separate parts: from one block visitors carve one part, so the score \
+             cannot reach 100 %",
+            goal.components
+        ));
+    }
+    if let Some(pairs) = goal.self_intersections.filter(|pairs| *pairs > 0) {
+        notes.push(format!(
+            "{pairs} pairs of its triangles cross: inside and outside may be wrong there; \
+             `sculptd convert --mend` may help"
+        ));
+    }
+    if let Some(holes) = goal.genus.filter(|genus| *genus > 0) {
+        notes.push(format!(
+            "holes that go through: {holes}; they are hard to carve, and a start with the holes in \
+             it helps"
+        ));
+    }
+    notes
 }
 
 /// Moves a goal to the origin, its lowest point on the plane y = 0, and scales its longest side to
@@ -171,9 +205,10 @@ mod tests {
     fn a_goal_stands_on_the_ground_in_a_block_that_holds_it() {
         let job = Job::default();
         let torus = shapes::torus(20.0, 6.0, 96, 48);
-        let settings = NewExhibit { size: 100.0, title: "A ring".into(), ..Default::default() };
+        let title = Texts::new("A ring");
+        let settings = NewExhibit { size: 100.0, title, ..Default::default() };
         let (made, notes) = create(&torus, &settings, &job).expect("made");
-        assert!(notes.is_empty(), "{notes:?}");
+        assert!(notes.len() == 1 && notes[0].contains("through: 1"), "{notes:?}");
         let goal = goal_of(&made, 1).expect("a goal");
         let (lo, hi) = goal.mesh.bounds();
         assert!(lo.y.abs() < 1e-4 && ((hi - lo).max_element() - 100.0).abs() < 1e-3);
@@ -188,7 +223,7 @@ mod tests {
         let mut post = shapes::uv_sphere(1.0, 16, 32);
         post.positions.iter_mut().for_each(|p| p.z *= 3.0);
         for (z_up, tall) in [(true, 1), (false, 2)] {
-            let settings = NewExhibit { title: "A post".into(), z_up, ..Default::default() };
+            let settings = NewExhibit { title: Texts::new("A post"), z_up, ..Default::default() };
             let (made, _) = create(&post, &settings, &Job::default()).expect("made");
             let goal = goal_of(&made, 1).expect("a goal");
             let (lo, hi) = goal.mesh.bounds();
@@ -200,10 +235,24 @@ mod tests {
     }
 
     #[test]
+    fn a_goal_in_parts_and_a_goal_that_crosses_itself_are_named() {
+        let ball = shapes::icosphere(10.0, 8);
+        for (apart, words) in [(30.0, "2 separate parts"), (5.0, "triangles cross")] {
+            let mut two = ball.clone();
+            two.positions.extend(ball.positions.iter().map(|p| *p + Vec3::X * apart));
+            let count = ball.positions.len() as u32;
+            two.triangles.extend(ball.triangles.iter().map(|t| t.map(|v| v + count)));
+            let settings = NewExhibit { title: Texts::new("Two"), ..Default::default() };
+            let (_, notes) = create(&two.to_poly(), &settings, &Job::default()).expect("made");
+            assert!(notes.iter().any(|note| note.contains(words)), "{notes:?}");
+        }
+    }
+
+    #[test]
     fn an_open_mesh_becomes_a_solid_and_says_so() {
         let mut ball = shapes::uv_sphere(10.0, 32, 64).triangulate().0;
         ball.triangles.truncate(ball.triangles.len() - 20);
-        let settings = NewExhibit { title: "A ball".into(), ..Default::default() };
+        let settings = NewExhibit { title: Texts::new("A ball"), ..Default::default() };
         let made = create(&ball.to_poly(), &settings, &Job::default());
         let (made, notes) = made.expect("made");
         assert!(notes.iter().any(|n| n.contains("not closed")), "{notes:?}");

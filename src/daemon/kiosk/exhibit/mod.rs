@@ -43,11 +43,26 @@ impl Texts {
         Texts(BTreeMap::from([("en".to_owned(), text.to_owned())]))
     }
 
+    /// Returns a line of TOML for each text.
+    fn lines(&self) -> String {
+        self.0.iter().map(|(code, text)| format!("{code} = {}\n", quoted(text))).collect()
+    }
+
     /// Returns the text in the language `code`, or else in English, or else in any.
     pub fn get(&self, code: &str) -> &str {
         let text = self.0.get(code).or_else(|| self.0.get("en"));
         text.or_else(|| self.0.values().next()).map_or("", String::as_str)
     }
+}
+
+/// Returns a line of TOML with its remark.
+fn remarked((line, remark): (String, &str)) -> String {
+    if remark.is_empty() { format!("{line}\n") } else { format!("{line:<20} # {remark}\n") }
+}
+
+/// Returns a text as TOML has it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
 }
 
 /// The content of `exhibit.toml`.
@@ -189,6 +204,53 @@ impl Manifest {
         Ok(manifest)
     }
 
+    /// Returns the text of `exhibit.toml`, with a remark at each key.
+    pub fn text(&self) -> String {
+        let Manifest { start, minutes, radius, strength, symmetry, title, step } = self;
+        let mut text = [
+            (format!("start = {}", quoted(start)), "mesh file that each visitor begins with"),
+            (format!("minutes = {minutes:?}"), "longest time for a visit; 0: no limit"),
+            (
+                format!("radius = {radius:?}"),
+                "of the brush, a share of the form's own; 0: as usual",
+            ),
+            (format!("strength = {strength:?}"), "from 0 to 1; 0: as usual"),
+            (format!("symmetry = {symmetry}"), "copies around the axis, 16 for a pot on the wheel"),
+            (String::new(), ""),
+            ("[title]".into(), "by language; one that is left out has the English text"),
+        ]
+        .map(remarked)
+        .concat();
+        text += &title.lines();
+        for step in step {
+            let StepManifest { goal, tolerance, tools, ghost, text: own } = step;
+            let tools: Vec<String> = tools.iter().map(|tool| quoted(tool)).collect();
+            text += &[
+                (String::new(), ""),
+                ("[[step]]".into(), "one or more; a button leads from step to step"),
+                (
+                    format!("goal = {}", quoted(goal)),
+                    "closed mesh in the start's place; \"\": no score",
+                ),
+                (
+                    format!("tolerance = {tolerance:?}"),
+                    "a place this near to the goal is right, mm",
+                ),
+                (
+                    format!("tools = [{}]", tools.join(", ")),
+                    "add, carve, smooth, or brushes by name: grab, inflate",
+                ),
+                (format!("ghost = {ghost}"), "show the goal through the clay"),
+                (String::new(), ""),
+                ("[step.text]".into(), "the task"),
+            ]
+            .map(remarked)
+            .concat();
+            text += &own.lines();
+        }
+        text
+    }
+
     fn check(&self) -> Result<(), String> {
         if !(0.0..=MAX_MINUTES).contains(&self.minutes) {
             let minutes = self.minutes;
@@ -279,6 +341,13 @@ mod tests {
             let said = Manifest::parse(&TEXT.replace(old, new)).expect_err(new);
             assert!(said.contains(expected), "{new}: {said}");
         }
+        let written = Manifest::parse(&manifest.text()).expect("its own text");
+        assert_eq!(written, manifest, "{}", manifest.text());
+        // The example of the guide is a file as it is written.
+        let guide = include_str!("../../../../config/guide/src/exhibits.md");
+        let example = guide.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next());
+        let example = example.expect("an example");
+        assert_eq!(Manifest::parse(example).expect("valid").text(), example);
         let none = TEXT.split("[[step]]").next().expect("a text");
         assert!(Manifest::parse(none).is_err_and(|e| e.contains("step")));
     }

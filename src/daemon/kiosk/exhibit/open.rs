@@ -65,7 +65,9 @@ mod tests {
             let [a, b] = [&read, &made].map(|e| e.steps[0].goal.clone().expect("a goal"));
             assert_eq!((&a.mesh, a.tolerance), (&b.mesh, b.tolerance));
         }
-        assert!(write(&made, &dir.path().join("ball")).is_err_and(|e| e.contains("exists")));
+        for name in ["ball", "ball.zip"] {
+            assert!(write(&made, &dir.path().join(name)).is_err_and(|e| e.contains("exists")));
+        }
         let folder: Vec<_> = std::fs::read_dir(dir.path()).expect("listed").collect();
         assert_eq!(folder.len(), 2, "nothing half-written is left");
     }

@@ -103,8 +103,7 @@ fn files_of(
     manifest: &Manifest,
     meshes: &[(&str, &TriMesh)],
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let text = toml::to_string(manifest).map_err(|e| e.to_string())?;
-    let mut files = vec![(MANIFEST.to_owned(), text.into_bytes())];
+    let mut files = vec![(MANIFEST.to_owned(), manifest.text().into_bytes())];
     for (name, mesh) in meshes {
         let mut bytes = Vec::new();
         let written = encode("ply", &mesh.to_poly(), &mut Cursor::new(&mut bytes));
@@ -148,7 +147,7 @@ fn from_zip<R: Read + Seek>(zip: &mut zip::ZipArchive<R>, file: &str) -> Result<
 /// written as binary PLY.
 ///
 /// # Errors
-/// Returns a message that names the file. A folder that exists is an error.
+/// Returns a message that names the file. A pack that exists is an error.
 pub fn write(exhibit: &Exhibit, to: &Path) -> Result<(), String> {
     let at = |path: &Path, e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let mut manifest = exhibit.manifest.clone();
@@ -159,6 +158,9 @@ pub fn write(exhibit: &Exhibit, to: &Path) -> Result<(), String> {
             step.goal = format!("goal-{}.ply", i + 1);
             meshes.push((step.goal.clone(), &goal.mesh));
         }
+    }
+    if to.exists() {
+        return Err(at(to, &"it exists already: remove it first, or give another name"));
     }
     let named: Vec<(&str, &TriMesh)> = meshes.iter().map(|(n, m)| (n.as_str(), *m)).collect();
     let files = files_of(&manifest, &named)?;
@@ -176,9 +178,6 @@ pub fn write(exhibit: &Exhibit, to: &Path) -> Result<(), String> {
     }
     // Under another name until it is whole.
     let part = PathBuf::from(format!("{}.part", to.display()));
-    if to.exists() {
-        return Err(at(to, &"it exists already: expected the name of a new folder"));
-    }
     std::fs::create_dir_all(&part).map_err(|e| at(&part, &e))?;
     for (name, bytes) in &files {
         let file = part.join(name);

@@ -17,8 +17,8 @@ pub struct Goal {
     pub tolerance: f64,
     solid: DistanceSolid,
     areas: Vec<f64>,
-    /// [`Score::near`] of the form that visitors start from.
-    near_at_start: f64,
+    /// [`Score::off`] of the form that visitors start from.
+    off_at_start: f64,
 }
 
 /// The nearness of a work to its goal. Distances are those that `sculptd distance` measures, in the
@@ -29,7 +29,11 @@ pub struct Score {
     /// the goal's, and of the goal's surface that is within the tolerance of the work's. A vertex
     /// stands for a third of the area of its triangles.
     pub near: f64,
-    /// From 0 to 1: the share of the way from the start's [`Score::near`] to 1 that is done.
+    /// The mean of two mean distances beyond the tolerance, of the work's surface from the goal's
+    /// and of the goal's from the work's.
+    pub off: f64,
+    /// From 0 to 1: the share of the start's [`Score::off`] that is gone. Each cut towards the goal
+    /// adds to it.
     pub done: f64,
     /// Greatest distance of a vertex of the work outside the goal; 0: none is outside.
     pub too_much: f64,
@@ -55,8 +59,8 @@ impl Goal {
             return Err("expected a closed surface; `sculptd remesh` makes one of any mesh".into());
         }
         let areas = vertex_areas(&mesh);
-        let mut goal = Goal { mesh: Arc::new(mesh), tolerance, solid, areas, near_at_start: 0.0 };
-        goal.near_at_start = goal.score(start, job).map_err(|e| e.to_string())?.near;
+        let mut goal = Goal { mesh: Arc::new(mesh), tolerance, solid, areas, off_at_start: 0.0 };
+        goal.off_at_start = goal.score(start, job).map_err(|e| e.to_string())?.off;
         Ok(goal)
     }
 
@@ -66,36 +70,47 @@ impl Goal {
     /// [`Cancelled`].
     pub fn score(&self, work: &TriMesh, job: &Job) -> Result<Score, Cancelled> {
         let solid = DistanceSolid::build(work, job)?;
-        let (there, too_much) =
-            one_way(&self.solid, work, &vertex_areas(work), self.tolerance, job)?;
-        let (back, too_little) = one_way(&solid, &self.mesh, &self.areas, self.tolerance, job)?;
-        let near = (there + back) * 0.5;
-        let way = 1.0 - self.near_at_start;
+        let there = one_way(&self.solid, work, &vertex_areas(work), self.tolerance, job)?;
+        let back = one_way(&solid, &self.mesh, &self.areas, self.tolerance, job)?;
+        let near = (there.near + back.near) * 0.5;
+        let off = (there.off + back.off) * 0.5;
         // A start that is right already has no way to go.
-        let done = if way > 0.0 { ((near - self.near_at_start) / way).max(0.0) } else { near };
-        Ok(Score { near, done, too_much, too_little })
+        let start = self.off_at_start;
+        let done = if start > 0.0 { (1.0 - off / start).max(0.0) } else { near };
+        Ok(Score { near, off, done, too_much: there.outside, too_little: back.outside })
     }
 }
 
-/// Returns the share of the surface of `mesh` within `tolerance` of `solid`, and the greatest
-/// distance outside.
+/// The surface of one mesh against another.
+struct OneWay {
+    /// Share within the tolerance.
+    near: f64,
+    /// Mean distance beyond the tolerance.
+    off: f64,
+    /// Greatest distance outside.
+    outside: f64,
+}
+
+/// Measures the surface of `mesh` against `solid`.
 fn one_way(
     solid: &DistanceSolid,
     mesh: &TriMesh,
     areas: &[f64],
     tolerance: f64,
     job: &Job,
-) -> Result<(f64, f64), Cancelled> {
+) -> Result<OneWay, Cancelled> {
     let points: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
     let distances = solid.signed_distances(&points, job)?;
-    let (mut near, mut all, mut outside) = (0.0, 0.0, 0.0f64);
+    let (mut near, mut off, mut all, mut outside) = (0.0, 0.0, 0.0, 0.0f64);
     // In order, so that the sums have the same bits with any number of threads.
     for (d, area) in distances.iter().zip(areas).filter(|(d, _)| d.is_finite()) {
         all += area;
         near += if d.abs() <= tolerance { *area } else { 0.0 };
+        off += (d.abs() - tolerance).max(0.0) * area;
         outside = outside.max(*d);
     }
-    Ok((if all > 0.0 { near / all } else { 0.0 }, outside))
+    let mean = |sum: f64| if all > 0.0 { sum / all } else { 0.0 };
+    Ok(OneWay { near: mean(near), off: mean(off), outside })
 }
 
 /// A third of the area of the triangles at each vertex.
@@ -124,7 +139,10 @@ mod tests {
         assert_eq!((same.percent(), same.near), (100, 1.0));
         assert!(same.too_much < 1e-6 && same.too_little < 1e-6, "{same:?}");
         let larger = score(12.0);
-        assert!(larger.percent() == 0 && (larger.too_much - 2.0).abs() < 0.02, "{larger:?}");
+        // Of the way from 9.5 beyond the tolerance, 1.5 are left.
+        let done = 1.0 - 1.5 / 9.5;
+        assert!((larger.done - done).abs() < 0.01 && larger.near == 0.0, "{larger:?}");
+        assert!((larger.too_much - 2.0).abs() < 0.02, "{larger:?}");
         assert!(larger.too_little == 0.0, "{larger:?}");
         let smaller = score(7.0);
         assert!(smaller.too_much == 0.0 && (smaller.too_little - 3.0).abs() < 0.02, "{smaller:?}");

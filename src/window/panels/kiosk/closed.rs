@@ -39,11 +39,8 @@ pub(super) fn ui(ctx: &egui::Context, free: egui::Rect, words: &Language, now: &
     let shift = vec2((turn * 2.4).sin(), (turn * 1.7).cos()) * free.size() * 0.25;
     let place_of = egui::Rect::from_center_size(free.center() + shift, free.size() * 0.5);
     let text = if now.cleaning { &words.cleaning } else { &words.closed };
-    let opens = now.opens_at.filter(|_| !now.cleaning);
-    let opens = opens.map(|minute| {
-        let time = format!("{}:{:02}", minute / 60, minute % 60);
-        words.opens.replace("{time}", &time)
-    });
+    let opens = now.opens_next.filter(|_| !now.cleaning);
+    let opens = opens.map(|next| words.opens_text(next));
     place(ctx, "closed", place_of, Align2::CENTER_CENTER, |ui| {
         let widest = text_size(ui, text, 40.0).x.ceil();
         ui.set_width(widest.min(free.width() * 0.45));

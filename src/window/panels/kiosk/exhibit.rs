@@ -139,7 +139,7 @@ fn differences(ui: &mut egui::Ui, words: &Language, score: &Score) {
             let (dot, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
             let [r, g, b] = Map::Distance.colour(end, -1.0, 1.0);
             ui.painter().circle_filled(dot.center(), 7.0, Color32::from_rgb(r, g, b));
-            let text = text.replace("{length}", &format!("{length:.1}"));
+            let text = text.replace("{length}", &words.decimal(length));
             ui.label(RichText::new(text).size(18.0));
         });
     }

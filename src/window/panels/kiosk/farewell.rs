@@ -66,7 +66,9 @@ fn consent(ui: &mut egui::Ui, words: &Language, screen: &Screen, scan: &mut Scan
     if let Some(result) = screen.desk.result.lock().ok().and_then(|result| *result) {
         exhibit::result(ui, words, &result);
     }
-    ui.label(RichText::new(&words.kept).size(20.0));
+    if screen.desk.kept.load(Relaxed) {
+        ui.label(RichText::new(&words.kept).size(20.0));
+    }
     ui.add_space(10.0);
     let asks = screen.desk.asks_consent.load(Relaxed);
     if asks {
