@@ -2,10 +2,10 @@
 // `pixel` (a touch of the pen to the picture that shows it), `arrival` (a million vertices over a line
 // of 100 Mbit/s), `many` (the daemon's tick with twenty pages) and `memory` (five million vertices).
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { createServer, connect } from "node:net";
 import { join } from "node:path";
 import WebSocket from "ws";
 import { Chromium, Daemon, until, wait } from "./browser.mjs";
+import { Line } from "./line.mjs";
 
 const [binary, program, ...wanted] = process.argv.slice(2);
 const is = (what) => wanted.length === 0 || wanted.includes(what);
@@ -94,38 +94,14 @@ async function pixel() {
   daemon.remove();
 }
 
-/** A line of so many bits a second toward the page. */
-async function slowLine(port, bits) {
-  const server = createServer((near) => {
-    const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true });
-    let free = 0;
-    near.on("data", (d) => {
-      const text = d.toString("latin1");
-      far.write(text.startsWith("GET ")
-        ? Buffer.from(text.replaceAll(`127.0.0.1:${server.address().port}`, `127.0.0.1:${port}`), "latin1") : d);
-    });
-    far.on("data", (d) => {
-      const now = performance.now();
-      free = Math.max(free, now) + (d.length * 8e3) / bits;
-      far.pause();
-      setTimeout(() => { near.write(d); far.resume(); }, Math.max(0, free - now - 5));
-    });
-    far.on("end", () => setTimeout(() => near.end(), Math.max(0, free - performance.now()) + 50));
-    for (const s of [near, far]) s.on("error", () => { near.destroy(); far.destroy(); });
-    near.on("close", () => far.destroy());
-  });
-  await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  return server;
-}
-
 async function arrival() {
   const daemon = await Daemon.start(binary, withBall(1e6));
   const link = new URL(daemon.links[1]);
-  const line = await slowLine(Number(link.port), 100e6);
+  const line = await Line.to(Number(link.port), { bits: 100e6 });
   // Without a picture: what the line carries. Pages in front come first.
   const key = link.hash.slice(1);
   const begun = performance.now();
-  const socket = new WebSocket(`ws://127.0.0.1:${line.address().port}/join`, { perMessageDeflate: false });
+  const socket = new WebSocket(`ws://127.0.0.1:${line.port}/join`, { perMessageDeflate: false });
   let [bytes, pages, half] = [0, 0, 0];
   await new Promise((done) => {
     let total = Infinity;
@@ -152,7 +128,7 @@ async function arrival() {
   socket.terminate();
   const chromium = await Chromium.start(program);
   const from = performance.now();
-  const page = await chromium.open(`http://127.0.0.1:${line.address().port}/${link.hash}`, { width: 640, height: 480 });
+  const page = await chromium.open(`http://127.0.0.1:${line.port}/${link.hash}`, { width: 640, height: 480 });
   await until("half is shown", () => page.run(`(window.sculptd?.figures().triangles ?? 0) > ${1e6}`).catch(() => false));
   const first = performance.now() - from;
   await page.complete();
