@@ -13,7 +13,8 @@ const dice = diceOf(777);
 const daemon = await Daemon.start(binary, (home) => ["--session", join(home, "line.sculpt")]);
 const chromium = await Chromium.start(program);
 const late = diceOf(778);
-const line = await Line.to(Number(new URL(daemon.links[0]).port), { late: () => 20 + late() * 40 });
+let slow = 0;
+const line = await Line.to(Number(new URL(daemon.links[0]).port), { late: () => slow + 20 + late() * 40 });
 try {
   const page = await chromium.open(line.link(daemon.links[0]));
   await page.complete();
@@ -29,6 +30,39 @@ try {
     assert.equal(steps(), before + 1, "one stroke, one step");
   };
   await whole();
+
+  // The expected dab is drawn before the daemon has answered, and goes when its clay is there.
+  await page.run(`(() => {
+    const { connection, expected } = sculptd;
+    const seen = window.seen = { down: 0, batch: 0, disc: 0, taken: 0, points: "" };
+    document.getElementById("clay").addEventListener("pointerdown", () => {
+      [seen.down, seen.batch] = [performance.now(), connection.lastBatch + 1];
+    }, true);
+    new MutationObserver(() => {
+      const disc = document.querySelector("#expected polygon");
+      if (!disc || seen.disc) return;
+      [seen.disc, seen.points] = [performance.now(), disc.getAttribute("points") ?? ""];
+    }).observe(document.getElementById("expected"), { childList: true, subtree: true, attributes: true });
+    const taken = expected.taken.bind(expected);
+    expected.taken = (batch, now) => {
+      if (seen.down && !seen.taken && batch >= seen.batch) seen.taken = now;
+      taken(batch, now);
+    };
+  })()`);
+  await page.pen("mouseMoved", 480, 320, 0);
+  await wait(300);
+  slow = 400;
+  await page.pen("mousePressed", 480, 320, 0.6);
+  await until("a dab is expected", () => page.run("seen.disc > 0"));
+  await until("the daemon has answered", () => page.run("seen.taken > 0"));
+  const seen = await page.run("seen");
+  assert.ok(seen.disc < seen.taken, `drawn ${seen.disc - seen.down} ms, answered ${seen.taken - seen.down} ms after the pen`);
+  slow = 0;
+  assert.match(seen.points, /^[\d., ]+$/);
+  await page.pen("mouseReleased", 480, 320, 0);
+  await until("the clay has taken its place", () => page.run("sculptd.expected.count === 0 && !document.querySelector('#expected polygon')"));
+  console.log(`expected dab after ${(seen.disc - seen.down).toFixed(0)} ms, the daemon's answer after ${(seen.taken - seen.down).toFixed(0)} ms`);
+
   for (let n = 0; n < cuts; n++) {
     const before = steps();
     const points = path(20);
