@@ -50,6 +50,7 @@ function start(): void {
     redo: () => redo(),
     home: () => home && look(fitted(home)),
     takeHome: (format) => connection?.ask({ do: "file", format }),
+    walls: (on) => connection?.ask({ do: "walls", on }),
     name: (name) => {
       localStorage.setItem("name", name);
       connection?.ask({ do: "name", name });
@@ -94,7 +95,8 @@ function start(): void {
         extent = message.extent;
         if (!camera) {
           home = message.camera;
-          camera = role === "device" ? home : fitted(home);
+          camera = fitted(home);
+          if (role === "device") lieOver(home);
           sendCamera();
         }
         if (!message.resumed && objects.length > 0) {
@@ -104,6 +106,7 @@ function start(): void {
         if (!brush || !message.resumed) brush = message.brush;
         panel.show(role, message.brushes);
         panel.showBrush(brush);
+        if (panel.asksWalls) connection.ask({ do: "walls", on: true });
         showState();
         break;
       case "refused":
@@ -120,12 +123,16 @@ function start(): void {
       case "host":
         home = message.camera;
         // A tablet lies over the view of the screen, edge on edge.
-        if (role === "device") camera = home;
+        if (role === "device") lieOver(home);
         else if (panel.follows && camera) look(fitted(home));
         break;
       case "people":
         people = message.people;
         panel.showPeople(people, own);
+        break;
+      case "walls":
+        picture.scale = message.scale;
+        panel.showWalls(message.scale);
         break;
       case "pens":
         pens = message.pens;
@@ -148,6 +155,13 @@ function start(): void {
         return;
     }
     dirty = true;
+  }
+
+  /** The view of the screen that this tablet lies over, in its proportions. */
+  function lieOver(screen: Camera): void {
+    camera = screen;
+    document.body.classList.add("device");
+    document.body.style.setProperty("--aspect", String(screen.aspect));
   }
 
   function showState(): void {
@@ -243,8 +257,8 @@ function start(): void {
       const dot = document.createElement("span");
       const colour = people.find((p) => p.person === pen.person)?.colour ?? [255, 255, 255];
       dot.style.setProperty("--colour", `rgb(${colour.join(" ")})`);
-      dot.style.left = `${at[0] * canvas.clientWidth}px`;
-      dot.style.top = `${at[1] * canvas.clientHeight}px`;
+      dot.style.left = `${canvas.offsetLeft + at[0] * canvas.clientWidth}px`;
+      dot.style.top = `${canvas.offsetTop + at[1] * canvas.clientHeight}px`;
       dot.classList.toggle("down", pen.down);
       return [dot];
     });
@@ -312,7 +326,14 @@ function start(): void {
   fit();
   frame();
   Object.assign(window, {
-    sculptd: { figures: () => picture.figures, roundTrip: () => connection.roundTrip, camera: () => camera, connection, expected },
+    sculptd: {
+      figures: () => picture.figures,
+      scale: () => picture.scale,
+      roundTrip: () => connection.roundTrip,
+      camera: () => camera,
+      connection,
+      expected,
+    },
   });
 }
 

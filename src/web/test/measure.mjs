@@ -1,6 +1,7 @@
 // Figures of the page, for the guide: `node test/measure.mjs BINARY CHROMIUM [WHAT...]`, where WHAT is
 // `pixel` (a touch of the pen to the picture that shows it), `arrival` (a million vertices over a line
-// of 100 Mbit/s), `many` (the daemon's tick with twenty pages) and `memory` (five million vertices).
+// of 100 Mbit/s), `dabs` (bytes a dab), `many` (the daemon's tick with twenty pages) and `memory`
+// (five million vertices).
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import WebSocket from "ws";
@@ -21,7 +22,13 @@ const WATCH = `(() => {
   const [draw, put] = [gl.drawElements, gl.bufferSubData];
   let [touched, changed, asked] = [0, false, false];
   window.delays = [];
-  document.getElementById("clay").addEventListener("pointerdown", (e) => { touched = e.timeStamp; changed = false; }, true);
+  window.expectations = [];
+  let expects = false;
+  new MutationObserver(() => {
+    if (expects) window.expectations.push(performance.now() - touched);
+    expects = false;
+  }).observe(document.getElementById("expected"), { childList: true, subtree: true, attributes: true });
+  document.getElementById("clay").addEventListener("pointerdown", (e) => { touched = e.timeStamp; changed = false; expects = true; }, true);
   gl.bufferSubData = (...all) => { changed = touched > 0; put.apply(gl, all); };
   gl.drawElements = (...all) => {
     draw.apply(gl, all);
@@ -89,6 +96,7 @@ async function pixel() {
   }
   const delays = await page.run("window.delays");
   console.log(`touch to picture, ms, ${delays.length} touches: ${told(delays)}`);
+  console.log(`touch to expected dab, ms: ${told(await page.run("window.expectations"))}`);
   await chromium.stop();
   await daemon.stop();
   daemon.remove();
@@ -155,6 +163,28 @@ function reader(link, slow) {
     socket.send(answer);
   });
   return counted;
+}
+
+/** Bytes that a page is sent for a dab. */
+async function dabs() {
+  for (const vertices of [160e3, 1e6]) {
+    const daemon = await Daemon.start(binary, withBall(vertices));
+    const page = reader(daemon.links[1], false);
+    await until("it is complete", () => page.complete > 0);
+    const [before, bytes] = [daemon.ctl("status"), page.bytes];
+    for (let n = 0; n < 20; n++) {
+      const points = Array.from({ length: 30 }, (_, i) =>
+        [0.5 + 0.1 * Math.cos(n + i * 0.1), 0.5 + 0.1 * Math.sin(n + i * 0.1), 0.5, i * 20]);
+      daemon.ctl("stroke", { points, space: "view" });
+    }
+    await wait(2000);
+    const after = daemon.ctl("status");
+    const [laid, moved, sent] = [after.dabs - before.dabs, after.vertices_moved - before.vertices_moved, page.bytes - bytes];
+    console.log(`${vertices / 1e3} k vertices: ${(sent / laid / 1e3).toFixed(1)} kB a dab that moves ${(moved / laid).toFixed(0)} vertices, ${laid} dabs`);
+    page.socket.terminate();
+    await daemon.stop();
+    daemon.remove();
+  }
 }
 
 /** Strokes on a ball for ten seconds, with so many pages; the distribution of the ticks. */
@@ -227,6 +257,7 @@ async function memory() {
 
 if (is("pixel")) await pixel();
 if (is("arrival")) await arrival();
+if (is("dabs")) await dabs();
 if (is("many")) await many();
 if (is("memory")) await memory();
 process.exit(0);
