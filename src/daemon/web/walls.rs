@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use arc_swap::{ArcSwap, ArcSwapOption};
+use crossbeam_channel as cc;
 use serde::Serialize;
 
 use super::locked;
@@ -119,7 +120,7 @@ impl Walls {
             let now = (state.clay_revision(), unit);
             let Some(object) = state.scene.active().map(|o| o.id).filter(|_| done != Some(now))
             else {
-                std::thread::sleep(PAUSE);
+                pause();
                 continue;
             };
             let newer = |m: &mut (LiveMap, Ranks)| pool.install(|| m.0.advance(mesh)).is_ok();
@@ -136,23 +137,36 @@ impl Walls {
             let (clay, pages) = (mesh.object_id(), pages.clone());
             self.newest.store(Some(Arc::new(WallMap { object, clay, pages, scale })));
             done = Some(now).filter(|_| left == 0);
-            std::thread::sleep(PAUSE);
+            pause();
         }
     }
+}
+
+/// Waits before the next look.
+fn pause() {
+    let _ = cc::after(PAUSE).recv();
 }
 
 /// The values times `unit` by page and row; a page with the same bits as before stays the same.
 fn gather(mesh: &Snapshot, all: &[f32], ranks: &Ranks, unit: f32, pages: &mut Vec<Arc<[f32]>>) {
     pages.truncate(mesh.page_count());
+    let mut ids: Vec<u32> = Vec::new();
     for (i, page) in mesh.pages().enumerate() {
-        let ids = &page.topology().ids;
+        // The own vertices, then the copies of the neighbours'.
+        let topology = page.topology();
+        ids.clear();
+        ids.extend(&topology.ids[..topology.own]);
+        for (home, part) in topology.halo_parts() {
+            let theirs = &mesh.page(home).topology().ids;
+            ids.extend(topology.halo_sources[part].iter().map(|v| theirs[usize::from(*v)]));
+        }
         let value = |id: &u32| {
             let row = ranks.find(*id).and_then(|row| all.get(row as usize));
             row.map_or(f32::NAN, |v| v * unit)
         };
         let same = |old: &Arc<[f32]>| {
             old.len() == ids.len()
-                && old.iter().zip(ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
+                && old.iter().zip(&ids).all(|(o, id)| o.to_bits() == value(id).to_bits())
         };
         if !pages.get(i).is_some_and(same) {
             let new: Arc<[f32]> = ids.iter().map(value).collect();
@@ -274,6 +288,22 @@ mod tests {
         assert!(!sent.wait());
         sent.follow(None);
         assert!(sent.next(|_, _, _| Some(1)).is_none());
+    }
+
+    #[test]
+    fn every_row_of_a_page_has_the_value_of_its_vertex() {
+        let mesh = sculptd_geometry::shapes::icosphere(1.0, 32);
+        let mut clay = sculptd_clay::Clay::build(&mesh, &Job::default()).expect("clay");
+        let snapshot = clay.snapshot();
+        let all: Vec<f32> = mesh.positions.iter().map(|p| p.x).collect();
+        let mut pages = Vec::new();
+        gather(&snapshot, &all, &snapshot.ranks(), 2.0, &mut pages);
+        for (page, values) in snapshot.pages().zip(&pages) {
+            assert_eq!(values.len(), page.point_rows().len());
+            for (row, value) in values.iter().enumerate() {
+                assert_eq!(*value, 2.0 * page.point(row).x);
+            }
+        }
     }
 
     #[test]

@@ -183,7 +183,7 @@ export class Panel {
 
 /** A length with as many places as its size needs. */
 function millimetres(value: number): string {
-  const digits = Math.min(3, Math.max(0, 2 - Math.floor(Math.log10(Math.max(value, 1e-3)))));
+  const digits = Math.min(3, Math.max(0, 2 - Math.floor(Math.log10(Math.max(value, 1e-3) * 1.0001))));
   return `${value.toLocaleString(undefined, { minimumFractionDigits: digits, maximumFractionDigits: digits })} mm`;
 }
 

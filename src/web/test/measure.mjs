@@ -25,7 +25,7 @@ const WATCH = `(() => {
   window.expectations = [];
   let expects = false;
   new MutationObserver(() => {
-    if (expects) window.expectations.push(performance.now() - touched);
+    if (expects && touched > 0) window.expectations.push(performance.now() - touched);
     expects = false;
   }).observe(document.getElementById("expected"), { childList: true, subtree: true, attributes: true });
   document.getElementById("clay").addEventListener("pointerdown", (e) => { touched = e.timeStamp; changed = false; expects = true; }, true);
@@ -156,12 +156,18 @@ function reader(link, slow) {
   socket.on("message", (data, binary) => {
     counted.bytes += data.length;
     if (!binary) { if (JSON.parse(data).is === "complete") counted.complete++; return; }
-    if (slow) return;
+    last = data.readUInt32LE(4);
+  });
+  // As a page does once a frame: an answer to each message would be too many.
+  let [last, said] = [0, 0];
+  const timer = setInterval(() => {
+    if (slow || last === said || socket.readyState !== WebSocket.OPEN) return;
     const answer = Buffer.alloc(5);
     answer[0] = 2;
-    answer.writeUInt32LE(data.readUInt32LE(4), 1);
+    answer.writeUInt32LE((said = last), 1);
     socket.send(answer);
-  });
+  }, 16);
+  socket.on("close", (code) => { clearInterval(timer); counted.closed = code; });
   return counted;
 }
 
@@ -181,6 +187,7 @@ async function dabs() {
     const after = daemon.ctl("status");
     const [laid, moved, sent] = [after.dabs - before.dabs, after.vertices_moved - before.vertices_moved, page.bytes - bytes];
     console.log(`${vertices / 1e3} k vertices: ${(sent / laid / 1e3).toFixed(1)} kB a dab that moves ${(moved / laid).toFixed(0)} vertices, ${laid} dabs`);
+    if (page.closed) throw new Error(`the page was sent away: ${page.closed}`);
     page.socket.terminate();
     await daemon.stop();
     daemon.remove();
@@ -200,6 +207,7 @@ async function ticks(count) {
   }
   const { tick_ms, dabs } = daemon.ctl("status");
   const bytes = pages.slice(1).reduce((sum, p) => sum + p.bytes, 0) / Math.max(1, count - 1);
+  if (pages.some((p) => p.closed)) throw new Error("a page was sent away");
   const slow = count ? `; ${(bytes / 1e6).toFixed(1)} MB a page, ${(pages[0].bytes / 1e6).toFixed(1)} MB to the slow one` : "";
   console.log(`${count} pages: ${dabs} dabs, tick ms median ${tick_ms.p50.toFixed(3)}, p99 ${tick_ms.p99.toFixed(3)}${slow}`);
   pages.forEach((p) => p.socket.terminate());
