@@ -512,7 +512,7 @@ impl<'a> ConnectedPage<'a> {
         if wanted != self.walls.is_some() {
             self.walls = wanted.then(|| walls.want(published, stop));
         }
-        let map = self.walls.as_ref().and_then(|_| walls.newest());
+        let map = self.walls.as_ref().and_then(|_| walls.measured_map());
         let scale = map.as_ref().map(|m| m.scale);
         self.delivery.walls.follow(map);
         if scale == self.told.walls {

@@ -52,11 +52,11 @@ pub struct WallScale {
 #[derive(Debug, Default)]
 pub struct Walls {
     newest: ArcSwapOption<WallMap>,
-    wanted: Mutex<Wanted>,
+    wanted: Mutex<WallReaders>,
 }
 
 #[derive(Debug, Default)]
-struct Wanted {
+struct WallReaders {
     pages: usize,
     is_running: bool,
 }
@@ -93,7 +93,7 @@ impl Walls {
     }
 
     /// Returns the newest map; `None` before the first.
-    pub fn newest(&self) -> Option<Arc<WallMap>> {
+    pub fn measured_map(&self) -> Option<Arc<WallMap>> {
         self.newest.load_full()
     }
 
