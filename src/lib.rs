@@ -146,6 +146,7 @@
 //!   visitor's sculpture for download, and the page by which guests join, each to many clients.
 //!   Wait for: their socket, time.
 //! * `sculptd-take-home`, made by `daemon::web`: writes the work as a file for a guest, once.
+//! * `sculptd-page-walls`, made by `daemon::web`: measures walls while a page shows their map.
 //! * `sculptd-page`, made by `daemon::web`: reads what one guest's page sends, and sends it the
 //!   clay that it lacks. Waits for: that page, time.
 //! * `sculptd-telemetry`, made by `daemon::telemetry`: sends metrics and the log to a collector.

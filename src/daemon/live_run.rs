@@ -503,6 +503,8 @@ fn serve_page(
         keys: Default::default(),
         own_views: web.own_views,
         downloads: Default::default(),
+        walls: Default::default(),
+        window: options.window.clone(),
         guests: crate::web::GuestList::shown_by(live.guests.clone()),
     };
     let failed = |source| LiveRunError::Service { what: format!("page on {}", web.at), source };

@@ -257,7 +257,9 @@ impl Published {
 
     /// Returns true if this daemon's person only looks on at a shared sculpture.
     pub fn looks_on(&self) -> bool {
-        let person = self.people.as_ref().and_then(|people| people.person(people.own));
+        // Without a network this person has number 0, as guests who only watch on a page have.
+        let shared = self.people.as_ref().filter(|people| people.own != 0);
+        let person = shared.and_then(|people| people.person(people.own));
         person.is_some_and(|person| person.role == PersonRole::Viewer)
     }
 

@@ -83,6 +83,7 @@ struct LinkState {
     claims: WindowClaims,
     view: Option<[DVec2; 2]>,
     presented: PresentLatency,
+    walls: bool,
     session: Option<PathBuf>,
     wanted: Option<DisplayVariables>,
 }
@@ -135,6 +136,17 @@ impl WindowLink {
     /// The window has moved, or its panels leave another part of it free.
     pub fn set_view_on_desktop(&self, corner: DVec2, size: DVec2) {
         self.state().view = Some([corner, size]);
+    }
+
+    /// Records whether the window shows the map of wall thickness.
+    pub fn show_walls(&self, shown: bool) {
+        self.state().walls = shown;
+    }
+
+    /// Returns true while an open window shows the map of wall thickness.
+    pub fn shows_walls(&self) -> bool {
+        let state = self.state();
+        state.walls && state.standing == WindowStanding::Open
     }
 
     /// A frame has shown a sample that none before it has.

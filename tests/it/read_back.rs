@@ -71,6 +71,8 @@ fn page(live: &Live, factory: &queue::SenderFactory, clock: &Clock) -> Arc<Web> 
         keys: Default::default(),
         own_views: true,
         downloads: Default::default(),
+        walls: Default::default(),
+        window: Default::default(),
         guests: GuestList::shown_by(live.guests.clone()),
     };
     Arc::new(Web::start(&options, state).expect("a page"))

@@ -138,6 +138,12 @@ fn a_guest_sculpts_in_an_own_view_and_a_viewer_does_not() {
     let note = told(&mut viewer, "note").expect("a note");
     assert!(note["text"].as_str().is_some_and(|t| t.contains("does not sculpt")), "{note}");
     assert_eq!(hash(&served.daemon), before);
+    // Who watches does not turn the person at the machine into a viewer.
+    let stroke = json!({ "points": [[0.5, 0.5, 0.5, 0], [0.52, 0.5, 0.5, 100]], "space": "view" });
+    assert!(served.daemon.ctl("stroke", Some(&stroke.to_string())).is_some());
+    until("the host's stroke is there", || hash(&served.daemon) != before);
+    served.daemon.ctl("undo", None);
+    until("it is undone", || hash(&served.daemon) == before);
     let mut guest = join(&served.links[0]);
     guest.send(batch(1, &points)).expect("sent");
     assert_eq!(told(&mut guest, "taken").map(|t| t["batch"].clone()), Some(json!(1)));
@@ -158,6 +164,23 @@ fn a_guest_sculpts_in_an_own_view_and_a_viewer_does_not() {
     let sculpted = hash(&served.daemon);
     served.daemon.ctl("undo", None);
     assert_eq!(hash(&served.daemon), sculpted);
+}
+
+#[test]
+fn a_sculptor_is_sent_the_walls_and_a_viewer_asks_in_vain() {
+    let served = served();
+    let ask = Message::text(json!({ "do": "walls", "on": true }).to_string());
+    let mut viewer = join(&served.links[1]);
+    viewer.send(ask.clone()).expect("sent");
+    assert!(told(&mut viewer, "note").is_some());
+    let mut guest = join(&served.links[0]);
+    guest.send(ask).expect("sent");
+    let scale = told(&mut guest, "walls").expect("a scale")["scale"].clone();
+    let (low, high) = (scale["low"].as_f64(), scale["high"].as_f64());
+    assert!(low.zip(high).is_some_and(|(low, high)| 0.0 < low && low <= high), "{scale}");
+    let off = json!({ "do": "walls", "on": false }).to_string();
+    guest.send(Message::text(off)).expect("sent");
+    while told(&mut guest, "walls").expect("an answer")["scale"] != Value::Null {}
 }
 
 #[test]

@@ -19,6 +19,7 @@ use super::messages::{
     BrushShown, GuestRequest, Hello, PenShown, PersonShown, Tell, changed_brush,
 };
 use super::rate::RateLimit;
+use super::walls::{WallScale, WallsWanted};
 use super::{RESUMES, WebState};
 use crate::Published;
 use crate::command_queue::{CommandAnswer, QueuedCommand};
@@ -135,6 +136,7 @@ struct LastTold {
     pens_us: u64,
     taken: u32,
     complete: bool,
+    walls: Option<WallScale>,
 }
 
 struct ConnectedPage<'a> {
@@ -151,6 +153,10 @@ struct ConnectedPage<'a> {
     /// Path of the file that is being written.
     file: Option<cc::Receiver<Result<String, String>>>,
     told: LastTold,
+    /// The guest has asked for the map of walls.
+    asks_walls: bool,
+    /// The map is shown: asked for, or shown in the window too.
+    walls: Option<WallsWanted>,
     last_batch: u32,
     heard_us: u64,
     messages: RateLimit,
@@ -187,6 +193,8 @@ impl<'a> ConnectedPage<'a> {
             asked: VecDeque::new(),
             file: None,
             told: LastTold::default(),
+            asks_walls: false,
+            walls: None,
             last_batch: 0,
             heard_us: now,
             messages: RateLimit::new(MESSAGES, now),
@@ -349,6 +357,10 @@ impl<'a> ConnectedPage<'a> {
         if let GuestRequest::File { format } = ask {
             return self.write_file(format);
         }
+        if let (GuestRequest::Walls { on }, WebRole::Sculptor) = (&ask, self.guest.role) {
+            self.asks_walls = *on;
+            return Ok(());
+        }
         if self.guest.role != WebRole::Sculptor {
             return match ask {
                 // The pages in front of a viewer's camera come first.
@@ -380,7 +392,7 @@ impl<'a> ConnectedPage<'a> {
                 self.send_command(command, Some((*at, now)), Some(send))?;
                 self.asked.push_back(AwaitedAnswer { answer, redo });
             }
-            GuestRequest::Name { .. } | GuestRequest::File { .. } => {}
+            GuestRequest::Name { .. } | GuestRequest::File { .. } | GuestRequest::Walls { .. } => {}
         }
         Ok(())
     }
@@ -442,6 +454,7 @@ impl<'a> ConnectedPage<'a> {
             changed = true;
         }
         changed |= self.tell_facts(&shown, now)?;
+        changed |= self.tell_walls()?;
         self.delivery.look(&shown, &self.camera);
         // A bounded number, so that what the page sends has its turn.
         for _ in 0..READ_AT_ONCE {
@@ -490,6 +503,24 @@ impl<'a> ConnectedPage<'a> {
             }
         }
         Ok(told)
+    }
+
+    /// Shows the map of walls to who asked for it, and to everybody while the window shows it.
+    fn tell_walls(&mut self) -> Result<bool, String> {
+        let WebState { walls, window, published, stop, .. } = &**self.state;
+        let wanted = self.asks_walls || window.shows_walls();
+        if wanted != self.walls.is_some() {
+            self.walls = wanted.then(|| walls.want(published, stop));
+        }
+        let map = self.walls.as_ref().and_then(|_| walls.measured_map());
+        let scale = map.as_ref().map(|m| m.scale);
+        self.delivery.walls.follow(map);
+        if scale == self.told.walls {
+            return Ok(false);
+        }
+        self.told.walls = scale;
+        tell(&mut self.socket, &Tell::Walls { scale })?;
+        Ok(true)
     }
 
     fn tell_facts(&mut self, shown: &Published, now: u64) -> Result<bool, String> {

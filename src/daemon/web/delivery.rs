@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 use super::page_code::{self, Names, SentPage};
+use super::walls::SentWalls;
 use crate::Published;
 use sculptd_clay::Snapshot;
 use sculptd_clay::brush::BrushSettings;
@@ -25,6 +26,8 @@ pub struct Delivery {
     on_the_way: VecDeque<OnTheWay>,
     bytes_on_the_way: usize,
     last_message: u32,
+    /// The map of walls, where the page shows it.
+    pub walls: SentWalls,
     /// Bytes of pages that were sent.
     pub sent_bytes: u64,
     /// View and brush of a guest who was cut off.
@@ -37,6 +40,16 @@ struct OnTheWay {
     bytes: usize,
     object: ObjectId,
     page: u32,
+}
+
+/// The page of a message that carries no clay.
+const NO_PAGE: u32 = u32::MAX;
+
+/// What a message says of a page.
+enum WrittenPage {
+    Nothing,
+    Rows,
+    Whole,
 }
 
 /// The pages of one object.
@@ -101,19 +114,43 @@ impl Delivery {
     pub fn next(&mut self, out: &mut Vec<u8>) -> bool {
         out.clear();
         while self.bytes_on_the_way < WINDOW {
-            let Some((object, page)) = self.next_page() else { return false };
-            let names = Names { message: self.last_message + 1, object: object.0, page };
-            if !self.objects.get_mut(&object).is_some_and(|o| o.write(page, names, out)) {
-                continue;
-            }
-            self.last_message += 1;
-            let message = self.last_message;
+            let message = self.last_message + 1;
+            let (object, page) = match self.next_page() {
+                Some((object, page)) => {
+                    let names = Names { message, object: object.0, page };
+                    let written = self.objects.get_mut(&object).map(|o| o.write(page, names, out));
+                    match written {
+                        Some(WrittenPage::Whole) => self.walls.forget(object, page),
+                        Some(WrittenPage::Rows) => {}
+                        Some(WrittenPage::Nothing) | None => {
+                            out.clear();
+                            continue;
+                        }
+                    }
+                    (object, page)
+                }
+                // Walls come after the clay that they lie on.
+                None => {
+                    let Some((object, page, values)) = self.next_walls() else { return false };
+                    page_code::values(&values, Names { message, object: object.0, page }, out);
+                    (object, NO_PAGE)
+                }
+            };
+            self.last_message = message;
             self.on_the_way.push_back(OnTheWay { message, bytes: out.len(), object, page });
             self.bytes_on_the_way += out.len();
             self.sent_bytes += out.len() as u64;
             return true;
         }
         false
+    }
+
+    fn next_walls(&mut self) -> Option<(ObjectId, u32, Arc<[f32]>)> {
+        let objects = &self.objects;
+        self.walls.next(|object, clay, page| {
+            let known = objects.get(&object).filter(|o| o.clay.object_id() == clay)?;
+            Some(known.sent.get(page as usize)?.as_ref()?.rows())
+        })
     }
 
     fn next_page(&mut self) -> Option<(ObjectId, u32)> {
@@ -140,6 +177,7 @@ impl Delivery {
             }
         }
         self.bytes_on_the_way = 0;
+        self.walls.clear();
     }
 
     /// Returns true if every page is as the newest state has it, and acknowledged.
@@ -151,7 +189,8 @@ impl Delivery {
     /// Returns true if something waits and there is room for it.
     pub fn can_send(&self) -> bool {
         let waits = |o: &ObjectPages| !(o.changed.is_empty() && o.unseen.is_empty());
-        self.bytes_on_the_way < WINDOW && self.objects.values().any(waits)
+        let has_more = self.walls.wait() || self.objects.values().any(waits);
+        self.bytes_on_the_way < WINDOW && has_more
     }
 }
 
@@ -255,20 +294,21 @@ impl ObjectPages {
         Some(page)
     }
 
-    /// Appends a page to `out`. Returns false if the browser has it as it is.
-    fn write(&mut self, page: u32, names: Names, out: &mut Vec<u8>) -> bool {
-        let Some(slot) = self.sent.get_mut(page as usize) else { return false };
+    /// Appends a page to `out`, unless the browser has it as it is.
+    fn write(&mut self, page: u32, names: Names, out: &mut Vec<u8>) -> WrittenPage {
+        let Some(slot) = self.sent.get_mut(page as usize) else { return WrittenPage::Nothing };
         let now = self.clay.page(page);
         if let Some(sent) = slot {
             if sent.is(now) {
-                return false;
+                return WrittenPage::Nothing;
             }
             if page_code::changed(sent, now, names, out) {
-                return out.len() > page_code::HEAD;
+                let none = out.len() <= page_code::HEAD;
+                return if none { WrittenPage::Nothing } else { WrittenPage::Rows };
             }
         }
         *slot = Some(page_code::whole(now, names, out));
-        true
+        WrittenPage::Whole
     }
 
     /// The browser may not have this page.

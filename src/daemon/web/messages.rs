@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::delivery::ShownObject;
 use super::downloads::WorkFormat;
+use super::walls::WallScale;
 use sculptd_clay::brush::{BrushKind, BrushSettings, Presets};
 use sculptd_engine::camera::Camera;
 
@@ -52,6 +53,8 @@ pub enum GuestRequest {
     Name { name: String },
     /// The guest wants the work as a file.
     File { format: WorkFormat },
+    /// The guest wants to see the walls' thickness, or not any more.
+    Walls { on: bool },
     /// Undoes the guest's last step.
     Undo { at: f64 },
     /// Redoes the guest's step that was undone last.
@@ -141,6 +144,8 @@ pub enum Tell {
     Complete { bytes: u64 },
     /// The file that the guest asked for can be fetched at this path for ten minutes.
     File { path: String },
+    /// The scale of the map of walls; `None`: no map is shown.
+    Walls { scale: Option<WallScale> },
     /// Something for the guest to read.
     Note { text: String },
 }

@@ -13,7 +13,7 @@
 //!   only what it has not received.
 //!
 //! Read first: [`keys`] (who may join), [`connection`] (one page), [`delivery`] (what it is sent
-//! next), [`page_code`] (as which bytes), [`downloads`]
+//! next), [`page_code`] (as which bytes), [`walls`] (the map of wall thickness), [`downloads`]
 //! (the work as a file).
 
 use std::net::{IpAddr, SocketAddr};
@@ -29,6 +29,7 @@ use crate::command_queue::CommandSender;
 use crate::http::answer::permitted_to_page;
 use crate::http::upgrade::Upgrade;
 use crate::http::{Answer, HttpServer, Refusal};
+use crate::window_link::WindowLink;
 use sculptd_clay::brush::Presets;
 use sculptd_devices::Clock;
 use sculptd_devices::queue::SenderFactory;
@@ -41,6 +42,7 @@ pub mod keys;
 pub mod messages;
 pub mod page_code;
 mod rate;
+pub mod walls;
 
 pub use downloads::Downloads;
 pub use guests::{Guest, GuestList};
@@ -98,6 +100,10 @@ pub struct WebState {
     pub own_views: bool,
     pub guests: GuestList,
     pub downloads: Downloads,
+    /// The map of walls for the pages that show it.
+    pub walls: Arc<walls::Walls>,
+    /// Where the window says that it shows the map.
+    pub window: WindowLink,
 }
 
 /// The page, being served; closed when dropped.

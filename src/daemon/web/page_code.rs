@@ -2,7 +2,7 @@
 //!
 //! | bytes | field |
 //! |---|---|
-//! | 1 | 1 whole, 2 rows that changed |
+//! | 1 | 1 whole, 2 rows that changed, 3 values of a map |
 //! | 1 | bits: 1 the rows have colours |
 //! | 2 | rows of the page |
 //! | 4, 4, 4 | number of the message; of the object; of the page |
@@ -10,6 +10,9 @@
 //! A whole page goes on with its box (lower and upper corner, six f32), the step of its lattice
 //! (f32), the number of its triangles (u32), the rows, and three u16 a triangle. Changed rows come
 //! in runs: first row, count (u16 each), the rows.
+//!
+//! Values of a map go on with their step (f32), and a u16 a row: the value in steps, 65535
+//! where it is not known.
 //!
 //! A row: three u16, the place as steps from the box's lower corner; two i8, the normal as a point
 //! of an octahedron (Meyer et al. 2010); with colours also red, green, blue (sRGB) and the mask.
@@ -28,6 +31,7 @@ use sculptd_clay::page::Page;
 pub const HEAD: usize = 16;
 const WHOLE: u8 = 1;
 const ROWS: u8 = 2;
+const VALUES: u8 = 3;
 const COLOURED: u8 = 1;
 /// Unchanged rows that are sent along rather than to begin another run.
 const BRIDGE: usize = 2;
@@ -131,7 +135,24 @@ pub fn changed(sent: &mut SentPage, page: &Arc<Page>, names: Names, out: &mut Ve
     true
 }
 
+/// Appends the values of a map for the rows of a page, in order; not finite: not known.
+pub fn values(all: &[f32], names: Names, out: &mut Vec<u8>) {
+    let most = all.iter().copied().filter(|v| v.is_finite()).fold(0.0, f32::max);
+    let step = (most / (MOST as f32 - 1.0)).max(f32::MIN_POSITIVE);
+    put_head(VALUES, 0, all.len(), names, out);
+    out.extend(step.to_le_bytes());
+    for value in all {
+        let steps = if value.is_finite() { (value / step).round() } else { MOST as f32 };
+        out.extend((steps as u16).to_le_bytes());
+    }
+}
+
 impl SentPage {
+    /// Returns its number of rows.
+    pub fn rows(&self) -> usize {
+        self.page.point_rows().len()
+    }
+
     /// Returns true if this page is what was sent.
     pub fn is(&self, page: &Arc<Page>) -> bool {
         Arc::ptr_eq(&self.page, page)
@@ -139,8 +160,12 @@ impl SentPage {
 }
 
 fn head(kind: u8, sent: &SentPage, names: Names, out: &mut Vec<u8>) {
-    out.extend([kind, if sent.coloured { COLOURED } else { 0 }]);
-    out.extend((sent.page.point_rows().len() as u16).to_le_bytes());
+    put_head(kind, if sent.coloured { COLOURED } else { 0 }, sent.rows(), names, out);
+}
+
+fn put_head(kind: u8, bits: u8, rows: usize, names: Names, out: &mut Vec<u8>) {
+    out.extend([kind, bits]);
+    out.extend((rows as u16).to_le_bytes());
     for name in [names.message, names.object, names.page] {
         out.extend(name.to_le_bytes());
     }
@@ -245,6 +270,18 @@ mod tests {
                 assert_eq!(*places.entry(key).or_insert(place), place);
             }
         }
+    }
+
+    #[test]
+    fn values_of_a_map_arrive_within_a_step() {
+        let mut bytes = Vec::new();
+        values(&[0.0, 1.5, f32::NAN, 3.0, f32::INFINITY], NAMES, &mut bytes);
+        assert_eq!((bytes[0], u16_at(&bytes, 2), bytes.len()), (VALUES, 5, HEAD + 4 + 10));
+        let step = f32_at(&bytes, HEAD);
+        let at = |row: usize| u16_at(&bytes, HEAD + 4 + 2 * row);
+        assert_eq!([at(0), at(2), at(4)], [0, 65_535, 65_535]);
+        assert!((f32::from(at(1)) * step - 1.5).abs() <= step);
+        assert!((f32::from(at(3)) * step - 3.0).abs() <= step && at(3) < 65_535);
     }
 
     #[test]

@@ -3,24 +3,29 @@
 import { type Mat4, backward, viewProjection } from "./camera";
 import { type Hit, Picker, aimed } from "./pick";
 import { UNFOLDED, link } from "./program";
-import type { Camera, PageMessage, ShownObject } from "./protocol";
+import type { Camera, PageMessage, ShownObject, WallScale } from "./protocol";
 import { rowBytes } from "./protocol";
 
 const VERTEX = `#version 300 es
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 folded;
 layout(location = 2) in vec4 paint;
+layout(location = 3) in float wall;
 uniform vec3 low;
 uniform float step_;
 uniform mat4 model, view;
 uniform mat3 turn;
+uniform float wall_step;
 out vec3 normal;
 out vec4 colour;
+out vec2 thick;
 ${UNFOLDED}
 void main() {
   vec3 n = unfolded(folded);
   normal = turn * mat3(model) * n;
   colour = paint;
+  // The thickness, and whether it is known.
+  thick = wall_step > 0.0 && wall < 65534.5 ? vec2(wall * wall_step, 1.0) : vec2(0.0);
   gl_Position = view * (model * vec4(low + place * step_, 1.0));
 }`;
 
@@ -29,7 +34,11 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 normal;
 in vec4 colour;
+in vec2 thick;
 uniform vec3 clay;
+// Low and high end, and 1 where walls are shown.
+uniform vec3 scale;
+uniform vec3 stops[5];
 out vec4 pixel;
 vec3 linear(vec3 c) { return pow(c, vec3(2.2)); }
 void main() {
@@ -40,11 +49,19 @@ void main() {
   float shine = pow(max(dot(n, normalize(vec3(-0.3, 0.4, 0.85))), 0.0), 40.0);
   vec3 base = linear(clay) * linear(colour.rgb);
   base = mix(base, base * 0.35, colour.a);
+  if (scale.z > 0.5) {
+    float at = 4.0 * clamp((thick.x / max(thick.y, 1e-6) - scale.x) / max(scale.y - scale.x, 1e-12), 0.0, 1.0);
+    int i = min(int(at), 3);
+    base = thick.y > 0.5 ? linear(mix(stops[i], stops[i + 1], at - float(i))) : vec3(0.2);
+  }
   vec3 light = vec3(0.16, 0.17, 0.20) * sky + vec3(0.10, 0.07, 0.05) * (1.0 - sky)
     + vec3(0.85, 0.82, 0.78) * key;
   vec3 lit = base * light + vec3(0.05) * shine + base * rim * 0.25;
   pixel = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
 }`;
+
+/** Colours of walls from thin to thick, sRGB; `src/geometry/thickness/colour.rs` has them too. */
+const STOPS = [[88, 0, 24], [176, 12, 32], [230, 85, 30], [252, 178, 72], [255, 250, 205]];
 
 interface Page {
   array: WebGLVertexArrayObject;
@@ -53,6 +70,10 @@ interface Page {
   count: number;
   coloured: boolean;
   box: Float32Array;
+  rowCount: number;
+  walls: WebGLBuffer | null;
+  /** Millimetres a step of the walls; 0: not known. */
+  wallStep: number;
 }
 
 interface ClayObject {
@@ -71,6 +92,8 @@ export class ClayPicture {
   /** When the last picture was begun, and when it was seen to be finished, ms. */
   private begun = 0;
   private drawn = 0;
+  /** The map of walls where it is shown. */
+  scale: WallScale | null = null;
   /** Half the diagonal of everything, world units. */
   radius = 1;
 
@@ -79,7 +102,7 @@ export class ClayPicture {
     if (!gl) throw new Error("This browser has no WebGL 2.");
     this.gl = gl;
     this.program = link(gl, VERTEX, FRAGMENT);
-    for (const name of ["low", "step_", "model", "view", "turn", "clay"]) {
+    for (const name of ["low", "step_", "model", "view", "turn", "clay", "wall_step", "scale", "stops"]) {
       this.at[name] = gl.getUniformLocation(this.program, name);
     }
     gl.enable(gl.DEPTH_TEST);
@@ -122,9 +145,23 @@ export class ClayPicture {
       return;
     }
     if (!page) return;
+    if (message.values) return this.takeWalls(page, message.values);
     const stride = rowBytes(page.coloured);
     gl.bindBuffer(gl.ARRAY_BUFFER, page.rows);
     for (const run of message.runs) gl.bufferSubData(gl.ARRAY_BUFFER, run.first * stride, run.data);
+  }
+
+  private takeWalls(page: Page, { step, data }: { step: number; data: Uint8Array }): void {
+    const gl = this.gl;
+    if (data.length !== page.rowCount * 2) return;
+    gl.bindVertexArray(page.array);
+    page.walls ??= gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, page.walls);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(3);
+    gl.vertexAttribPointer(3, 1, gl.UNSIGNED_SHORT, false, 2, 0);
+    gl.bindVertexArray(null);
+    page.wallStep = step;
   }
 
   private make(message: PageMessage, box: Float32Array, triangles: Uint16Array): Page {
@@ -146,12 +183,14 @@ export class ClayPicture {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
-    return { array, rows, indices, count: triangles.length, coloured: message.coloured, box };
+    const { coloured, rows: rowCount } = message;
+    return { array, rows, indices, count: triangles.length, coloured, box, rowCount, walls: null, wallStep: 0 };
   }
 
   private free(page: Page): void {
     this.gl.deleteVertexArray(page.array);
     this.gl.deleteBuffer(page.rows);
+    this.gl.deleteBuffer(page.walls);
     this.gl.deleteBuffer(page.indices);
   }
 
@@ -164,16 +203,17 @@ export class ClayPicture {
     return [...this.objects.values()].every((o) => o.pages.size === 0);
   }
 
-  /** Number of pages and triangles on the card. */
-  get figures(): { pages: number; triangles: number } {
-    let [pages, triangles] = [0, 0];
+  /** Number of pages, of those with walls, and of triangles on the card. */
+  get figures(): { pages: number; walls: number; triangles: number } {
+    let [pages, walls, triangles] = [0, 0, 0];
     for (const object of this.objects.values()) {
       for (const page of object.pages.values()) {
         pages += 1;
+        walls += page.wallStep > 0 ? 1 : 0;
         triangles += page.count / 3;
       }
     }
-    return { pages, triangles };
+    return { pages, walls, triangles };
   }
 
   /** Whether the card has finished the last picture: a slow one gets no more than it can draw. */
@@ -202,6 +242,9 @@ export class ClayPicture {
     gl.uniformMatrix4fv(this.at.view ?? null, false, view);
     gl.uniformMatrix3fv(this.at.turn ?? null, false, toView(camera));
     gl.uniform3fv(this.at.clay ?? null, clay);
+    const { low, high } = this.scale ?? { low: 0, high: 0 };
+    gl.uniform3f(this.at.scale ?? null, low, high, this.scale ? 1 : 0);
+    gl.uniform3fv(this.at.stops ?? null, STOPS.flat().map((v) => v / 255));
     // White, and no mask, where a page has no colours.
     gl.vertexAttrib4f(2, 1, 1, 1, 0);
     this.drawPages(view, this.at);
@@ -230,6 +273,7 @@ export class ClayPicture {
         if (page.count === 0 || isOutside(clip, page.box)) continue;
         gl.uniform3fv(at.low ?? null, page.box.subarray(0, 3));
         gl.uniform1f(at.step_ ?? null, page.box[6] ?? 0);
+        gl.uniform1f(at.wall_step ?? null, page.wallStep);
         gl.bindVertexArray(page.array);
         gl.drawElements(gl.TRIANGLES, page.count, gl.UNSIGNED_SHORT, 0);
       }

@@ -53,6 +53,11 @@ export class Connection {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
+  /** Number of the batch that was sent last. */
+  get lastBatch(): number {
+    return this.batch;
+  }
+
   private open(): void {
     const state = this.socket?.readyState;
     if (this.ended || state === WebSocket.OPEN || state === WebSocket.CONNECTING) return;

@@ -20,7 +20,8 @@ export interface HandEvents {
   canSculpt(): boolean;
   fingerSculpts(): boolean;
   penSeen(): void;
-  pointerAt(event: PointerEvent | null): void;
+  /** The pen is here, over the clay or drawing on it; null: nowhere. */
+  pointerAt(event: PointerEvent | null, draws: boolean): void;
   undo(): void;
   redo(): void;
 }
@@ -108,7 +109,9 @@ export class Hand {
       this.waiting = [event];
       return;
     }
-    if (deed === "sculpt" && !this.send([event], true)) this.deeds.set(event.pointerId, "ignore");
+    if (deed !== "sculpt") return;
+    if (this.send([event], true)) this.events.pointerAt(event, true);
+    else this.deeds.set(event.pointerId, "ignore");
   }
 
   private deedOf(event: PointerEvent): Deed {
@@ -123,9 +126,16 @@ export class Hand {
 
   private move(event: PointerEvent): void {
     this.look(event);
-    this.events.pointerAt(event.pointerType === "touch" ? null : event);
     const deed = this.deeds.get(event.pointerId);
-    if (this.touches.size > 1 && this.touches.has(event.pointerId)) return this.gesture(event);
+    const isGesture = this.touches.size > 1 && this.touches.has(event.pointerId);
+    if (isGesture) this.gesture(event);
+    else this.follow(event, deed);
+    // After what is sent: an expected dab goes with its batch.
+    const draws = this.deeds.get(event.pointerId) === "sculpt" && this.waiting.length === 0 && !isGesture;
+    this.events.pointerAt(event.pointerType === "touch" && !draws ? null : event, draws);
+  }
+
+  private follow(event: PointerEvent, deed: Deed | undefined): void {
     const touch = this.touches.get(event.pointerId);
     const before = touch ?? { x: event.clientX - event.movementX, y: event.clientY - event.movementY };
     const [dx, dy] = [event.clientX - before.x, event.clientY - before.y];
@@ -188,6 +198,7 @@ export class Hand {
       if (this.waiting.length > 0) this.send(this.waiting.splice(0), true);
       this.send([event], event.pointerType !== "touch");
     }
+    this.events.pointerAt(event.pointerType === "touch" ? null : event, false);
     if (this.touches.delete(event.pointerId) && this.touches.size === 0 && !this.moved) {
       if (this.tapped === 2) this.events.undo();
       if (this.tapped === 3) this.events.redo();
@@ -195,7 +206,7 @@ export class Hand {
   }
 
   private leave(event: PointerEvent): void {
-    this.events.pointerAt(null);
+    this.events.pointerAt(null, false);
     if (!this.deeds.has(event.pointerId) && this.events.canSculpt()) this.send([event], false);
   }
 }

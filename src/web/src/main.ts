@@ -3,13 +3,16 @@
 import { circle, eye, project, slid, turned, viewHeight, viewProjection, zoomed } from "./camera";
 import { ClayPicture } from "./clay";
 import { Connection, pageTime } from "./connection";
+import { ExpectedDabs } from "./expected";
 import { Hand } from "./hand";
 import { Panel } from "./panel";
+import type { Hit } from "./pick";
 import type { Brush, Camera, OthersPen, Person, Role, ShownObject, Tell, Vec3 } from "./protocol";
 import { say, setLanguage } from "./text";
 
 const canvas = document.getElementById("clay") as HTMLCanvasElement;
 const ring = document.querySelector("#ring polygon") as SVGPolygonElement;
+const expected = new ExpectedDabs(document.getElementById("expected") as unknown as SVGElement);
 const penLayer = document.getElementById("pens") as HTMLDivElement;
 
 /** Camera of the clay's own material, linear enough for the eye. */
@@ -27,9 +30,11 @@ let objects: ShownObject[] = [];
 let dirty = true;
 let cameraAsked = false;
 let isConnected = false;
-/** Where a pen or a mouse is over the canvas, in its pixels. */
-let pointer: [number, number] | null = null;
+/** Where a pen or a mouse is over the canvas, in its pixels, and its pressure if it draws. */
+let pointer: { at: [number, number]; draws: number | null } | null = null;
 let isRingOld = false;
+let wereExpected = false;
+let isClayNew = false;
 /** Triangles of all objects. */
 let total = 0;
 let isViewNew = true;
@@ -45,6 +50,7 @@ function start(): void {
     redo: () => redo(),
     home: () => home && look(fitted(home)),
     takeHome: (format) => connection?.ask({ do: "file", format }),
+    walls: (on) => connection?.ask({ do: "walls", on }),
     name: (name) => {
       localStorage.setItem("name", name);
       connection?.ask({ do: "name", name });
@@ -68,11 +74,12 @@ function start(): void {
     tell: (message) => take(message),
     page: (message) => {
       picture.take(message);
-      dirty = true;
+      dirty = isClayNew = true;
     },
     connected: (yes) => {
       isConnected = yes;
       if (!yes) hand.lift();
+      if (!yes) expected.clear();
       if (!yes && !document.body.classList.contains("ended")) panel.state(say("lost"));
       if (yes && camera) sendCamera();
     },
@@ -88,7 +95,8 @@ function start(): void {
         extent = message.extent;
         if (!camera) {
           home = message.camera;
-          camera = role === "device" ? home : fitted(home);
+          camera = fitted(home);
+          if (role === "device") lieOver(home);
           sendCamera();
         }
         if (!message.resumed && objects.length > 0) {
@@ -98,6 +106,7 @@ function start(): void {
         if (!brush || !message.resumed) brush = message.brush;
         panel.show(role, message.brushes);
         panel.showBrush(brush);
+        if (panel.asksWalls) connection.ask({ do: "walls", on: true });
         showState();
         break;
       case "refused":
@@ -114,12 +123,16 @@ function start(): void {
       case "host":
         home = message.camera;
         // A tablet lies over the view of the screen, edge on edge.
-        if (role === "device") camera = home;
+        if (role === "device") lieOver(home);
         else if (panel.follows && camera) look(fitted(home));
         break;
       case "people":
         people = message.people;
         panel.showPeople(people, own);
+        break;
+      case "walls":
+        picture.scale = message.scale;
+        panel.showWalls(message.scale);
         break;
       case "pens":
         pens = message.pens;
@@ -128,19 +141,27 @@ function start(): void {
         brush = message.brush;
         panel.showBrush(brush);
         break;
+      // What follows is no other picture: the card is left to the clay that is on its way.
       case "file":
-        fetchFile(message.path);
-        break;
+        return fetchFile(message.path);
       case "note":
-        panel.tell(message.text);
-        break;
+        return panel.tell(message.text);
       case "complete":
         document.body.dataset.complete = String(message.bytes);
-        break;
+        return;
       case "taken":
+        expected.taken(message.batch, performance.now());
         if (role === "device") showState();
+        return;
     }
     dirty = true;
+  }
+
+  /** The view of the screen that this tablet lies over, in its proportions. */
+  function lieOver(screen: Camera): void {
+    camera = screen;
+    document.body.classList.add("device");
+    document.body.style.setProperty("--aspect", String(screen.aspect));
   }
 
   function showState(): void {
@@ -185,9 +206,12 @@ function start(): void {
     canSculpt: () => role !== "viewer" && isConnected,
     fingerSculpts: () => role === "device" || panel.fingerSculpts,
     penSeen: () => panel.penSeen(),
-    pointerAt: (event) => {
+    pointerAt: (event, draws) => {
       const box = canvas.getBoundingClientRect();
-      pointer = event && [event.clientX - box.left, event.clientY - box.top];
+      // Where the browser expects the pen to be by the time that this is shown.
+      const soon = event?.getPredictedEvents?.().at(-1) ?? event;
+      const pressure = event && draws ? (event.pointerType === "pen" ? event.pressure : 0.5) : null;
+      pointer = soon && { at: [soon.clientX - box.left, soon.clientY - box.top], draws: pressure };
       isRingOld = true;
     },
     undo,
@@ -233,8 +257,8 @@ function start(): void {
       const dot = document.createElement("span");
       const colour = people.find((p) => p.person === pen.person)?.colour ?? [255, 255, 255];
       dot.style.setProperty("--colour", `rgb(${colour.join(" ")})`);
-      dot.style.left = `${at[0] * canvas.clientWidth}px`;
-      dot.style.top = `${at[1] * canvas.clientHeight}px`;
+      dot.style.left = `${canvas.offsetLeft + at[0] * canvas.clientWidth}px`;
+      dot.style.top = `${canvas.offsetTop + at[1] * canvas.clientHeight}px`;
       dot.classList.toggle("down", pen.down);
       return [dot];
     });
@@ -244,9 +268,22 @@ function start(): void {
 
   function drawRing(camera: Camera): void {
     isRingOld = false;
-    const isShown = role === "sculptor" && isConnected;
-    const points = isShown && pointer && brush && ringPoints(picture, camera, pointer, brush);
-    ring.setAttribute("points", points || "");
+    if (role !== "sculptor" || !isConnected || !pointer || !brush) {
+      ring.setAttribute("points", "");
+      return;
+    }
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    const hit = picture.pick(camera, pointer.at[0] / width, pointer.at[1] / height);
+    ring.setAttribute("points", ringPoints(hit, picture.radius, camera, pointer.at, brush));
+    if (hit && pointer.draws !== null) {
+      expected.add(hit, brush.radius * extent, pointer.draws, brush.negative, connection.lastBatch);
+      pointer.draws = null;
+    }
+  }
+
+  function drawExpected(camera: Camera): void {
+    const view = viewProjection(camera, picture.radius);
+    expected.draw(view, canvas.clientWidth, canvas.clientHeight, performance.now());
   }
 
   function frame(): void {
@@ -256,8 +293,14 @@ function start(): void {
       isViewNew = false;
       dirty = false;
       draw();
+      if (isClayNew) expected.clayShown(performance.now());
+      isClayNew = false;
     } else if (isRingOld && camera && picture.isDrawn) {
       drawRing(camera);
+    }
+    if (camera && (expected.count > 0 || wereExpected)) {
+      wereExpected = expected.count > 0;
+      drawExpected(camera);
     }
     connection.acknowledge();
     requestAnimationFrame(frame);
@@ -283,7 +326,14 @@ function start(): void {
   fit();
   frame();
   Object.assign(window, {
-    sculptd: { figures: () => picture.figures, roundTrip: () => connection.roundTrip, camera: () => camera, connection },
+    sculptd: {
+      figures: () => picture.figures,
+      scale: () => picture.scale,
+      roundTrip: () => connection.roundTrip,
+      camera: () => camera,
+      connection,
+      expected,
+    },
   });
 }
 
@@ -297,14 +347,14 @@ function fetchFile(path: string): void {
 
 /** The brush's ring: on the clay under the pointer, or upright beside it. */
 function ringPoints(
-  picture: ClayPicture,
+  hit: Hit | null,
+  radius: number,
   camera: Camera,
   [x, y]: [number, number],
   brush: Brush,
 ): string {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  const hit = picture.pick(camera, x / width, y / height);
-  const view = viewProjection(camera, picture.radius);
+  const view = viewProjection(camera, radius);
   const around = hit && circle(hit.place, hit.normal, brush.radius * extent);
   const flat = (brush.radius * extent * height) / viewHeight(camera);
   const points = Array.from({ length: 48 }, (_, n) => {

@@ -1,6 +1,6 @@
 // The controls around the clay: brush, undo, who is here, what goes on.
 
-import type { Brush, Person, Role, Vec3, WorkFormat } from "./protocol";
+import type { Brush, Person, Role, Vec3, WallScale, WorkFormat } from "./protocol";
 import { say, type Word } from "./text";
 
 function the<T extends HTMLElement>(id: string): T {
@@ -15,6 +15,7 @@ export interface PanelEvents {
   redo(): void;
   home(): void;
   takeHome(format: WorkFormat): void;
+  walls(on: boolean): void;
   name(name: string): void;
 }
 
@@ -32,6 +33,7 @@ export class Panel {
   private readonly negative = the<HTMLButtonElement>("negative");
   private readonly mirror = the<HTMLButtonElement>("mirror");
   private readonly finger = the<HTMLButtonElement>("finger");
+  private readonly walls = the<HTMLButtonElement>("walls");
   private readonly follow = the<HTMLButtonElement>("follow");
   private readonly take = the<HTMLDetailsElement>("take");
   readonly name = the<HTMLInputElement>("name");
@@ -46,7 +48,7 @@ export class Panel {
       else element.textContent = say(word);
     };
     const words: Word[] = [
-      "kind", "radius", "strength", "colour", "negative", "mirror", "finger", "undo", "redo", "home", "follow",
+      "kind", "radius", "strength", "colour", "negative", "mirror", "finger", "undo", "redo", "home", "walls", "follow",
       "takeHome", "glb", "stl",
     ];
     for (const word of words) label(word, word);
@@ -71,6 +73,7 @@ export class Panel {
     toggle(this.negative, (on) => events.brush({ negative: on }));
     toggle(this.mirror, (on) => events.brush({ symmetry: [on, false, false] }));
     toggle(this.finger, () => {});
+    toggle(this.walls, (on) => events.walls(on));
     toggle(this.follow, () => {});
     this.name.placeholder = say("name");
     this.name.setAttribute("aria-label", say("name"));
@@ -97,6 +100,22 @@ export class Panel {
     press(this.finger, false);
   }
 
+  get asksWalls(): boolean {
+    return isPressed(this.walls);
+  }
+
+  /** The legend of the map of walls; null: no map is shown. */
+  showWalls(scale: WallScale | null): void {
+    the("legend").hidden = scale === null;
+    if (!scale) return;
+    const { low, high, measured } = scale;
+    [high, (low + high) / 2, low].forEach((value, i) => {
+      const mark = the("marks").children[i];
+      if (mark) mark.textContent = millimetres(value);
+    });
+    the("legendTitle").textContent = measured < 1 ? `${say("walls")} · ${Math.floor(measured * 100)} %` : say("walls");
+  }
+
   get follows(): boolean {
     return isPressed(this.follow);
   }
@@ -106,7 +125,7 @@ export class Panel {
   }
 
   show(role: Role, brushes: string[]): void {
-    the("tools").hidden = role !== "sculptor";
+    the("tools").hidden = this.walls.hidden = role !== "sculptor";
     this.follow.hidden = the("home").hidden = this.take.hidden = role === "device";
     if (this.kind.options.length === 0) {
       for (const name of brushes) {
@@ -160,6 +179,12 @@ export class Panel {
     this.note.textContent = text;
     this.note.hidden = false;
   }
+}
+
+/** A length with as many places as its size needs. */
+function millimetres(value: number): string {
+  const digits = Math.min(3, Math.max(0, 2 - Math.floor(Math.log10(Math.max(value, 1e-3) * 1.0001))));
+  return `${value.toLocaleString(undefined, { minimumFractionDigits: digits, maximumFractionDigits: digits })} mm`;
 }
 
 function isPressed(button: HTMLButtonElement): boolean {

@@ -74,7 +74,16 @@ export type Tell =
   | { is: "taken"; batch: number }
   | { is: "complete"; bytes: number }
   | { is: "file"; path: string }
+  | { is: "walls"; scale: WallScale | null }
   | { is: "note"; text: string };
+
+/** The scale of the map of wall thickness, millimetres. */
+export interface WallScale {
+  low: number;
+  high: number;
+  /** Share of the vertices that are measured. */
+  measured: number;
+}
 
 export type WorkFormat = "glb" | "stl";
 
@@ -83,6 +92,7 @@ export type Ask =
   | { do: "camera"; camera: Camera; at: number }
   | ({ do: "brush"; at: number } & Partial<Brush>)
   | { do: "name"; name: string }
+  | { do: "walls"; on: boolean }
   | { do: "undo"; at: number }
   | { do: "redo"; at: number };
 
@@ -103,6 +113,8 @@ export interface PageMessage {
   /** Rows of a whole page, or runs of changed rows. */
   runs: { first: number; data: Uint8Array }[];
   triangles: Uint16Array | null;
+  /** Values of a map, one a row, in steps; nothing else comes with them. */
+  values: { step: number; data: Uint8Array } | null;
 }
 
 const HEAD = 16;
@@ -128,7 +140,12 @@ export function readPage(buffer: ArrayBuffer): PageMessage {
       box: new Float32Array(buffer.slice(HEAD, HEAD + 28)),
       runs: [{ first: 0, data: new Uint8Array(buffer, at, rows * stride) }],
       triangles: new Uint16Array(buffer.slice(end, end + count * 6)),
+      values: null,
     };
+  }
+  if (view.getUint8(0) === 3) {
+    const values = { step: view.getFloat32(HEAD, true), data: new Uint8Array(buffer, HEAD + 4, rows * 2) };
+    return { ...known, box: null, runs: [], triangles: null, values };
   }
   const runs = [];
   for (let at = HEAD; at < buffer.byteLength; ) {
@@ -136,5 +153,5 @@ export function readPage(buffer: ArrayBuffer): PageMessage {
     runs.push({ first, data: new Uint8Array(buffer, at + 4, count * stride) });
     at += 4 + count * stride;
   }
-  return { ...known, box: null, runs, triangles: null };
+  return { ...known, box: null, runs, triangles: null, values: null };
 }

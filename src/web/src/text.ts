@@ -23,6 +23,7 @@ const ENGLISH = {
   host: "host",
   vertices: "vertices",
   name: "Your name",
+  walls: "Thickness",
   takeHome: "Take home",
   glb: "To look at, with colours (GLB)",
   stl: "For a 3D printer (STL)",
@@ -38,7 +39,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "Pinsel", kind: "Pinsel", radius: "Radius", strength: "Stärke", colour: "Farbe", negative: "Abtragen",
     mirror: "Spiegeln", finger: "Finger modelliert", undo: "Rückgängig", redo: "Wiederholen",
     home: "Alles zeigen", follow: "Gastgeber folgen", host: "Gastgeber", vertices: "Punkte", name: "Dein Name",
-    takeHome: "Mitnehmen", glb: "Zum Ansehen, mit Farben (GLB)", stl: "Für einen 3D-Drucker (STL)",
+    walls: "Wandstärke", takeHome: "Mitnehmen", glb: "Zum Ansehen, mit Farben (GLB)", stl: "Für einen 3D-Drucker (STL)",
   },
   fr: {
     title: "Sculpture", connecting: "Connexion…", lost: "Connexion perdue. Nouvel essai…",
@@ -47,7 +48,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "Brosse", kind: "Brosse", radius: "Rayon", strength: "Force", colour: "Couleur", negative: "Creuser",
     mirror: "Miroir", finger: "Le doigt sculpte", undo: "Annuler", redo: "Rétablir",
     home: "Tout voir", follow: "Suivre l’hôte", host: "hôte", vertices: "sommets", name: "Votre nom",
-    takeHome: "Emporter", glb: "À regarder, en couleurs (GLB)", stl: "Pour une imprimante 3D (STL)",
+    walls: "Épaisseur", takeHome: "Emporter", glb: "À regarder, en couleurs (GLB)", stl: "Pour une imprimante 3D (STL)",
   },
   es: {
     title: "Escultura", connecting: "Conectando…", lost: "Conexión perdida. Reintentando…",
@@ -56,7 +57,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "Pincel", kind: "Pincel", radius: "Radio", strength: "Fuerza", colour: "Color", negative: "Tallar",
     mirror: "Espejo", finger: "El dedo esculpe", undo: "Deshacer", redo: "Rehacer",
     home: "Ver todo", follow: "Seguir al anfitrión", host: "anfitrión", vertices: "vértices", name: "Tu nombre",
-    takeHome: "Llevar", glb: "Para ver, con colores (GLB)", stl: "Para una impresora 3D (STL)",
+    walls: "Grosor", takeHome: "Llevar", glb: "Para ver, con colores (GLB)", stl: "Para una impresora 3D (STL)",
   },
   it: {
     title: "Scultura", connecting: "Connessione…", lost: "Connessione persa. Nuovo tentativo…",
@@ -65,7 +66,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "Pennello", kind: "Pennello", radius: "Raggio", strength: "Forza", colour: "Colore", negative: "Scava",
     mirror: "Specchio", finger: "Il dito scolpisce", undo: "Annulla", redo: "Ripeti",
     home: "Mostra tutto", follow: "Segui l’ospite", host: "ospite", vertices: "vertici", name: "Il tuo nome",
-    takeHome: "Porta a casa", glb: "Da guardare, a colori (GLB)", stl: "Per una stampante 3D (STL)",
+    walls: "Spessore", takeHome: "Porta a casa", glb: "Da guardare, a colori (GLB)", stl: "Per una stampante 3D (STL)",
   },
   el: {
     title: "Γλυπτό", connecting: "Σύνδεση…", lost: "Η σύνδεση χάθηκε. Νέα προσπάθεια…",
@@ -74,7 +75,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "Πινέλο", kind: "Πινέλο", radius: "Ακτίνα", strength: "Ένταση", colour: "Χρώμα", negative: "Αφαίρεση",
     mirror: "Καθρέφτης", finger: "Το δάχτυλο πλάθει", undo: "Αναίρεση", redo: "Επανάληψη",
     home: "Προβολή όλων", follow: "Όπως ο οικοδεσπότης", host: "οικοδεσπότης", vertices: "κορυφές", name: "Το όνομά σας",
-    takeHome: "Πάρτε το", glb: "Για προβολή, με χρώματα (GLB)", stl: "Για τρισδιάστατο εκτυπωτή (STL)",
+    walls: "Πάχος", takeHome: "Πάρτε το", glb: "Για προβολή, με χρώματα (GLB)", stl: "Για τρισδιάστατο εκτυπωτή (STL)",
   },
   ja: {
     title: "彫刻", connecting: "接続中…", lost: "接続が切れました。再接続中…",
@@ -83,7 +84,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "ブラシ", kind: "ブラシ", radius: "半径", strength: "強さ", colour: "色", negative: "削る",
     mirror: "対称", finger: "指で彫る", undo: "元に戻す", redo: "やり直す",
     home: "全体表示", follow: "ホストに追従", host: "ホスト", vertices: "頂点", name: "お名前",
-    takeHome: "持ち帰る", glb: "見るため、色つき (GLB)", stl: "3Dプリンター用 (STL)",
+    walls: "厚み", takeHome: "持ち帰る", glb: "見るため、色つき (GLB)", stl: "3Dプリンター用 (STL)",
   },
   zh: {
     title: "雕塑", connecting: "正在连接…", lost: "连接已断开，正在重试…",
@@ -92,7 +93,7 @@ const OTHERS: Record<string, Partial<Record<Word, string>>> = {
     tools: "笔刷", kind: "笔刷", radius: "半径", strength: "强度", colour: "颜色", negative: "雕除",
     mirror: "镜像", finger: "手指雕刻", undo: "撤销", redo: "重做",
     home: "显示全部", follow: "跟随主机", host: "主机", vertices: "顶点", name: "您的名字",
-    takeHome: "带回家", glb: "用于观看，含颜色 (GLB)", stl: "用于3D打印 (STL)",
+    walls: "厚度", takeHome: "带回家", glb: "用于观看，含颜色 (GLB)", stl: "用于3D打印 (STL)",
   },
 };
 

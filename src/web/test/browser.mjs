@@ -1,9 +1,11 @@
-// A daemon and a Chromium, for tests: both are ended with the test.
+// A daemon and a Chromium, for tests: both are ended with the test. With SCULPTD_PAGE=dist the page
+// comes from that folder and not from the program, so that a changed page is tried without a build.
 import { spawn, execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
+import { Line } from "./line.mjs";
 
 export const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -41,6 +43,11 @@ export class Daemon {
     await until("it answers", () => {
       try { return daemon.ctl("status"); } catch { return null; }
     });
+    const folder = process.env.SCULPTD_PAGE;
+    if (folder) {
+      daemon.line = await Line.to(Number(new URL(daemon.links[0]).port), { folder });
+      daemon.links = daemon.links.map((link) => daemon.line.link(link));
+    }
     return daemon;
   }
 
@@ -51,6 +58,7 @@ export class Daemon {
 
   async stop(signal = "SIGTERM") {
     const gone = new Promise((done) => this.process.once("exit", done));
+    this.line?.close();
     this.process.kill(signal);
     await gone;
   }

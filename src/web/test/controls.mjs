@@ -66,7 +66,7 @@ try {
     if (reached.includes(now)) break;
     reached.push(now);
   }
-  const wanted = ["clay", "name", "home", "follow", "takeHome", "kind", "radius", "strength", "colour", "negative", "mirror", "undo", "redo"];
+  const wanted = ["clay", "name", "home", "walls", "follow", "takeHome", "kind", "radius", "strength", "colour", "negative", "mirror", "undo", "redo"];
   assert.deepEqual(wanted.filter((id) => !reached.includes(id)), [], `reached by Tab: ${reached}`);
 
   const at = async (id) => { for (let n = 0; n < 30 && (await focused()) !== id; n++) await key("Tab"); };

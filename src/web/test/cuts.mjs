@@ -2,58 +2,21 @@
 // stroke is one step, a cut stroke ends, nothing is doubled, and the page is back within two seconds.
 // `node test/cuts.mjs BINARY CHROMIUM`; CUTS sets how many cuts there are.
 import assert from "node:assert/strict";
-import { createServer, connect } from "node:net";
 import { join } from "node:path";
 import { Chromium, Daemon, until, wait } from "./browser.mjs";
+import { Line, diceOf } from "./line.mjs";
 
 const [binary, program] = process.argv.slice(2);
 const cuts = Number(process.env.CUTS ?? 6);
-let seed = 777;
-const dice = () => ((seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32);
-
-/** A line that delivers each piece 20 to 60 ms late, in order, and can be cut. */
-class Line {
-  static async to(port) {
-    const line = new Line();
-    line.pairs = new Set();
-    line.server = createServer({ allowHalfOpen: true }, (near) => {
-      const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true });
-      const pair = { near, far };
-      line.pairs.add(pair);
-      const pass = (from, to, change = (data) => data) => {
-        let before = Promise.resolve();
-        from.on("data", (data) => {
-          const late = wait(20 + dice() * 40);
-          before = before.then(() => late).then(() => to.writable && to.write(change(data)));
-        });
-        from.on("error", () => to.destroy());
-        from.on("end", () => { before = before.then(() => to.end()); });
-        from.on("close", () => line.pairs.delete(pair));
-      };
-      // The daemon answers to its own name only.
-      const rename = (data) => {
-        const text = data.toString("latin1");
-        if (!text.startsWith("GET ")) return data;
-        return Buffer.from(text.replaceAll(`127.0.0.1:${line.port}`, `127.0.0.1:${port}`), "latin1");
-      };
-      pass(near, far, rename);
-      pass(far, near);
-    });
-    await new Promise((done) => line.server.listen(0, "127.0.0.1", done));
-    line.port = line.server.address().port;
-    return line;
-  }
-
-  cut() { for (const { near, far } of this.pairs) { near.destroy(); far.destroy(); } }
-  close() { this.cut(); this.server.close(); }
-}
+const dice = diceOf(777);
 
 const daemon = await Daemon.start(binary, (home) => ["--session", join(home, "line.sculpt")]);
 const chromium = await Chromium.start(program);
-const link = new URL(daemon.links[0]);
-const line = await Line.to(Number(link.port));
+const late = diceOf(778);
+let slow = 0;
+const line = await Line.to(Number(new URL(daemon.links[0]).port), { late: () => slow + 20 + late() * 40 });
 try {
-  const page = await chromium.open(`http://127.0.0.1:${line.port}/${link.hash}`);
+  const page = await chromium.open(line.link(daemon.links[0]));
   await page.complete();
   const steps = () => daemon.ctl("history").places.length;
   const path = (n) => Array.from({ length: n }, (_, i) => ({
@@ -67,6 +30,39 @@ try {
     assert.equal(steps(), before + 1, "one stroke, one step");
   };
   await whole();
+
+  // The expected dab is drawn before the daemon has answered, and goes when its clay is there.
+  await page.run(`(() => {
+    const { connection, expected } = sculptd;
+    const seen = window.seen = { down: 0, batch: 0, disc: 0, taken: 0, points: "" };
+    document.getElementById("clay").addEventListener("pointerdown", () => {
+      [seen.down, seen.batch] = [performance.now(), connection.lastBatch + 1];
+    }, true);
+    new MutationObserver(() => {
+      const disc = document.querySelector("#expected polygon");
+      if (!disc || seen.disc) return;
+      [seen.disc, seen.points] = [performance.now(), disc.getAttribute("points") ?? ""];
+    }).observe(document.getElementById("expected"), { childList: true, subtree: true, attributes: true });
+    const taken = expected.taken.bind(expected);
+    expected.taken = (batch, now) => {
+      if (seen.down && !seen.taken && batch >= seen.batch) seen.taken = now;
+      taken(batch, now);
+    };
+  })()`);
+  await page.pen("mouseMoved", 480, 320, 0);
+  await wait(300);
+  slow = 400;
+  await page.pen("mousePressed", 480, 320, 0.6);
+  await until("a dab is expected", () => page.run("seen.disc > 0"));
+  await until("the daemon has answered", () => page.run("seen.taken > 0"));
+  const seen = await page.run("seen");
+  assert.ok(seen.disc < seen.taken, `drawn ${seen.disc - seen.down} ms, answered ${seen.taken - seen.down} ms after the pen`);
+  slow = 0;
+  assert.match(seen.points, /^[\d., ]+$/);
+  await page.pen("mouseReleased", 480, 320, 0);
+  await until("the clay has taken its place", () => page.run("sculptd.expected.count === 0 && !document.querySelector('#expected polygon')"));
+  console.log(`expected dab after ${(seen.disc - seen.down).toFixed(0)} ms, the daemon's answer after ${(seen.taken - seen.down).toFixed(0)} ms`);
+
   for (let n = 0; n < cuts; n++) {
     const before = steps();
     const points = path(20);

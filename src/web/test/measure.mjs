@@ -1,11 +1,12 @@
 // Figures of the page, for the guide: `node test/measure.mjs BINARY CHROMIUM [WHAT...]`, where WHAT is
 // `pixel` (a touch of the pen to the picture that shows it), `arrival` (a million vertices over a line
-// of 100 Mbit/s), `many` (the daemon's tick with twenty pages) and `memory` (five million vertices).
+// of 100 Mbit/s), `dabs` (bytes a dab), `many` (the daemon's tick with twenty pages) and `memory`
+// (five million vertices).
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { createServer, connect } from "node:net";
 import { join } from "node:path";
 import WebSocket from "ws";
 import { Chromium, Daemon, until, wait } from "./browser.mjs";
+import { Line } from "./line.mjs";
 
 const [binary, program, ...wanted] = process.argv.slice(2);
 const is = (what) => wanted.length === 0 || wanted.includes(what);
@@ -21,7 +22,13 @@ const WATCH = `(() => {
   const [draw, put] = [gl.drawElements, gl.bufferSubData];
   let [touched, changed, asked] = [0, false, false];
   window.delays = [];
-  document.getElementById("clay").addEventListener("pointerdown", (e) => { touched = e.timeStamp; changed = false; }, true);
+  window.expectations = [];
+  let expects = false;
+  new MutationObserver(() => {
+    if (expects && touched > 0) window.expectations.push(performance.now() - touched);
+    expects = false;
+  }).observe(document.getElementById("expected"), { childList: true, subtree: true, attributes: true });
+  document.getElementById("clay").addEventListener("pointerdown", (e) => { touched = e.timeStamp; changed = false; expects = true; }, true);
   gl.bufferSubData = (...all) => { changed = touched > 0; put.apply(gl, all); };
   gl.drawElements = (...all) => {
     draw.apply(gl, all);
@@ -89,43 +96,20 @@ async function pixel() {
   }
   const delays = await page.run("window.delays");
   console.log(`touch to picture, ms, ${delays.length} touches: ${told(delays)}`);
+  console.log(`touch to expected dab, ms: ${told(await page.run("window.expectations"))}`);
   await chromium.stop();
   await daemon.stop();
   daemon.remove();
 }
 
-/** A line of so many bits a second toward the page. */
-async function slowLine(port, bits) {
-  const server = createServer((near) => {
-    const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true });
-    let free = 0;
-    near.on("data", (d) => {
-      const text = d.toString("latin1");
-      far.write(text.startsWith("GET ")
-        ? Buffer.from(text.replaceAll(`127.0.0.1:${server.address().port}`, `127.0.0.1:${port}`), "latin1") : d);
-    });
-    far.on("data", (d) => {
-      const now = performance.now();
-      free = Math.max(free, now) + (d.length * 8e3) / bits;
-      far.pause();
-      setTimeout(() => { near.write(d); far.resume(); }, Math.max(0, free - now - 5));
-    });
-    far.on("end", () => setTimeout(() => near.end(), Math.max(0, free - performance.now()) + 50));
-    for (const s of [near, far]) s.on("error", () => { near.destroy(); far.destroy(); });
-    near.on("close", () => far.destroy());
-  });
-  await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  return server;
-}
-
 async function arrival() {
   const daemon = await Daemon.start(binary, withBall(1e6));
   const link = new URL(daemon.links[1]);
-  const line = await slowLine(Number(link.port), 100e6);
+  const line = await Line.to(Number(link.port), { bits: 100e6 });
   // Without a picture: what the line carries. Pages in front come first.
   const key = link.hash.slice(1);
   const begun = performance.now();
-  const socket = new WebSocket(`ws://127.0.0.1:${line.address().port}/join`, { perMessageDeflate: false });
+  const socket = new WebSocket(`ws://127.0.0.1:${line.port}/join`, { perMessageDeflate: false });
   let [bytes, pages, half] = [0, 0, 0];
   await new Promise((done) => {
     let total = Infinity;
@@ -152,7 +136,7 @@ async function arrival() {
   socket.terminate();
   const chromium = await Chromium.start(program);
   const from = performance.now();
-  const page = await chromium.open(`http://127.0.0.1:${line.address().port}/${link.hash}`, { width: 640, height: 480 });
+  const page = await chromium.open(`http://127.0.0.1:${line.port}/${link.hash}`, { width: 640, height: 480 });
   await until("half is shown", () => page.run(`(window.sculptd?.figures().triangles ?? 0) > ${1e6}`).catch(() => false));
   const first = performance.now() - from;
   await page.complete();
@@ -172,13 +156,42 @@ function reader(link, slow) {
   socket.on("message", (data, binary) => {
     counted.bytes += data.length;
     if (!binary) { if (JSON.parse(data).is === "complete") counted.complete++; return; }
-    if (slow) return;
+    last = data.readUInt32LE(4);
+  });
+  // As a page does once a frame: an answer to each message would be too many.
+  let [last, said] = [0, 0];
+  const timer = setInterval(() => {
+    if (slow || last === said || socket.readyState !== WebSocket.OPEN) return;
     const answer = Buffer.alloc(5);
     answer[0] = 2;
-    answer.writeUInt32LE(data.readUInt32LE(4), 1);
+    answer.writeUInt32LE((said = last), 1);
     socket.send(answer);
-  });
+  }, 16);
+  socket.on("close", (code) => { clearInterval(timer); counted.closed = code; });
   return counted;
+}
+
+/** Bytes that a page is sent for a dab. */
+async function dabs() {
+  for (const vertices of [160e3, 1e6]) {
+    const daemon = await Daemon.start(binary, withBall(vertices));
+    const page = reader(daemon.links[1], false);
+    await until("it is complete", () => page.complete > 0);
+    const [before, bytes] = [daemon.ctl("status"), page.bytes];
+    for (let n = 0; n < 20; n++) {
+      const points = Array.from({ length: 30 }, (_, i) =>
+        [0.5 + 0.1 * Math.cos(n + i * 0.1), 0.5 + 0.1 * Math.sin(n + i * 0.1), 0.5, i * 20]);
+      daemon.ctl("stroke", { points, space: "view" });
+    }
+    await wait(2000);
+    const after = daemon.ctl("status");
+    const [laid, moved, sent] = [after.dabs - before.dabs, after.vertices_moved - before.vertices_moved, page.bytes - bytes];
+    console.log(`${vertices / 1e3} k vertices: ${(sent / laid / 1e3).toFixed(1)} kB a dab that moves ${(moved / laid).toFixed(0)} vertices, ${laid} dabs`);
+    if (page.closed) throw new Error(`the page was sent away: ${page.closed}`);
+    page.socket.terminate();
+    await daemon.stop();
+    daemon.remove();
+  }
 }
 
 /** Strokes on a ball for ten seconds, with so many pages; the distribution of the ticks. */
@@ -194,6 +207,7 @@ async function ticks(count) {
   }
   const { tick_ms, dabs } = daemon.ctl("status");
   const bytes = pages.slice(1).reduce((sum, p) => sum + p.bytes, 0) / Math.max(1, count - 1);
+  if (pages.some((p) => p.closed)) throw new Error("a page was sent away");
   const slow = count ? `; ${(bytes / 1e6).toFixed(1)} MB a page, ${(pages[0].bytes / 1e6).toFixed(1)} MB to the slow one` : "";
   console.log(`${count} pages: ${dabs} dabs, tick ms median ${tick_ms.p50.toFixed(3)}, p99 ${tick_ms.p99.toFixed(3)}${slow}`);
   pages.forEach((p) => p.socket.terminate());
@@ -251,6 +265,7 @@ async function memory() {
 
 if (is("pixel")) await pixel();
 if (is("arrival")) await arrival();
+if (is("dabs")) await dabs();
 if (is("many")) await many();
 if (is("memory")) await memory();
 process.exit(0);

@@ -63,6 +63,7 @@ impl WindowState {
         changed |= self.follow_look();
         changed |= self.take_reports(&state, wiring);
         changed |= self.follow(&state, wiring);
+        wiring.link.show_walls(self.ui_state.look.map == Map::Thickness);
         changed |= self.follow_check(&state, wiring);
         changed |= self.follow_angles(&state);
         if now.saturating_sub(self.listed_us) > SECOND_US || self.listed_us == 0 {
