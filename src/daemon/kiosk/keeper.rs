@@ -39,6 +39,8 @@ use sculptd_geometry::job::Job;
 
 /// Looks a second.
 const RATE_HZ: f64 = 50.0;
+/// Most ticks that a turn makes up for: nobody is sent away whose touches were not looked at.
+const MOST_LATE: f64 = 5.0;
 /// Longest wait for the end of a film, microseconds.
 const FILM_ENDS_US: u64 = 200_000;
 /// Interval at which the calendar and the staff page are looked at, microseconds.
@@ -169,7 +171,7 @@ impl KioskThread {
     fn run(&mut self) {
         let cycle = Cycle::new(RATE_HZ, self.config.idle_s, self.config.countdown_s);
         let mut cycle = cycle.with_farewell(!self.config.share.is_empty());
-        let mut ticks = (self.clock.now_us(), 0u64);
+        let (mut turn_us, mut late) = (self.clock.now_us(), 0.0);
         if !self.config.gallery.as_os_str().is_empty()
             && let Err(e) = gallery::takes_files(&self.config.gallery)
         {
@@ -203,12 +205,16 @@ impl KioskThread {
             let done = self.desk.finished.swap(false, Relaxed);
             let before = cycle.view().stage;
             let act = cycle.step(touched, done);
+            let acted = act.is_some();
             self.carry_out(act, &mut cycle);
-            // A minute is a minute, whatever a turn of this loop takes.
-            ticks.1 += 1;
-            let due = (self.clock.now_us() - ticks.0) as f64 * 1e-6 * RATE_HZ;
-            while (ticks.1 as f64) < due.floor() {
-                ticks.1 += 1;
+            // A minute is a minute, though a turn of this loop takes longer than a tick. The time
+            // that a beginning or an end takes is not the visitor's.
+            let now_us = self.clock.now_us();
+            let ticks = (now_us - turn_us) as f64 * 1e-6 * RATE_HZ;
+            late = if acted { 0.0 } else { (late + ticks - 1.0).clamp(0.0, MOST_LATE) };
+            turn_us = now_us;
+            while late >= 1.0 {
+                late -= 1.0;
                 let act = cycle.step(false, false);
                 self.carry_out(act, &mut cycle);
             }
