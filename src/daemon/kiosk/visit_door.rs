@@ -3,7 +3,7 @@
 //! While nobody is here, a press begins a visit, and a visit begins with a reset that would wipe
 //! what the press has sculpted until then. So the loop keeps the samples of a visitor from the
 //! first press on, and steps them after that reset, in order. The reset takes longer on a busy
-//! machine; nothing is lost for [`LONGEST_US`] and for as many samples as there is room for.
+//! machine; nothing is lost for ten seconds and for as many samples as there is room for.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
