@@ -199,6 +199,12 @@ fn a_visitor_consents_in_any_language_and_gets_a_code() {
     at(&screen, Stage::Farewell, 1);
     h.run_steps(3);
     h.get_by_label_contains("für 30 Minuten");
+    let kept = screen.words.iter().find(|words| words.name == "Deutsch").map(|w| &w.kept);
+    let kept = kept.expect("German");
+    assert!(h.query_by_label(kept).is_none(), "nobody said that the gallery took it");
+    screen.desk.kept.store(true, Relaxed);
+    h.run_steps(3);
+    h.get_by_label(kept);
     assert!(h.query_by_label("Fertig").is_none(), "there are no tools");
     h.get_by_label("Nein, danke").click();
     h.run_steps(3);

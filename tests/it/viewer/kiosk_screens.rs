@@ -79,6 +79,7 @@ const CASES: [Case; 15] = [
         let result = VisitResult { exhibit: 0, score: score() };
         *screen.desk.result.lock().expect("a desk") = Some(result);
         screen.desk.asks_consent.store(true, Relaxed);
+        screen.desk.kept.store(true, Relaxed);
         show(screen, stage(Stage::Farewell));
     }),
     ("code", |screen, _| {
