@@ -15,7 +15,7 @@ use sculptd_devices::DeviceId;
 use sculptd_devices::catalogue::Catalogue;
 use sculptd_geometry::job::Job;
 
-/// What visitors will find.
+/// Result of a check of an installation.
 #[derive(Debug, Serialize)]
 struct CheckedInstallation {
     settings: PathBuf,

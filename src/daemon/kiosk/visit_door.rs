@@ -62,7 +62,7 @@ impl WaitingVisitor {
         !self.samples.is_empty()
     }
 
-    /// Takes the samples of visitors that have to wait out of `samples`, or puts those that need
+    /// Takes the samples of visitors that have to wait out of `samples`, or puts the ones that need
     /// not wait any more, as many as there is room for, behind the others. `begins`: a visit begins
     /// in this tick.
     pub fn step(&mut self, samples: &mut Vec<Sample>, begins: bool, now_us: u64) {

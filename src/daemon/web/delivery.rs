@@ -129,7 +129,7 @@ impl Delivery {
                     }
                     (object, page)
                 }
-                // Walls come after the clay that they lie on.
+                // Walls come after their clay.
                 None => {
                     let Some((object, page, values)) = self.next_walls() else { return false };
                     page_code::values(&values, Names { message, object: object.0, page }, out);

@@ -37,7 +37,7 @@ pub struct WallMap {
     pub scale: WallScale,
 }
 
-/// What a legend says, lengths in the world's unit.
+/// Content of a legend, lengths in the world's unit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct WallScale {
     /// The thinnest wall.
@@ -190,7 +190,7 @@ fn scale_of(values: &[f32], unit: f32, left: usize) -> WallScale {
     WallScale { low: low * unit, high: high * unit, measured }
 }
 
-/// What one browser has of the map.
+/// The part of the map that one browser has.
 #[derive(Debug, Default)]
 pub struct SentWalls {
     map: Option<Arc<WallMap>>,
@@ -218,7 +218,7 @@ impl SentWalls {
         self.waiting = (0..now.len() as u32).filter(differs).collect();
     }
 
-    /// The browser has a page anew, without its walls.
+    /// The browser received a page again, without its walls.
     pub fn forget(&mut self, object: ObjectId, page: u32) {
         if self.map.as_ref().is_some_and(|m| m.object == object)
             && let Some(sent) = self.sent.get_mut(page as usize)
