@@ -52,11 +52,11 @@ const ROUNDING: f64 = 1.0 / 6.0;
 /// pairs, so that one chance in a thousand would come up once in some hundred hovers.
 const LIKELY: f64 = 20.0;
 /// Corners within so many pixels are the same.
-const SAME: f64 = 0.5;
+const SAME: f64 = 0.6;
 /// The same where the map that was known is contradicted.
 const SAME_BETTER: f64 = 1.0;
 /// Greatest uncertainty of a corner, three standard deviations, in pixels.
-const LEFT_TO_CHANCE: f64 = 1.2;
+const LEFT_TO_CHANCE: f64 = 1.4;
 /// The same where the map that was known is contradicted: any better one is taken.
 const LEFT_TO_BETTER: f64 = 4.0;
 /// A fit whose pairs lie farther off, pixels in the mean square's root, is none of this kind.
