@@ -48,15 +48,17 @@ const OUTLIER: f64 = 4.0;
 /// The mean square of rounding to whole pixels, both axes: no fit is better.
 const ROUNDING: f64 = 1.0 / 6.0;
 /// Twice the logarithm of the likelihood by which a delay may be worse and still explain the pairs:
-/// the 99.999th percentile of χ² with one degree of freedom is 19.5. It is asked after each few
+/// the 99.9th percentile of χ² with one degree of freedom is 10.8.
+const LIKELY: f64 = 12.0;
+/// The same for a map that is certain: the 99.999th percentile is 19.5. It is asked after each few
 /// pairs, so that one chance in a thousand would come up once in some hundred hovers.
-const LIKELY: f64 = 20.0;
+const CERTAIN: f64 = 20.0;
 /// Corners within so many pixels are the same.
 const SAME: f64 = 0.6;
 /// The same where the map that was known is contradicted.
 const SAME_BETTER: f64 = 1.0;
 /// Greatest uncertainty of a corner, three standard deviations, in pixels.
-const LEFT_TO_CHANCE: f64 = 1.4;
+const LEFT_TO_CHANCE: f64 = 1.6;
 /// The same where the map that was known is contradicted: any better one is taken.
 const LEFT_TO_BETTER: f64 = 4.0;
 /// A fit whose pairs lie farther off, pixels in the mean square's root, is none of this kind.
@@ -132,13 +134,15 @@ fn fit(samples: &dyn Fn(u64) -> Vec<PlacePair>) -> Option<MapFit> {
     };
     let best = trials.iter().min_by(|a, b| a.square.total_cmp(&b.square))?;
     let corners = asked_for(&samples(0));
-    let limit = best.square.max(ROUNDING) * (LIKELY / best.count.max(1.0)).exp();
-    let likely = trials.iter().filter(|t| t.square <= limit);
-    let room = likely.map(|t| apart(&corners, &t.map, &best.map)).fold(0.0, f64::max);
+    let room = |likely: f64| {
+        let limit = best.square.max(ROUNDING) * (likely / best.count.max(1.0)).exp();
+        let likely = trials.iter().filter(|t| t.square <= limit);
+        likely.map(|t| apart(&corners, &t.map, &best.map)).fold(0.0, f64::max)
+    };
     let chance = 3.0 * best.corner;
     let fits = best.square <= FITS * FITS;
-    let alone = fits && chance <= LEFT_TO_BETTER && room <= SAME_BETTER;
-    let certain = alone && chance <= LEFT_TO_CHANCE && room <= SAME;
+    let alone = fits && chance <= LEFT_TO_BETTER && room(LIKELY) <= SAME_BETTER;
+    let certain = alone && chance <= LEFT_TO_CHANCE && room(CERTAIN) <= SAME;
     Some(MapFit { delay_us: best.delay_us, map: best.map, off: best.off, certain, alone })
 }
 
