@@ -108,7 +108,13 @@ impl Walls {
     }
 
     fn follow(&self, published: &ArcSwap<Published>, stop: &AtomicBool) {
-        let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else { return };
+        let pool = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+            Ok(pool) => pool,
+            Err(e) => {
+                locked(&self.wanted).is_running = false;
+                return tracing::error!("web: walls cannot be measured: {e}");
+            }
+        };
         let job = Job::default();
         let mut map: Option<(LiveMap, Ranks)> = None;
         let mut pages = Vec::new();
@@ -129,7 +135,13 @@ impl Walls {
                 map = made.ok().map(|made| (made, mesh.ranks()));
                 pages.clear();
             }
-            let Some((live, ranks)) = &mut map else { return };
+            // Clay without walls: the next state may have some.
+            let Some((live, ranks)) = &mut map else {
+                self.newest.store(None);
+                done = Some(now);
+                pause();
+                continue;
+            };
             let near = state.transform().inverse().point(state.camera.target);
             let left = pool.install(|| live.work(near, BATCH, &job)).unwrap_or(0);
             gather(mesh, live.values(), ranks, unit, &mut pages);
