@@ -144,7 +144,7 @@ impl Walls {
             };
             let near = state.transform().inverse().point(state.camera.target);
             let left = pool.install(|| live.work(near, BATCH, &job)).unwrap_or(0);
-            gather(mesh, live.values(), ranks, unit, &mut pages);
+            values_by_page(mesh, live.values(), ranks, unit, &mut pages);
             let scale = scale_of(live.values(), unit, left);
             let (clay, pages) = (mesh.object_id(), pages.clone());
             self.newest.store(Some(Arc::new(WallMap { object, clay, pages, scale })));
@@ -160,7 +160,13 @@ fn pause() {
 }
 
 /// The values times `unit` by page and row; a page with the same bits as before stays the same.
-fn gather(mesh: &Snapshot, all: &[f32], ranks: &Ranks, unit: f32, pages: &mut Vec<Arc<[f32]>>) {
+fn values_by_page(
+    mesh: &Snapshot,
+    all: &[f32],
+    ranks: &Ranks,
+    unit: f32,
+    pages: &mut Vec<Arc<[f32]>>,
+) {
     pages.truncate(mesh.page_count());
     let mut ids: Vec<u32> = Vec::new();
     for (i, page) in mesh.pages().enumerate() {
@@ -309,7 +315,7 @@ mod tests {
         let snapshot = clay.snapshot();
         let all: Vec<f32> = mesh.positions.iter().map(|p| p.x).collect();
         let mut pages = Vec::new();
-        gather(&snapshot, &all, &snapshot.ranks(), 2.0, &mut pages);
+        values_by_page(&snapshot, &all, &snapshot.ranks(), 2.0, &mut pages);
         for (page, values) in snapshot.pages().zip(&pages) {
             assert_eq!(values.len(), page.point_rows().len());
             for (row, value) in values.iter().enumerate() {
