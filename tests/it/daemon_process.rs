@@ -31,8 +31,13 @@ impl Daemon {
 
     /// The same, in an existing home folder.
     pub fn run_in(home: tempfile::TempDir, args: &[&str]) -> Daemon {
+        Daemon::of_command(home, &[&["run", "--headless"], args].concat())
+    }
+
+    /// Another command that sculpts, without a screen.
+    pub fn of_command(home: tempfile::TempDir, args: &[&str]) -> Daemon {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
-        command.args(["run", "--headless"]).args(args);
+        command.args(args).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
         for name in ["XDG_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_STATE_HOME", "HOME"] {
             command.env(name, home.path());
         }

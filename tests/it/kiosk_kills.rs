@@ -202,6 +202,22 @@ fn each_visit_has_a_file_of_its_own_and_the_one_that_was_interrupted_goes_on() {
     assert_eq!(left, 0, "files of visits");
 }
 
+/// A curator tries an exhibit: no session, work or line of the visit stays, and that is said.
+#[test]
+fn a_preview_keeps_nothing_of_its_visits() {
+    let home = tempfile::tempdir().expect("a folder");
+    let mut daemon = Daemon::of_command(home, &["kiosk", "preview", "pot"]);
+    until("it answers", || daemon.ctl("status", None).is_some());
+    until("it sculpts", || daemon.has_told("end with Ctrl-C"));
+    visit(&daemon);
+    assert!(daemon.ctl("status", None).expect("an answer")["undo_steps"].as_u64() >= Some(1));
+    let child = rustix::process::Pid::from_child(&daemon.child);
+    rustix::process::kill_process(child, rustix::process::Signal::TERM).expect("it runs");
+    assert!(daemon.child.wait().expect("it ends").success());
+    until("it says so", || daemon.has_told("the preview has ended; nothing was kept"));
+    assert_eq!(bytes(daemon.home.path(), ""), 0, "it kept something");
+}
+
 #[test]
 fn every_visitor_begins_with_the_brush_of_the_settings() {
     let settings = "idle_s = 2\ncountdown_s = 1\nbrush = \"inflate\"\nradius = 0.3";

@@ -79,9 +79,11 @@ impl ServedInstallation {
         self.home.join("data/sculptd/kiosk/visit.sculpt")
     }
 
-    pub fn stroke(&self, row: f64) {
+    /// Makes a stroke. Returns true once it is made; false if it was refused, or takes longer than
+    /// an answer may.
+    pub fn stroke(&self, row: f64) -> bool {
         let points = [[0.4, row, 0.8, 0.0], [0.5, row, 0.8, 60.0], [0.6, row, 0.8, 120.0]];
-        self.ask("stroke", &json!({ "points": points, "space": "view" }));
+        self.ask("stroke", &json!({ "points": points, "space": "view" })).is_some()
     }
 
     /// The hash of clay that rests.
