@@ -189,7 +189,7 @@ fn what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn() {
     ask(&bob, "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made alone");
     let alone = bob.hash().expect("a hash");
     assert_ne!(alone, both, "he goes on alone");
-    assert_eq!(ada.hash(), Some(both.clone()));
+    assert_eq!(ada.hash(), Some(both));
     assert_eq!(ask(&bob, "status", "{}").expect("status")["shared"]["state"], "sent-away");
     assert_eq!(end(&mut bob), Some(1));
     assert!(bob.has_told("was sent away: the invitation was withdrawn"));
