@@ -46,7 +46,7 @@ pub fn rpc_bytes(data: &[u8]) {
 /// Parses a settings file.
 pub fn config_bytes(data: &[u8]) {
     if let Ok(text) = std::str::from_utf8(data) {
-        let _ = sculptd_daemon::config::Resolved::of_text(text, "input", crate::presets());
+        let _ = sculptd_daemon::config::Resolved::from_text(text, "input", crate::presets());
     }
 }
 

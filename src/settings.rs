@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(keys(&DAEMON.parse().expect("it parses")), keys(&in_code));
         // Applied over the defaults of the code, the file changes nothing but the origins.
         let presets = crate::presets();
-        let laid = Resolved::of_text(DAEMON, "the file", presets).expect("it is valid");
+        let laid = Resolved::from_text(DAEMON, "the file", presets).expect("it is valid");
         assert_eq!(laid.config, Resolved::defaults(presets).config);
     }
 

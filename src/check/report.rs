@@ -199,7 +199,7 @@ fn close_up(
     let Some(position) = f.position else { return Ok(()) };
     let at = DVec3::from(position) - part.centred.centre;
     let Some(near) = part.tree().nearest(at, f64::INFINITY) else { return Ok(()) };
-    let whole = Camera::whole(&part.centred.mesh, 1.0).half_height;
+    let whole = Camera::from_corner(&part.centred.mesh, 1.0).half_height;
     let camera = Camera {
         target: at.as_vec3(),
         towards_eye: part.normals[near.triangle as usize].as_vec3().normalize_or(Vec3::Z),

@@ -72,11 +72,11 @@ fn add_neighbours(mesh: &mut Clay, from: usize, kinds: u8) {
 /// each brush; only the pass over one page is.
 trait PageKernel: Sync {
     /// [`displace`], compiled for this processor.
-    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>);
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &PageBefore<'_>);
 }
 
 /// A page before a dab.
-struct Was<'a> {
+struct PageBefore<'a> {
     old: &'a Page,
     /// The page when the open step began.
     before: &'a Page,
@@ -84,7 +84,7 @@ struct Was<'a> {
 }
 
 impl<K: Kernel> PageKernel for K {
-    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>) {
+    fn displace(&self, slot: &mut PageOutput, side: &mut PageTask, was: &PageBefore<'_>) {
         dispatch(false, Displace { slot, side, was, kernel: self });
     }
 }
@@ -132,7 +132,7 @@ impl Clay {
                 let (old, before) = (&pages[slot.index as usize], history.before(slot.index));
                 let same = |b: &&Arc<Page>| Arc::ptr_eq(&b.topology, &old.topology);
                 let before = before.filter(same).unwrap_or(old);
-                kernel.displace(slot, side, &Was { old, before, stack: stack.as_deref() });
+                kernel.displace(slot, side, &PageBefore { old, before, stack: stack.as_deref() });
             });
         }
         add_neighbours(self, selected, MOVED | PAINTED | GROUPED);
@@ -144,7 +144,7 @@ impl Clay {
             indices.clear();
             indices.extend(0..slots.len() as u32);
             workers.each(parallel, &mut indices, sides, |s, side| {
-                gather(
+                collect_halo(
                     slots,
                     slot_of,
                     *s,
@@ -157,7 +157,7 @@ impl Clay {
             let clock = now;
             workers.each(parallel, slots, sides, |slot, side| {
                 let old = &pages[slot.index as usize];
-                dispatch(false, Turn { slot, side, old, now: clock });
+                dispatch(false, TurnNormals { slot, side, old, now: clock });
             });
         }
         let turned = self.buffers.slots.len();
@@ -169,7 +169,7 @@ impl Clay {
             indices.clear();
             indices.extend(0..slots.len() as u32);
             workers.each(parallel, &mut indices, sides, |s, side| {
-                gather(
+                collect_halo(
                     slots,
                     slot_of,
                     *s,
@@ -257,7 +257,7 @@ impl Clay {
 struct Displace<'a, K> {
     slot: &'a mut PageOutput,
     side: &'a mut PageTask,
-    was: &'a Was<'a>,
+    was: &'a PageBefore<'a>,
     kernel: &'a K,
 }
 
@@ -269,25 +269,30 @@ impl<K: Kernel> WideWork for Displace<'_, K> {
     }
 }
 
-/// [`turn`], compiled for this processor.
-struct Turn<'a> {
+/// [`turn_normals`], compiled for this processor.
+struct TurnNormals<'a> {
     slot: &'a mut PageOutput,
     side: &'a mut PageTask,
     old: &'a Page,
     now: fn() -> u64,
 }
 
-impl WideWork for Turn<'_> {
+impl WideWork for TurnNormals<'_> {
     type Output = ();
     #[inline(always)]
     fn run<W: Wide>(self, w: W) {
-        turn(w, self.slot, self.side, self.old, self.now);
+        turn_normals(w, self.slot, self.side, self.old, self.now);
     }
 }
 
 /// Copies the points and lets the kernel write.
 #[inline(always)]
-fn displace<K: Kernel>(slot: &mut PageOutput, side: &mut PageTask, was: &Was<'_>, kernel: &K) {
+fn displace<K: Kernel>(
+    slot: &mut PageOutput,
+    side: &mut PageTask,
+    was: &PageBefore<'_>,
+    kernel: &K,
+) {
     let old = was.old;
     let Some(page) = Arc::get_mut(&mut slot.page) else { return };
     page.points.clear();
@@ -373,7 +378,7 @@ fn tally(slot: &mut PageOutput) {
 }
 
 /// Collects what changed at the homes of slot `s`'s halo.
-fn gather(
+fn collect_halo(
     slots: &[PageOutput],
     slot_of: &[u32],
     s: u32,

@@ -127,7 +127,7 @@ impl Levels {
         let ends = edge_ends(&coarse, job)?;
         let smooth = loop_(&coarse, 1, job)?;
         job.check()?;
-        let mut new = Level { mesh: plain(&smooth), masks: None };
+        let mut new = Level { mesh: triangle_mesh(&smooth), masks: None };
         let kept = if levels.above.is_empty() { None } else { Some(levels.above.remove(0)) };
         if let Some(kept) = &kept {
             let n = now.mesh.positions.len();
@@ -273,7 +273,7 @@ fn shape(mesh: &TriMesh) -> u64 {
         .fold(start, |h, &v| (h ^ u64::from(v)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-fn plain(mesh: &PolyMesh) -> TriMesh {
+fn triangle_mesh(mesh: &PolyMesh) -> TriMesh {
     TriMesh {
         positions: mesh.positions.iter().map(|p| p.as_vec3()).collect(),
         triangles: mesh.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),

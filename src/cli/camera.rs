@@ -151,7 +151,7 @@ struct TestAnswer {
 fn test(args: &TestArgs, json: bool) -> Outcome {
     let config = super::run::load_config(args.config.as_deref())?.devices;
     let named = args.camera.clone().unwrap_or_else(|| config.camera.clone());
-    let choice = CameraChoice::of_text(&named);
+    let choice = CameraChoice::from_text(&named);
     list(json);
     // A camera that cannot be opened is an error at once; the thread would go on trying.
     let opened = choice.open(&Clock::monotonic()).map_err(|e| failed(&e.into()))?;

@@ -132,7 +132,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     }
     if let Some(camera) = &args.camera {
         config.devices.camera.clone_from(camera);
-        let choice = CameraChoice::of_text(camera);
+        let choice = CameraChoice::from_text(camera);
         // What cannot work is said before anything is opened. A camera that is unplugged may come.
         let models = camera_hands::load_models().map_err(CameraStartError::from);
         models.map_err(|e| super::camera_errors::failed(&e))?;
@@ -161,7 +161,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
     let (is_shared, looks_on) = (args.shared.is_on(), args.shared.looks_on());
     #[cfg(not(feature = "network"))]
     let (is_shared, looks_on) = (false, false);
-    let recorded = args.camera.as_deref().map(CameraChoice::of_text);
+    let recorded = args.camera.as_deref().map(CameraChoice::from_text);
     let recorded = recorded.filter(CameraChoice::is_recorded);
     let is_played = !args.play_device.is_empty() || recorded.is_some();
     let on_the_wall_clock = window || !is_played || args.kiosk || is_shared;

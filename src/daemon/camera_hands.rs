@@ -62,7 +62,7 @@ pub fn start(
     clock: &Clock,
     sender: Sender,
 ) -> Result<CameraHandle, CameraStartError> {
-    start_choice(CameraChoice::of_text(&config.camera), config.camera_settings, clock, sender)
+    start_choice(CameraChoice::from_text(&config.camera), config.camera_settings, clock, sender)
 }
 
 /// Starts a camera.

@@ -175,7 +175,7 @@ impl Resolved {
     }
 
     /// One text over the defaults, and nothing of what the machine's files say.
-    pub fn of_text(text: &str, origin: &str, presets: &Presets) -> Result<Self, ConfigError> {
+    pub fn from_text(text: &str, origin: &str, presets: &Presets) -> Result<Self, ConfigError> {
         let mut resolver = Resolver::new(presets);
         resolver.text(text, origin)?;
         Ok(resolver.finish())
@@ -226,7 +226,7 @@ impl Resolver {
             origins: BTreeMap::new(),
             presets: presets.clone(),
         };
-        resolver.lay(Config::default().table(), "default");
+        resolver.merge(Config::default().table(), "default");
         resolver
     }
 
@@ -246,11 +246,11 @@ impl Resolver {
             alone.brush.extra = self.presets.of(alone.brush.kind).extra;
         }
         alone.check().map_err(invalid)?;
-        self.lay(table, origin);
+        self.merge(table, origin);
         Ok(())
     }
 
-    fn lay(&mut self, over: toml::Table, origin: &str) {
+    fn merge(&mut self, over: toml::Table, origin: &str) {
         for (section, value) in over {
             let toml::Value::Table(keys) = value else { continue };
             let under =
@@ -407,7 +407,7 @@ mod tests {
         for kind in BrushKind::ALL {
             let text = format!("[brush]\nkind = \"{kind}\"\n");
             let presets = Presets::default();
-            let resolved = Resolved::of_text(&text, "mine.toml", &presets).expect("valid");
+            let resolved = Resolved::from_text(&text, "mine.toml", &presets).expect("valid");
             assert_eq!(resolved.config.brush, presets.of(*kind), "{kind}");
         }
     }

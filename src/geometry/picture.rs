@@ -21,7 +21,7 @@ pub struct Camera {
 
 impl Camera {
     /// Shows the whole mesh from a corner above, whatever its proportions.
-    pub fn whole(mesh: &TriMesh, aspect: f32) -> Camera {
+    pub fn from_corner(mesh: &TriMesh, aspect: f32) -> Camera {
         Camera::from_side(mesh, Vec3::new(0.55, -0.75, 0.5), aspect)
     }
 

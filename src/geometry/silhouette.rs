@@ -108,7 +108,7 @@ impl Chain {
     }
 
     /// The whole-number coordinates of a point within the box.
-    pub fn whole(&self, p: DVec2) -> [i64; 2] {
+    pub fn grid_coordinates(&self, p: DVec2) -> [i64; 2] {
         ((p - self.centre) * self.scale).to_array().map(|x| x.round() as i64)
     }
 
@@ -333,8 +333,8 @@ pub fn outline_of(
             if other != NO_PARTNER && facing[other as usize] == side {
                 continue;
             }
-            let a = chain.whole(flat[t[k] as usize]);
-            let b = chain.whole(flat[t[(k + 1) % 3] as usize]);
+            let a = chain.grid_coordinates(flat[t[k] as usize]);
+            let b = chain.grid_coordinates(flat[t[(k + 1) % 3] as usize]);
             if side > 0 { chain.push(a, b) } else { chain.push(b, a) }
         }
     }
@@ -393,7 +393,10 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
                 .spans(s, flat, triangles)
                 .into_iter()
                 .map(|(a, b)| {
-                    (chain.whole(DVec2::new(a, lo.y))[0], chain.whole(DVec2::new(b, lo.y))[0])
+                    (
+                        chain.grid_coordinates(DVec2::new(a, lo.y))[0],
+                        chain.grid_coordinates(DVec2::new(b, lo.y))[0],
+                    )
                 })
                 .filter(|(a, b)| a < b)
                 .collect();
@@ -408,7 +411,9 @@ fn in_strips(flat: &[DVec2], triangles: &[[u32; 3]]) -> ShadowOutline {
             row
         })
         .collect();
-    let border = |s: usize| chain.whole(DVec2::new(lo.x, strips.lo + s as f64 * strips.height))[1];
+    let border = |s: usize| {
+        chain.grid_coordinates(DVec2::new(lo.x, strips.lo + s as f64 * strips.height))[1]
+    };
     let borders: Vec<i64> = (0..=STRIPS).map(border).collect();
     let mut marks: Vec<(i64, i64)> = Vec::new();
     for (s, &y) in borders.iter().enumerate() {

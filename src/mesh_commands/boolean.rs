@@ -320,7 +320,7 @@ pub fn run(args: &BooleanArgs, json: bool) -> Outcome {
         }
         out.results.push(made);
     }
-    told(args, &out, json);
+    print_answer(args, &out, json);
     Ok(())
 }
 
@@ -483,7 +483,7 @@ fn shells(mesh: &PolyMesh, args: &BooleanArgs, mut out: BooleanAnswer, json: boo
         let written = write_checked(&file, shell, None, &job)?;
         out.results.push(Made::of(&name, file, &written));
     }
-    told(args, &out, json);
+    print_answer(args, &out, json);
     Ok(())
 }
 
@@ -550,7 +550,7 @@ impl Made {
 }
 
 /// Prints the result.
-fn told(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
+fn print_answer(args: &BooleanArgs, out: &BooleanAnswer, json: bool) {
     warn(&args.out, &out.warnings);
     answer(json, out, |w| {
         for r in &out.results {

@@ -93,15 +93,16 @@ pub fn run(args: &MeasureArgs, json: bool) -> Outcome {
     )
     .map_err(|e| Fail::Usage(e.to_string()))?;
     let m = part.mesh.sizes;
-    let along =
-        |d: Vec3| projected_area(part.whole(), d, &job).map_err(|e| Fail::Input(e.to_string()));
+    let along = |d: Vec3| {
+        projected_area(part.original_mesh(), d, &job).map_err(|e| Fail::Input(e.to_string()))
+    };
     let s = checked.answer.summary;
     let mut warnings = notes;
     warnings.extend(checked.answer.warnings);
     let faults = checked.thickness.surface.faults;
     let closed = faults.boundary_edges == 0 && faults.crowded_edges == 0;
     let overlapping =
-        closed && overlaps(part.whole(), &job).map_err(|e| Fail::Input(e.to_string()))?;
+        closed && overlaps(part.original_mesh(), &job).map_err(|e| Fail::Input(e.to_string()))?;
     if overlapping {
         warnings.push(
             "shells overlap: volume, area and centroid count the common part once for each; \

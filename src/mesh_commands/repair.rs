@@ -223,7 +223,7 @@ pub fn run(args: &RepairArgs, library: &PresetLibrary, json: bool) -> Outcome {
     let scale = args.how.unit.scale();
     let (mesh, mut warnings) = welded(&args.part, &job)?;
     let solid = solid_of(&mesh, &job)?;
-    let made = made(args, &solid, &settings, scale, &job)?;
+    let made = repaired(args, &solid, &settings, scale, &job)?;
     if made.files.iter().any(|f| f.0 == args.part) {
         let file = args.part.display();
         return Err(Fail::Usage(format!("{file} would replace the part itself")));
@@ -309,7 +309,7 @@ fn reshaped(
 
 /// Plans and carries out the repair. Lengths of the arguments are millimetres, those of the mesh
 /// its file's unit.
-fn made(
+fn repaired(
     args: &RepairArgs,
     solid: &PolyMesh,
     settings: &CheckSettings,

@@ -152,14 +152,14 @@ fn two_hands_hold_and_zoom_at_every_frame_rate() {
 fn sweeps(reach: [ReachBox; 2], pose: Pose, shape: Shape) -> (f32, [f32; 2]) {
     let script = HandScript { performers: vec![performance(false, shape)] };
     let mut tools = HandTools::new(HandSettings { reach: reach[0], ..HandSettings::default() });
-    tools.lay(Vec3::ZERO, 1.0, 0.0);
+    tools.place_volume(Vec3::ZERO, 1.0, 0.0);
     let (mut longest, mut radii, mut changed) = (0.0f32, [f32::MAX, 0.0f32], false);
     for (t, hands) in frames(&script, 120.0, Jitter { rest_mm: 0.0, moving_mm: 0.0, ..tracker(0) })
     {
         tools.take(DeviceId(0), t, &hands);
         if !changed && t > 1_600_000 {
             (tools.settings.reach, changed) = (reach[1], true);
-            tools.lay(Vec3::ZERO, 1.0, 0.0);
+            tools.place_volume(Vec3::ZERO, 1.0, 0.0);
         }
         while let Some(act) = tools.next_act() {
             let (of, from, to, radius) = match act {

@@ -40,7 +40,7 @@ pub enum CameraChoice {
 
 impl CameraChoice {
     /// Reads the value of `--camera`: a number, a device node, or a file.
-    pub fn of_text(text: &str) -> Self {
+    pub fn from_text(text: &str) -> Self {
         let is_device = text.is_empty() || text.parse::<u32>().is_ok() || text.starts_with("/dev/");
         if is_device {
             CameraChoice::Device(if text.is_empty() { "0".into() } else { text.into() })

@@ -63,7 +63,7 @@ impl PalmDetector {
 
     /// Returns the palms of a picture, the surest first.
     pub fn detect(&mut self, picture: &Picture) -> Vec<Palm> {
-        let crop = Crop::whole(picture);
+        let crop = Crop::around(picture);
         crop.sample(picture, Border::Black, SIDE, self.network.input_mut());
         self.network.run();
         let (numbers, scores) = (self.network.output(0), self.network.output(1));

@@ -117,7 +117,7 @@ impl Picture {
 
 impl Crop {
     /// The square around a whole picture.
-    pub fn whole(picture: &Picture) -> Self {
+    pub fn around(picture: &Picture) -> Self {
         let size = picture.size();
         Crop { centre: size * 0.5, side: size.max_element(), angle: 0.0 }
     }

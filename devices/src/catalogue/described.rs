@@ -79,7 +79,7 @@ pub(super) fn described(
         buttons: pen.barrel.iter().flatten().count() as u8,
         max_distance: scale.max_distance,
     };
-    let mut found = made(who, d, area, pen, family, &note);
+    let mut found = described_tablet(who, d, area, pen, family, &note);
     found.stated_pressure = stated_pressure;
     if let Some(known) = known {
         let tablet = Arc::make_mut(&mut found.tablet);
@@ -138,7 +138,7 @@ fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
     };
     let pen = PenFacts { max_pressure: params.max_pressure, buttons: 2, max_distance: 0 };
     let family = if who.vid == 0x256c { Family::Huion } else { Family::UcLogic };
-    let mut found = made(who, d, area, pen, family, "by its parameter string");
+    let mut found = described_tablet(who, d, area, pen, family, "by its parameter string");
     found.described = false;
     found.stated_pressure = Some(params.max_pressure);
     // Reading these strings switches the tablet to its vendor protocol.
@@ -148,7 +148,7 @@ fn by_params(who: &Identity, d: &Descriptor, params: Params) -> Found {
     found
 }
 
-fn made(
+fn described_tablet(
     who: &Identity,
     d: &Descriptor,
     area: Area,

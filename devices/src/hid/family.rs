@@ -147,7 +147,7 @@ impl Engine {
             Family::Kye => vendor(vendors::kye, false),
             Family::KyePlain => vendor(vendors::kye_plain, true),
             Family::TenMoons => vendor(vendors::ten_moons, false),
-            Family::Plain => vendor(vendors::plain, false),
+            Family::Plain => vendor(vendors::plain_layout, false),
             Family::Xenx => vendor(vendors::xenx, true),
             Family::RobotPen => vendor(vendors::robot_pen, true),
             Family::WoodPad => vendor(vendors::wood_pad, true),

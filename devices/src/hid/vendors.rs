@@ -106,7 +106,7 @@ pub fn ten_moons(b: &[u8]) -> Parsed {
 
 /// The plain layout: flags at 1, axes at 2 and 4, pressure at 6. No report says that the pen
 /// leaves.
-pub fn plain(b: &[u8]) -> Parsed {
+pub fn plain_layout(b: &[u8]) -> Parsed {
     if b.len() < 8 {
         return Parsed::Broken;
     }
@@ -200,7 +200,7 @@ pub fn kye_plain(b: &[u8]) -> Parsed {
     if byte(b, 0) != 0x10 {
         return Parsed::Nothing;
     }
-    match plain(b) {
+    match plain_layout(b) {
         Parsed::Pen(_) if b[1] & 0x80 == 0 => Parsed::Away,
         Parsed::Pen(pen) => Parsed::Pen(PenReport { tip: Some(b[1] & 1 != 0), ..pen }),
         other => other,
@@ -249,7 +249,8 @@ mod tests {
                 if let Some(b0) = b.first_mut() {
                     *b0 = first;
                 }
-                let all = [plain, kye, acepen, xenx, robot_pen, wood_pad, ten_moons, kye_plain];
+                let all =
+                    [plain_layout, kye, acepen, xenx, robot_pen, wood_pad, ten_moons, kye_plain];
                 for f in all.into_iter().chain([signature as fn(&[u8]) -> Parsed]) {
                     f(&b);
                 }

@@ -86,7 +86,7 @@ impl<T: Clone> Line<T> {
     }
 
     /// Puts a packet on the line.
-    pub fn pass(&mut self, packet: T, mut out: impl FnMut(Event<T>)) {
+    pub fn transmit(&mut self, packet: T, mut out: impl FnMut(Event<T>)) {
         let f = self.faults;
         // Each fault draws a random number whether or not an earlier fault happened, so that one
         // ratio does not change the outcome of another.
@@ -129,7 +129,7 @@ mod tests {
     fn a_good_line_changes_nothing_and_a_bad_one_repeats_by_its_seed() {
         let run = |faults| {
             let (mut line, mut events) = (Line::new(faults), Vec::new());
-            (0..2000).for_each(|i| line.pass(i, |e| events.push(e)));
+            (0..2000).for_each(|i| line.transmit(i, |e| events.push(e)));
             events
         };
         assert_eq!(run(Faults::default()), (0..2000).map(Event::Whole).collect::<Vec<_>>());

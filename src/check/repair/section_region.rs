@@ -58,7 +58,7 @@ impl SectionRegion {
         Square { centre, half, clearance: self.clearance(centre) }
     }
 
-    fn whole(&self) -> Option<Square> {
+    fn bounding_square(&self) -> Option<Square> {
         let all = || self.lines.iter().flatten();
         let lo = all().fold(DVec2::INFINITY, |m, p| m.min(*p));
         let hi = all().fold(DVec2::NEG_INFINITY, |m, p| m.max(*p));
@@ -75,7 +75,7 @@ impl SectionRegion {
     /// Places that are at least `need` from the boundary, evenly spread, in a fixed order.
     pub fn places(&self, need: f64) -> Vec<DVec2> {
         let mut out = Vec::new();
-        let Some(whole) = self.whole() else { return out };
+        let Some(whole) = self.bounding_square() else { return out };
         let finest = (need * 0.25).max(whole.half / FINEST);
         let mut todo = vec![whole];
         while let Some(square) = todo.pop() {
@@ -94,7 +94,7 @@ impl SectionRegion {
     /// The place that is furthest from the boundary, and that distance, within a thousandth of the
     /// region's size.
     pub fn widest(&self) -> Option<(DVec2, f64)> {
-        let whole = self.whole()?;
+        let whole = self.bounding_square()?;
         let enough = whole.half * 1e-3;
         let mut best = whole;
         let mut level = vec![whole];

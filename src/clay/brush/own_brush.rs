@@ -105,10 +105,12 @@ pub fn preset_number(name: &str) -> u32 {
 }
 
 /// Lays `over` upon `under`, tables within tables too.
-fn lay(under: &mut toml::Table, over: toml::Table) {
+fn merge_tables(under: &mut toml::Table, over: toml::Table) {
     for (key, value) in over {
         match (under.get_mut(&key), value) {
-            (Some(toml::Value::Table(under)), toml::Value::Table(over)) => lay(under, over),
+            (Some(toml::Value::Table(under)), toml::Value::Table(over)) => {
+                merge_tables(under, over)
+            }
             (_, value) => drop(under.insert(key, value)),
         }
     }
@@ -169,7 +171,7 @@ impl OwnBrush {
         }
         let base = BrushSettings { preset: preset_number(name), ..preset(file.kind) };
         let mut table = table_of(&base).map_err(|e| wrong(1, e))?;
-        lay(&mut table, named);
+        merge_tables(&mut table, named);
         let mut settings: BrushSettings = table.try_into().map_err(parse)?;
         settings.extra = base.extra;
         for (key, value) in &file.extra {

@@ -42,13 +42,13 @@ impl Tool<'_> {
         let dabs = &dabs[..dabs.len().min(IMAGES)];
         for pass in 0..B::PASSES {
             if pass == 0 {
-                self.pass::<B>(dabs);
+                self.apply_pass::<B>(dabs);
                 continue;
             }
             let mut again = [dabs[0]; IMAGES];
             again[..dabs.len()].copy_from_slice(dabs);
             again.iter_mut().for_each(|d| d.pass = pass);
-            self.pass::<B>(&again[..dabs.len()]);
+            self.apply_pass::<B>(&again[..dabs.len()]);
         }
     }
 
@@ -64,10 +64,10 @@ impl Tool<'_> {
             let strength = dab.settings.auto_smooth;
             *even = Dab { centre: dab.touch, found: false, sign: 1.0, strength, ..*dab };
         }
-        self.pass::<SmoothBrush>(&even[..dabs.len()]);
+        self.apply_pass::<SmoothBrush>(&even[..dabs.len()]);
     }
 
-    fn pass<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
+    fn apply_pass<B: Brush>(&mut self, dabs: &[Dab<'_>]) {
         let Some(first) = dabs.first() else { return };
         let stamped = first.settings.stamp.by != StampBy::Off;
         let plain = !first.settings.auto.is_on() && !stamped && first.settings.saturation == 0.0;

@@ -33,7 +33,7 @@ pub(super) fn thickness(host: &Host, params: &ThicknessParams) -> Result<Thickne
     let place = host.jobs.begin();
     let job = &*place.job;
     let part = ReadyPart::new(&whole, scale, None, settings.crease, job).map_err(failed)?;
-    let vertices = part.whole().positions.len() as u64;
+    let vertices = part.original_mesh().positions.len() as u64;
     let found = part.judge("", &settings, limits, job, || 0.0).map_err(failed)?;
     let (answer, values) = (found.answer, &found.thickness.values);
     let valid = values.iter().take(vertices as usize).filter(|v| v.is_finite()).count() as u64;

@@ -60,7 +60,7 @@ fn shape(asked: AskedShape) -> PrimitiveShape {
     }
 }
 
-fn told_shape(shape: PrimitiveShape) -> AskedShape {
+fn shape_reply(shape: PrimitiveShape) -> AskedShape {
     match shape {
         PrimitiveShape::Box(n) => AskedShape::Box(n),
         PrimitiveShape::Ball(n) => AskedShape::Ball(n),
@@ -72,7 +72,7 @@ fn told_shape(shape: PrimitiveShape) -> AskedShape {
     }
 }
 
-fn told_operation(operation: boolean::Operation) -> AskedOperation {
+fn operation_reply(operation: boolean::Operation) -> AskedOperation {
     match operation {
         boolean::Operation::Union => AskedOperation::Union,
         boolean::Operation::Intersection => AskedOperation::Intersection,
@@ -98,13 +98,13 @@ pub(super) fn list(shown: &Published) -> SceneReply {
                 .settings
                 .primitive
                 .filter(|_| clay.revision() == 0)
-                .map(|p| told_shape(p.shape)),
+                .map(|p| shape_reply(p.shape)),
             vertices: clay.vertex_count() as u64,
             triangles: clay.triangle_count() as u64,
             bounds: [lo.to_array(), hi.to_array()],
             group: Some(o.settings.group.clone()).filter(|g| !g.is_empty()),
             follows: o.live(clay).map(|live| FollowedBoolean {
-                operation: told_operation(live.operation),
+                operation: operation_reply(live.operation),
                 a: live.operands[0].id.0,
                 b: live.operands[1].id.0,
             }),

@@ -21,7 +21,7 @@ pub(super) fn check(config: &DevicesConfig) -> Check {
     if let Err(e) = camera_hands::load_models() {
         return Check::fail(NAME, e.to_string(), SETUP_COMMAND);
     }
-    match CameraChoice::of_text(&config.camera).open(&Clock::monotonic()) {
+    match CameraChoice::from_text(&config.camera).open(&Clock::monotonic()) {
         Ok(camera) => Check::pass(NAME, camera.describe()),
         Err(e) => {
             let repair = match &e {

@@ -124,7 +124,7 @@ impl Exporter {
         let body = otlp::metrics(&options.resource, &all_metrics(watched), &latency, times);
         let (mut each, of) = (patience, &mut last);
         let sent = self.poster.post(METRICS, body, of.as_mut().unwrap_or(&mut each));
-        if self.told(METRICS, sent) {
+        if self.report(METRICS, sent) {
             return;
         }
         loop {
@@ -140,14 +140,14 @@ impl Exporter {
             if done {
                 self.options.logs.remove(&records);
             }
-            if self.told(LOGS, sent) {
+            if self.report(LOGS, sent) {
                 return;
             }
         }
     }
 
-    /// Tells of a failure, or of its end, once. Whether it failed.
-    fn told(&mut self, path: &str, result: Result<(), PostError>) -> bool {
+    /// Logs a failure, or its end, once. Returns true if it failed.
+    fn report(&mut self, path: &str, result: Result<(), PostError>) -> bool {
         let (to, failed) = (self.options.endpoint.shown() + path, result.is_err());
         let failing = std::mem::replace(&mut self.failing[usize::from(path == LOGS)], failed);
         match result {

@@ -307,7 +307,7 @@ impl ObjectPages {
                 return if none { WrittenPage::Nothing } else { WrittenPage::Rows };
             }
         }
-        *slot = Some(page_code::whole(now, names, out));
+        *slot = Some(page_code::write_page(now, names, out));
         WrittenPage::Whole
     }
 

@@ -59,7 +59,7 @@ pub struct SentPage {
 }
 
 /// Appends a whole page to `out`.
-pub fn whole(page: &Arc<Page>, names: Names, out: &mut Vec<u8>) -> SentPage {
+pub fn write_page(page: &Arc<Page>, names: Names, out: &mut Vec<u8>) -> SentPage {
     let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     let all = page.point_rows().iter().map(|r| r.truncate());
     let (low, high) = all.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
@@ -226,7 +226,7 @@ mod tests {
         let snapshot = clay.snapshot();
         let mut bytes = Vec::new();
         let page = snapshot.page(0);
-        whole(page, NAMES, &mut bytes);
+        write_page(page, NAMES, &mut bytes);
         let rows = page.point_rows().len();
         assert_eq!((bytes[0], bytes[1], usize::from(u16_at(&bytes, 2))), (WHOLE, 0, rows));
         let (step, none) = (f32_at(&bytes, HEAD + 24), (Vec3::INFINITY, Vec3::NEG_INFINITY));
@@ -258,7 +258,7 @@ mod tests {
         let mut places = std::collections::BTreeMap::new();
         for page in snapshot.pages() {
             let mut bytes = Vec::new();
-            whole(page, NAMES, &mut bytes);
+            write_page(page, NAMES, &mut bytes);
             let step = f32_at(&bytes, HEAD + 24);
             for row in 0..page.point_rows().len() {
                 let axis = |i: usize| {
@@ -289,7 +289,7 @@ mod tests {
         let mut clay = Clay::build(&shapes::icosphere(1.0, 32), &Job::default()).expect("clay");
         let before = clay.snapshot().page(0).clone();
         let mut bytes = Vec::new();
-        let mut sent = whole(&before, NAMES, &mut bytes);
+        let mut sent = write_page(&before, NAMES, &mut bytes);
         let full = bytes.len();
         bytes.clear();
         assert!(changed(&mut sent, &before, NAMES, &mut bytes));

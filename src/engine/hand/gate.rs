@@ -110,7 +110,7 @@ impl HandGate {
 
     /// Returns the hands of a frame that can be true, each under the id that it keeps. Allocates
     /// only when more hands are known than ever before.
-    pub fn pass(&mut self, t_us: u64, hands: &Hands) -> Hands {
+    pub fn filter(&mut self, t_us: u64, hands: &Hands) -> Hands {
         self.known.retain(|k| t_us.saturating_sub(k.t_us) <= FORGOTTEN_US);
         let seen = hands.as_slice();
         let of_known = self.associate(t_us, seen);
@@ -346,7 +346,7 @@ mod tests {
     }
 
     fn passed(gate: &mut HandGate, i: u64, all: &[Hand]) -> Vec<(i32, Vec3)> {
-        let out = gate.pass(i * FRAME_US, &frame(all));
+        let out = gate.filter(i * FRAME_US, &frame(all));
         out.as_slice().iter().map(|h| (h.id, h.palm)).collect()
     }
 
@@ -418,7 +418,7 @@ mod tests {
                 let t = i as f32 / rate;
                 let x = if t < 0.06 { 10_833.0 * t * t } else { 1300.0 * t - 39.0 };
                 let all = frame(&[hand(5, false, Vec3::new(x.min(700.0), 200.0, 0.0))]);
-                n += gate.pass((t * 1e6) as u64, &all).count;
+                n += gate.filter((t * 1e6) as u64, &all).count;
             }
             assert!(n >= 98, "{n} of 100 frames at {rate} Hz");
         }
@@ -448,7 +448,7 @@ mod tests {
                 }
                 bad.orientation = Some(Quat::from_rotation_z(2.0));
             }
-            let out = gate.pass(i * FRAME_US, &frame(&[bad]));
+            let out = gate.filter(i * FRAME_US, &frame(&[bad]));
             let got = out.as_slice()[0];
             let off = got.fingers[1].unwrap().tip.distance(good.fingers[1].unwrap().tip);
             assert!(off < 0.01, "the tip is {off} mm off at {i}");

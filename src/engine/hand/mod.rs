@@ -144,7 +144,7 @@ impl HandTools {
 
     /// Remaps the tracked volume onto a work. Touches and grips restart from the new positions: the
     /// jump between the two mappings is not a movement.
-    pub fn lay(&mut self, middle: Vec3, extent: f32, yaw: f32) {
+    pub fn place_volume(&mut self, middle: Vec3, extent: f32, yaw: f32) {
         self.volume = Volume::over(middle, extent, yaw, &self.settings.reach);
         self.yaw = yaw;
         self.pair = None;
@@ -195,7 +195,7 @@ impl HandTools {
             self.gates.push((device, gate));
             self.gates.len() - 1
         });
-        self.gates[at].1.pass(t_us, hands)
+        self.gates[at].1.filter(t_us, hands)
     }
 
     /// A frame with the tremble taken out of it.

@@ -121,7 +121,7 @@ impl CurveStroke {
     }
 
     /// Handles on what was drawn freely: a few, or one where the pen hardly moved.
-    pub fn lay(&mut self, drawn: &Curve, aspect: f32) {
+    pub fn fit_handles(&mut self, drawn: &Curve, aspect: f32) {
         self.clear();
         let (start, end) = (drawn.point(0.0), drawn.point(1.0));
         let way: f32 = (1..=8)
@@ -272,7 +272,7 @@ mod tests {
         }
         drawn.end(ASPECT);
         let mut draft = CurveStroke::default();
-        draft.lay(&drawn, ASPECT);
+        draft.fit_handles(&drawn, ASPECT);
         assert_eq!(draft.points().len(), FREE);
         for k in 0..=draft.pieces() {
             let p = draft.at(k, ASPECT).view;
@@ -282,7 +282,7 @@ mod tests {
         drawn.begin(&at(0.3, 0.3));
         drawn.take(&at(0.301, 0.3));
         drawn.end(ASPECT);
-        draft.lay(&drawn, ASPECT);
+        draft.fit_handles(&drawn, ASPECT);
         assert_eq!(draft.points().len(), 1);
     }
 }

@@ -255,9 +255,9 @@ impl Spacer {
         let mut bridged = -1.0;
         while t < 1.0 {
             let flow = match self.next(&way, t, on) {
-                Step::Dab(sight) => self.lay(&way, &mut t, &sight, 1.0, on),
+                Step::Dab(sight) => self.place_dabs(&way, &mut t, &sight, 1.0, on),
                 Step::Leap(brink, _) if brink.off > ON_BRINK => {
-                    self.lay(&way, &mut t, &brink, brink.off, on)
+                    self.place_dabs(&way, &mut t, &brink, brink.off, on)
                 }
                 Step::Leap(_, beyond) if beyond.at <= bridged => {
                     // The dabs laid to get there tore the surface away.
@@ -282,7 +282,7 @@ impl Spacer {
         1.0
     }
 
-    fn lay(
+    fn place_dabs(
         &mut self,
         way: &Segment<'_>,
         t: &mut f32,

@@ -303,7 +303,7 @@ impl PenTrack {
             PenEvent::Up if self.laying != Laying::No => {
                 if self.laying == Laying::Free {
                     self.curve.end(aspect);
-                    self.draft.lay(&self.curve, aspect);
+                    self.draft.fit_handles(&self.curve, aspect);
                 }
                 self.draft.release();
                 self.laying = Laying::No;

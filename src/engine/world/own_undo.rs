@@ -101,7 +101,7 @@ impl World {
     }
 
     /// Records the result of an undo or a redo. Returns false if it changed nothing.
-    pub(super) fn told_of_undo(&mut self, way: OwnStep, redo: bool) -> bool {
+    pub(super) fn record_undo(&mut self, way: OwnStep, redo: bool) -> bool {
         if let OwnStep::InTheWay(by) = way {
             let tick = self.tick;
             self.people.refuse(UndoRefusal { tick, redo, by });

@@ -365,7 +365,7 @@ impl World {
             None => self.timeline.undo(&mut self.scene),
             Some(person) => {
                 let way = self.timeline.undo_own(person, &mut self.scene);
-                self.told_of_undo(way, false)
+                self.record_undo(way, false)
             }
         };
         self.stand(before);
@@ -380,7 +380,7 @@ impl World {
             None => self.timeline.redo(&mut self.scene),
             Some(person) => {
                 let way = self.timeline.redo_own(person, &mut self.scene);
-                self.told_of_undo(way, true)
+                self.record_undo(way, true)
             }
         };
         self.stand(before);
@@ -403,7 +403,7 @@ impl World {
     /// Lays the tracked volume over the active object.
     pub(super) fn lay_hands(&mut self) {
         let (middle, extent) = self.stance();
-        self.hands.lay(middle, extent, self.camera.yaw);
+        self.hands.place_volume(middle, extent, self.camera.yaw);
     }
 
     pub(super) fn set_reach(&mut self, reach: ReachBox) -> CommandResult {

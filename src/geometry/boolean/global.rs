@@ -129,7 +129,7 @@ impl GlobalEngine {
         let made = aside(job, move |_, job| {
             let ids = [Manifold::reserve_ids(1), Manifold::reserve_ids(1)];
             let one = |s: usize| {
-                let given = plain(&meshes[s], ids[s], job).map_err(|e| e.to_string())?;
+                let given = solver_mesh(&meshes[s], ids[s], job).map_err(|e| e.to_string())?;
                 sound(match engine {
                     Engine::Perturbed => Manifold::from_mesh_gl64(&given),
                     Engine::Rational => Manifold::from_mesh_gl64_robust(&unwelded(given)),
@@ -209,7 +209,7 @@ fn points(gl: &MeshGL64) -> Vec<DVec3> {
 }
 
 /// As the crate takes it: manifold triangles, each with its face's number.
-fn plain(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
+fn solver_mesh(mesh: &PolyMesh, id: u32, job: &Job) -> Result<MeshGL64, Cancelled> {
     let mut own = PolyMesh {
         face_starts: mesh.face_starts.clone(),
         corners: mesh.corners.clone(),
@@ -246,7 +246,7 @@ pub fn solve(
     let mesh = mesh.clone();
     aside(job, move |token, job| {
         let said = |e: Cancelled| e.to_string();
-        let mut given = plain(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
+        let mut given = solver_mesh(&mesh, Manifold::reserve_ids(1), job).map_err(said)?;
         if engine == Engine::Rational {
             given = unwelded(given);
         }

@@ -169,10 +169,10 @@ fn obj(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
         let first = mesh.face_starts[f] as usize;
         for (k, &c) in corners.iter().enumerate() {
             line.push(b' ');
-            whole(&mut line, c as u64 + 1);
+            write_integer(&mut line, c as u64 + 1);
             if let Some(uv) = uvs.map(|(_, of)| of[first + k]).filter(|uv| *uv != NO_UV) {
                 line.push(b'/');
-                whole(&mut line, u64::from(uv) + 1);
+                write_integer(&mut line, u64::from(uv) + 1);
             }
         }
         line.push(b'\n');
@@ -204,7 +204,7 @@ fn group_lines(
     Ok(())
 }
 
-fn whole(line: &mut Vec<u8>, mut n: u64) {
+fn write_integer(line: &mut Vec<u8>, mut n: u64) {
     let mut digits = [0u8; 20];
     let mut at = digits.len();
     loop {
@@ -319,10 +319,10 @@ fn off(mesh: &PolyMesh, out: &mut dyn Write) -> io::Result<()> {
     }
     for corners in mesh.faces() {
         line.clear();
-        whole(&mut line, corners.len() as u64);
+        write_integer(&mut line, corners.len() as u64);
         for &c in corners {
             line.push(b' ');
-            whole(&mut line, c as u64);
+            write_integer(&mut line, c as u64);
         }
         line.push(b'\n');
         out.write_all(&line)?;

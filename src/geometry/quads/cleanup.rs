@@ -19,7 +19,7 @@ fn excess(s: &QuadSurface, v: u32, faces: usize) -> i64 {
 }
 
 /// Runs one pass of every operation; returns the number of operations.
-pub(super) fn pass(s: &mut QuadSurface, job: &Job) -> Result<usize, Cancelled> {
+pub(super) fn run_pass(s: &mut QuadSurface, job: &Job) -> Result<usize, Cancelled> {
     let mut done = 0;
     for v in 0..s.positions.len() as u32 {
         done += usize::from(s.remove_doublet(v));

@@ -169,7 +169,7 @@ fn at_step(
     let partner = pairing::pair(&coarse, job)?;
     let mut quads = QuadSurface::new(&coarse, pairing::faces(&coarse, &partner));
     for _ in 0..4 {
-        cleanup::pass(&mut quads, job)?;
+        cleanup::run_pass(&mut quads, job)?;
         smooth::smooth(&mut quads, target, step, 6, job)?;
     }
     for _ in 0..12 {

@@ -69,7 +69,7 @@ impl BoxGroup {
         RoundedBox { lo: self.lo.map(|l| l[lane]), hi: self.hi.map(|h| h[lane]) }
     }
 
-    fn whole(&self) -> RoundedBox {
+    fn joined_box(&self) -> RoundedBox {
         (0..8).fold(RoundedBox::EMPTY, |b, lane| b.join(self.lane(lane)))
     }
 
@@ -131,7 +131,8 @@ impl BoxGroups {
             keys.par_chunks(8).map(|c| BoxGroup::of(c.iter().map(|k| boxes[k.1 as usize].0)));
         let mut levels: Vec<Vec<BoxGroup>> = vec![first.collect()];
         while let Some(below) = levels.last().filter(|l| l.len() > 1) {
-            let above = below.par_chunks(8).map(|c| BoxGroup::of(c.iter().map(BoxGroup::whole)));
+            let above =
+                below.par_chunks(8).map(|c| BoxGroup::of(c.iter().map(BoxGroup::joined_box)));
             let above = above.collect();
             levels.push(above);
         }
@@ -160,11 +161,11 @@ impl BoxGroups {
                         let later = group.meets(&group.lane(lane)) & (!1u32 << lane);
                         each_bit(later, |other| f(&mut state, t, self.order[own * 8 + other]));
                     }
-                    let whole = group.whole();
+                    let whole = group.joined_box();
                     self.descend(&whole, own + 1, &mut stack, |other| {
                         let theirs = &groups[other];
                         // Only boxes of the first eight that reach the box around the other eight.
-                        let near = group.meets(&theirs.whole());
+                        let near = group.meets(&theirs.joined_box());
                         for (lane, &t) in lanes.clone().filter(|l| near >> l.0 & 1 == 1) {
                             let met = theirs.meets(&group.lane(lane));
                             each_bit(met, |u| f(&mut state, t, self.order[other * 8 + u]));

@@ -120,10 +120,10 @@ pub fn about_each(hexes: &Hexes, points: &[Vec4], who: &[u16], out: &mut [Vec4])
         unsafe { wide::about_each(hexes, points, who, out) };
         return;
     }
-    plain(hexes, points, who, out);
+    one_by_one(hexes, points, who, out);
 }
 
-fn plain(hexes: &Hexes, points: &[Vec4], who: &[u16], out: &mut [Vec4]) {
+fn one_by_one(hexes: &Hexes, points: &[Vec4], who: &[u16], out: &mut [Vec4]) {
     for (out, &v) in out.iter_mut().zip(who) {
         *out = about(hexes, points, v as usize).unwrap_or(Vec4::ZERO);
     }
@@ -267,7 +267,7 @@ mod tests {
         let who: Vec<u16> = (0..67).filter(|v| v % 5 != 1).collect();
         let (mut wide, mut one) = (vec![Vec4::ZERO; who.len()], vec![Vec4::ONE; who.len()]);
         about_each(&hexes, &points, &who, &mut wide);
-        plain(&hexes, &points, &who, &mut one);
+        one_by_one(&hexes, &points, &who, &mut one);
         let bits =
             |v: &[Vec4]| v.iter().map(|v| v.to_array().map(f32::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&wide), bits(&one));

@@ -186,7 +186,7 @@ fn spots(out: &mut String, part: &CentredMesh, c: &WallChanges) -> Result<(), im
          class=n>Now, mm<th scope=col class=n>Area, mm²<th scope=col>At x, y, z, mm<th \
          scope=col>View along the wall's normal</thead><tbody>",
     );
-    let whole = Camera::whole(&part.mesh, 1.0).half_height;
+    let whole = Camera::from_corner(&part.mesh, 1.0).half_height;
     for (i, spot) in c.spots.iter().enumerate() {
         let place = glam::DVec3::from(spot.position) - part.centre;
         let near = (spot.area.sqrt() as f32 * 1.5).clamp(whole * 0.05, whole);

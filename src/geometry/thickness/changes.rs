@@ -196,8 +196,8 @@ impl WallChanges {
         let grain = (before.mesh.grain + after.mesh.grain) as f32;
         let tolerance = 8.0 * (measured.rounding + reach * 1e-6 + grain);
         let versions = Versions {
-            before: EarlierVersion::new(before.whole(), tolerance, settings, job)?,
-            after: WallProber::new(after.whole(), settings, job)?,
+            before: EarlierVersion::new(before.original_mesh(), tolerance, settings, job)?,
+            after: WallProber::new(after.original_mesh(), settings, job)?,
             shift,
         };
         let places: Vec<Vec3> = measured.samples.iter().map(|s| s.position).collect();

@@ -60,7 +60,7 @@ impl ReadyPart {
     }
 
     /// The part without added places.
-    pub fn whole(&self) -> &TriMesh {
+    pub fn original_mesh(&self) -> &TriMesh {
         self.walls.as_ref().map_or(&self.mesh.mesh, |w| &w.mesh)
     }
 

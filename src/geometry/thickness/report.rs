@@ -290,7 +290,7 @@ fn worst(
          <th scope=col>Thinnest at x, y, z, mm<th scope=col>View along the wall's \
          normal</thead><tbody>",
     );
-    let whole = Camera::whole(&part.mesh, 1.0).half_height;
+    let whole = Camera::from_corner(&part.mesh, 1.0).half_height;
     for (i, (spot, told)) in checked.spots.iter().zip(&checked.answer.worst).enumerate() {
         let near =
             (spot.area.sqrt() as f32 * 1.5).max(spot.thickness * 6.0).clamp(whole * 0.05, whole);

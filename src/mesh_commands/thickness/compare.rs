@@ -61,7 +61,7 @@ pub(super) fn run(
         |out: &Path, e: &dyn std::fmt::Display| Fail::Input(format!("{}: {e}", out.display()));
     if let Some(out) = &args.png {
         let (width, height) = args.size;
-        let camera = Camera::whole(&mesh.mesh, width as f32 / height as f32);
+        let camera = Camera::from_corner(&mesh.mesh, width as f32 / height as f32);
         let size = [width as usize, height as usize];
         let mut picture = change_report::picture(&mesh.mesh, &changes, &camera, size);
         let top = changes.histogram_top;

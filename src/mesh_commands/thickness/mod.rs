@@ -352,7 +352,7 @@ pub fn run(args: &ThicknessArgs, presets: &[Preset], json: bool) -> Outcome {
     if let Some(out) = &args.png {
         let colours = checked.thickness.colours(checked.thickness.scale());
         let (width, height) = args.size;
-        let camera = Camera::whole(&part.mesh, width as f32 / height as f32);
+        let camera = Camera::from_corner(&part.mesh, width as f32 / height as f32);
         let (width, height) = (width as usize, height as usize);
         let mut picture = draw(&part.mesh, Some(&colours), &camera, width, height);
         let (low, high) = checked.thickness.scale();

@@ -49,7 +49,7 @@ impl Default for WholeHand {
     }
 }
 
-fn whole(value: f32, steps: f32) -> i32 {
+fn quantised(value: f32, steps: f32) -> i32 {
     // NaN becomes 0.
     (value * steps).round().clamp(-FAR, FAR) as i32
 }
@@ -79,12 +79,12 @@ impl WholeHand {
         let mut shape = Shape { bits: 0, at: 0 };
         let mut put = |at: usize, values: &[f32], steps: f32| {
             for (to, value) in numbers[at..].iter_mut().zip(values) {
-                *to = whole(*value, steps);
+                *to = quantised(*value, steps);
             }
         };
         put(PALM, &hand.palm.to_array(), PER_MM);
         // Relative to the palm as it is sent.
-        let palm = Vec3::from(hand.palm.to_array().map(|x| whole(x, PER_MM) as f32 / PER_MM));
+        let palm = Vec3::from(hand.palm.to_array().map(|x| quantised(x, PER_MM) as f32 / PER_MM));
         let two = |shape: &mut Shape, told: Option<bool>| {
             shape.put(told.is_some());
             shape.put(told == Some(true));

@@ -48,7 +48,7 @@ const MAX_WHOLE: i32 = 1_000_000;
 /// Pens of one message.
 const MAX_PENS: usize = 1024;
 
-fn whole(value: f32, steps: f32) -> i32 {
+fn quantised(value: f32, steps: f32) -> i32 {
     // A float that is none becomes 0, and one that is too large the largest.
     (value * steps).round().clamp(-MAX_WHOLE as f32, MAX_WHOLE as f32) as i32
 }
@@ -69,16 +69,16 @@ impl WholePen {
         set(TILT, pen.tilt.is_some());
         set(TWIST, pen.twist.is_some());
         set(DISTANCE, pen.distance.is_some());
-        let pair = |v: Vec2, steps| [whole(v.x, steps), whole(v.y, steps)];
+        let pair = |v: Vec2, steps| [quantised(v.x, steps), quantised(v.y, steps)];
         WholePen {
             kind,
             area: pair(pen.area_mm, PER_MM),
             buttons: pen.buttons,
             pos: pair(pen.pos_mm, PER_MM),
-            pressure: whole(pen.pressure.unwrap_or(0.0).clamp(0.0, 1.0), PRESSURES),
+            pressure: quantised(pen.pressure.unwrap_or(0.0).clamp(0.0, 1.0), PRESSURES),
             tilt: pair(pen.tilt.unwrap_or_default(), PER_RADIAN),
-            twist: whole(pen.twist.unwrap_or(0.0), PER_RADIAN),
-            distance: whole(pen.distance.unwrap_or(0.0), PER_DISTANCE),
+            twist: quantised(pen.twist.unwrap_or(0.0), PER_RADIAN),
+            distance: quantised(pen.distance.unwrap_or(0.0), PER_DISTANCE),
         }
     }
 

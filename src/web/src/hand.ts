@@ -26,10 +26,10 @@ export interface HandEvents {
   redo(): void;
 }
 
-type Deed = "sculpt" | "turn" | "slide" | "ignore";
+type Action = "sculpt" | "turn" | "slide" | "ignore";
 
 export class Hand {
-  private readonly deeds = new Map<number, Deed>();
+  private readonly actions = new Map<number, Action>();
   private readonly touches = new Map<number, { x: number; y: number }>();
   private penSeen = -Infinity;
   /** The beginning of a finger's stroke. */
@@ -78,7 +78,7 @@ export class Hand {
    * or the connection was cut. */
   lift(): void {
     this.waiting = [];
-    for (const [id, deed] of this.deeds) if (deed === "sculpt") this.deeds.set(id, "ignore");
+    for (const [id, action] of this.actions) if (action === "sculpt") this.actions.set(id, "ignore");
   }
 
   private down(event: PointerEvent): void {
@@ -86,7 +86,7 @@ export class Hand {
     this.canvas.setPointerCapture(event.pointerId);
     this.look(event);
     if (this.isPalm(event)) {
-      this.deeds.set(event.pointerId, "ignore");
+      this.actions.set(event.pointerId, "ignore");
       return;
     }
     if (event.pointerType === "touch") {
@@ -95,26 +95,26 @@ export class Hand {
       this.tapped = Math.max(this.tapped, this.touches.size);
       if (this.touches.size > 1) {
         if (this.waiting.length > 0) this.lift();
-        for (const [id, deed] of this.deeds) {
-          if (deed === "sculpt" && this.touches.has(id)) this.send([withoutButtons(event)], false);
+        for (const [id, action] of this.actions) {
+          if (action === "sculpt" && this.touches.has(id)) this.send([withoutButtons(event)], false);
         }
         this.lift();
-        this.deeds.set(event.pointerId, "ignore");
+        this.actions.set(event.pointerId, "ignore");
         return;
       }
     }
-    const deed = this.deedOf(event);
-    this.deeds.set(event.pointerId, deed);
-    if (deed === "sculpt" && event.pointerType === "touch") {
+    const action = this.actionOf(event);
+    this.actions.set(event.pointerId, action);
+    if (action === "sculpt" && event.pointerType === "touch") {
       this.waiting = [event];
       return;
     }
-    if (deed !== "sculpt") return;
+    if (action !== "sculpt") return;
     if (this.send([event], true)) this.events.pointerAt(event, true);
-    else this.deeds.set(event.pointerId, "ignore");
+    else this.actions.set(event.pointerId, "ignore");
   }
 
-  private deedOf(event: PointerEvent): Deed {
+  private actionOf(event: PointerEvent): Action {
     if (event.pointerType === "mouse" && event.button === 2) return event.shiftKey ? "slide" : "turn";
     if (event.pointerType === "mouse" && event.button === 1) return "slide";
     if (!this.events.canSculpt()) return "turn";
@@ -126,16 +126,16 @@ export class Hand {
 
   private move(event: PointerEvent): void {
     this.look(event);
-    const deed = this.deeds.get(event.pointerId);
+    const action = this.actions.get(event.pointerId);
     const isGesture = this.touches.size > 1 && this.touches.has(event.pointerId);
     if (isGesture) this.gesture(event);
-    else this.follow(event, deed);
+    else this.follow(event, action);
     // After what is sent: an expected dab goes with its batch.
-    const draws = this.deeds.get(event.pointerId) === "sculpt" && this.waiting.length === 0 && !isGesture;
+    const draws = this.actions.get(event.pointerId) === "sculpt" && this.waiting.length === 0 && !isGesture;
     this.events.pointerAt(event.pointerType === "touch" && !draws ? null : event, draws);
   }
 
-  private follow(event: PointerEvent, deed: Deed | undefined): void {
+  private follow(event: PointerEvent, action: Action | undefined): void {
     const touch = this.touches.get(event.pointerId);
     const before = touch ?? { x: event.clientX - event.movementX, y: event.clientY - event.movementY };
     const [dx, dy] = [event.clientX - before.x, event.clientY - before.y];
@@ -144,9 +144,9 @@ export class Hand {
       this.touches.set(event.pointerId, { x: event.clientX, y: event.clientY });
     }
     const height = this.canvas.clientHeight || 1;
-    switch (deed) {
+    switch (action) {
       case "sculpt":
-        if (!this.draw(coalesced(event))) this.deeds.set(event.pointerId, "ignore");
+        if (!this.draw(coalesced(event))) this.actions.set(event.pointerId, "ignore");
         break;
       case "turn":
         this.events.look(turned(this.events.camera(), dx / height, dy / height));
@@ -192,9 +192,9 @@ export class Hand {
   }
 
   private up(event: PointerEvent): void {
-    const deed = this.deeds.get(event.pointerId);
-    this.deeds.delete(event.pointerId);
-    if (deed === "sculpt") {
+    const action = this.actions.get(event.pointerId);
+    this.actions.delete(event.pointerId);
+    if (action === "sculpt") {
       if (this.waiting.length > 0) this.send(this.waiting.splice(0), true);
       this.send([event], event.pointerType !== "touch");
     }
@@ -207,7 +207,7 @@ export class Hand {
 
   private leave(event: PointerEvent): void {
     this.events.pointerAt(null, false);
-    if (!this.deeds.has(event.pointerId) && this.events.canSculpt()) this.send([event], false);
+    if (!this.actions.has(event.pointerId) && this.events.canSculpt()) this.send([event], false);
   }
 }
 

@@ -38,7 +38,12 @@ fn unit_of_setting(view: &View<'_>) -> f32 {
 }
 
 /// Returns a radius as text, with its unit.
-pub fn told(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, setting: f32) -> String {
+pub fn radius_text(
+    ctx: &egui::Context,
+    view: &View<'_>,
+    ui_state: &mut UiState,
+    setting: f32,
+) -> String {
     let world = setting * unit_of_setting(view);
     let pixel = unit_a_pixel(ctx, view, ui_state);
     match ui_state.prefs.brushes.radius_in_pixels && pixel > 0.0 {

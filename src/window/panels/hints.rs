@@ -30,7 +30,9 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, free: Re
     let demo = view.demo_runs && !ui_state.prefs.hints.touched;
     let text = match next {
         _ if demo => tr!("lesson-demo"),
-        Some((hint, at, all)) => tr!("lesson-line", hint = told(hint, view), at = at, all = all),
+        Some((hint, at, all)) => {
+            tr!("lesson-line", hint = hint_text(hint, view), at = at, all = all)
+        }
         None => return,
     };
     if !ui_state.hidden {
@@ -65,7 +67,7 @@ fn follow(view: &View<'_>, hints: &mut HintsFollowed) {
     hints.mirrored |= brush.symmetry.contains(&true);
 }
 
-fn told(hint: Hint, view: &View<'_>) -> String {
+fn hint_text(hint: Hint, view: &View<'_>) -> String {
     match hint {
         Hint::Sculpt => tr!("lesson-sculpt"),
         Hint::Turn => tr!("lesson-turn"),

@@ -45,7 +45,7 @@ pub fn ui(ctx: &egui::Context, view: &View<'_>, ui_state: &mut UiState, out: &mu
     }
     let text = match modal.what {
         ModalSetting::Radius => {
-            tr!("modal-radius", value = brush_size::told(ctx, view, ui_state, brush.radius))
+            tr!("modal-radius", value = brush_size::radius_text(ctx, view, ui_state, brush.radius))
         }
         ModalSetting::Strength => tr!("modal-strength", value = format!("{:.2}", brush.strength)),
     };

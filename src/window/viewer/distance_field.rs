@@ -60,7 +60,7 @@ impl DistanceField {
         let DistanceRequest { mesh, transform, to } = request;
         if !self.to.as_ref().is_some_and(|(old, _)| old.same(&to)) {
             self.pages.clear();
-            let plain = to.plain();
+            let plain = to.in_own_frame();
             let solid = DistanceSolid::build(&plain, job)?;
             self.to = Some((to.clone(), solid));
         }

@@ -31,7 +31,7 @@ impl DistanceReference {
     }
 
     /// The form, in its own frame.
-    pub(super) fn plain(&self) -> Arc<TriMesh> {
+    pub(super) fn in_own_frame(&self) -> Arc<TriMesh> {
         match self {
             DistanceReference::Before(before) => Arc::new(before.to_tri()),
             DistanceReference::HeldObject(thing) => thing.plain.clone(),

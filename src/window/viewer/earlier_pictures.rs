@@ -30,7 +30,7 @@ impl EarlierPictures {
             for (i, path) in files.iter().enumerate() {
                 let picture = listing::newest_picture(path).ok().flatten();
                 let picture = picture.and_then(|png| decode(&png));
-                if outbox.send((i, picture, told(path))).is_err() {
+                if outbox.send((i, picture, warning(path))).is_err() {
                     return;
                 }
                 context.request_repaint();
@@ -54,7 +54,7 @@ impl EarlierPictures {
 }
 
 /// What a person must know of a session before it is opened.
-fn told(path: &std::path::Path) -> Option<String> {
+fn warning(path: &std::path::Path) -> Option<String> {
     match catalog::look(path) {
         Ok(entry) => entry.damage.or(entry.not_ended),
         Err(e) => Some(tr!("start-unreadable", why = e.to_string())),

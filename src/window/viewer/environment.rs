@@ -171,7 +171,7 @@ impl Environment {
 mod tests {
     use super::*;
 
-    fn plain(texel: u32) -> Vec3 {
+    fn decoded(texel: u32) -> Vec3 {
         let unit = ((texel >> 27) as f32 - 24.0).exp2();
         let part = |shift: u32| (texel >> shift & 511) as f32 * unit;
         Vec3::new(part(0), part(9), part(18))
@@ -186,21 +186,21 @@ mod tests {
             Vec3::splat(0.999_99),
             Vec3::splat(1e9),
         ] {
-            let back = plain(shared_exponent(c));
+            let back = decoded(shared_exponent(c));
             let asked = c.min(Vec3::splat(65_408.0));
             assert!(
                 (back - asked).abs().max_element() <= asked.max_element() / 510.0,
                 "{c} {back}"
             );
         }
-        assert_eq!(plain(shared_exponent(Vec3::new(f32::NAN, -1.0, 1.0))), Vec3::Z);
+        assert_eq!(decoded(shared_exponent(Vec3::new(f32::NAN, -1.0, 1.0))), Vec3::Z);
     }
 
     #[test]
     fn even_light_is_even_on_every_side() {
         let even = Environment::of_picture(8, 4, &[3.0; 8 * 4 * 3]).expect("a picture");
         for texel in even.diffuse.1.iter().chain(&even.glossy[5].1) {
-            assert!((plain(*texel) - Vec3::splat(MEAN)).abs().max_element() < 0.01, "{texel:x}");
+            assert!((decoded(*texel) - Vec3::splat(MEAN)).abs().max_element() < 0.01, "{texel:x}");
         }
         assert_eq!(even.glossy.iter().map(|l| l.0).collect::<Vec<_>>(), [256, 128, 64, 32, 16, 8]);
         assert!(even.glossy.iter().all(|l| l.1.len() as u32 == l.0 * l.0 / 2));
@@ -213,12 +213,12 @@ mod tests {
         let mut sky = vec![0.0; 16 * 8 * 3];
         sky[..16 * 4 * 3].fill(1.0);
         let half = Environment::of_picture(16, 8, &sky).expect("a picture");
-        let up = plain(half.diffuse.1[DIFFUSE / 2]);
-        let down = plain(half.diffuse.1[half.diffuse.1.len() - DIFFUSE / 2]);
+        let up = decoded(half.diffuse.1[DIFFUSE / 2]);
+        let down = decoded(half.diffuse.1[half.diffuse.1.len() - DIFFUSE / 2]);
         // By the formula: 2 * MEAN overhead, none below, a share of (1 + cos) / 2 between.
         assert!((up.x - 2.0 * MEAN).abs() < 0.03 && down.x < 0.02, "{up} {down}");
         // Nothing but darkness stays dark, and does not divide by it.
         let dark = Environment::of_picture(16, 8, &[f32::NAN; 16 * 8 * 3]).expect("a picture");
-        assert!(dark.diffuse.1.iter().all(|t| plain(*t) == Vec3::ZERO));
+        assert!(dark.diffuse.1.iter().all(|t| decoded(*t) == Vec3::ZERO));
     }
 }

@@ -27,7 +27,7 @@ enum PreferencesFault {
 }
 
 impl PreferencesFault {
-    fn told(self, path: &Path) -> String {
+    fn message(self, path: &Path) -> String {
         let path = path.display().to_string();
         match self {
             PreferencesFault::Unreadable(error, Ok(aside)) => {
@@ -86,7 +86,7 @@ impl PreferencesFile {
     /// that went well; what was not kept is tried again at the next call.
     pub fn keep(&mut self, ui_state: &UiState) -> Option<String> {
         if let Some((wrong, path)) = self.wrong.take().zip(self.path.as_deref()) {
-            return Some(wrong.told(path));
+            return Some(wrong.message(path));
         }
         let mut now = ui_state.prefs.clone();
         now.look = ui_state.look;

@@ -162,7 +162,7 @@ pub fn compute(
     {
         return Ok(Some(of_cut(request, &cut)));
     }
-    whole(request, &tool, operation, job).map(Some)
+    preview_of_all(request, &tool, operation, job).map(Some)
 }
 
 /// The pages that lose a triangle, without it and with what comes.
@@ -197,7 +197,7 @@ fn of_cut(request: &PreviewRequest, cut: &Cut) -> Preview {
     out.finish(request, Some(gone.into_keys().collect()))
 }
 
-fn whole(
+fn preview_of_all(
     request: &PreviewRequest,
     tool: &PolyMesh,
     operation: Operation,

@@ -91,7 +91,7 @@ pub(super) fn follow(
             let clay = (wanted.mesh.object_id(), wanted.mesh.revision());
             let now = Some((clay, wanted.limit, wanted.transform));
             if left > 0 || said != now {
-                gather(&wanted.mesh, map.values(), unit, &mut pages);
+                collect_pages(&wanted.mesh, map.values(), unit, &mut pages);
                 let about = Box::new(about(&wanted, map, left));
                 let values = MapValues { pages: pages.clone() };
                 if !say(WallReport::Map(map.side(), values, about)) {
@@ -141,7 +141,7 @@ impl ComparedWalls {
             .is_some_and(|(to, p, t, _)| to.same(earlier) && *p == place && *t == transform);
         if !same {
             // In the frame of the clay; an earlier state of it is there already.
-            let mut mesh = (*earlier.plain()).clone();
+            let mut mesh = (*earlier.in_own_frame()).clone();
             if !matches!(earlier, DistanceReference::Before(_)) {
                 let back = transform.inverse();
                 mesh.positions.iter_mut().for_each(|p| *p = back.point(place.apply(*p)));
@@ -160,7 +160,7 @@ impl ComparedWalls {
         let values = map.changes(version, job).ok()?;
         let unit = transform.scale as f32;
         self.pages.clear();
-        gather(&wanted.mesh, &values, unit, &mut self.pages);
+        collect_pages(&wanted.mesh, &values, unit, &mut self.pages);
         let mut known: Vec<(f32, u32)> = values
             .iter()
             .zip(0..)
@@ -189,7 +189,7 @@ fn reach_of(mesh: &Snapshot) -> f32 {
 }
 
 /// The values times `unit` by page; a page with the same bits as before stays the same.
-fn gather(mesh: &Snapshot, values: &[f32], unit: f32, pages: &mut Vec<Arc<[f32]>>) {
+fn collect_pages(mesh: &Snapshot, values: &[f32], unit: f32, pages: &mut Vec<Arc<[f32]>>) {
     pages.truncate(mesh.page_count());
     for (i, page) in mesh.pages().enumerate() {
         let ids = &page.topology().ids[..page.own()];

@@ -66,7 +66,13 @@ impl PackedConvolution {
             } else {
                 for i in 0..count {
                     let (y, x) = ((first + i) / to.w, (first + i) % to.w);
-                    gather(&self.window, input, from, (y, x), &mut scratch[i * depth..][..depth]);
+                    copy_window(
+                        &self.window,
+                        input,
+                        from,
+                        (y, x),
+                        &mut scratch[i * depth..][..depth],
+                    );
                 }
                 &scratch[..count * depth]
             };
@@ -193,7 +199,7 @@ impl<S: Simd> Tile<'_, S> {
 
 /// Copies the window of one output pixel; outside the input it is zero.
 #[inline(always)]
-fn gather(
+fn copy_window(
     window: &Window,
     input: &[f32],
     from: TensorShape,

@@ -74,7 +74,7 @@ fn outputs_equal_litert() {
         let mut worst = 0.0_f32;
         for i in 0..count {
             let picture = picture(i);
-            let crop = Crop { angle: 0.1 * (i % 9) as f32, ..Crop::whole(&picture) };
+            let crop = Crop { angle: 0.1 * (i % 9) as f32, ..Crop::around(&picture) };
             crop.sample(&picture, Border::Black, side, network.input_mut());
             let bytes: Vec<u8> = network.input_mut().iter().flat_map(|v| v.to_le_bytes()).collect();
             input.write_all(&bytes).expect("written");

@@ -181,7 +181,7 @@ impl SerialPen {
             }
             let when = self.config.repeat_us.filter(|p| *p > 0).map_or(at, |p| at % p);
             for packet in self.model.packets(&self.script.at(when)) {
-                expected += self.pass(packet, at, &mut bytes);
+                expected += self.transmit(packet, at, &mut bytes);
             }
         }
         if until_us >= self.stalled_until_us {
@@ -198,7 +198,7 @@ impl SerialPen {
     }
 
     /// One packet over the faulty line; gives the samples that an unplug brings about.
-    fn pass(&mut self, packet: Vec<u8>, at: u64, out: &mut Vec<u8>) -> u32 {
+    fn transmit(&mut self, packet: Vec<u8>, at: u64, out: &mut Vec<u8>) -> u32 {
         let f = self.config.faults;
         let [cut, lost, doubled, stall, unplug] =
             [f.tear, f.drop, f.duplicate, f.stall, f.unplug].map(|r| self.rng.unit() < r);

@@ -165,9 +165,9 @@ impl SimTablet {
             let when = self.config.repeat_us.filter(|p| *p > 0).map_or(at, |p| at % p);
             for report in self.encoder.reports(&self.script.at(when)) {
                 let mut events = Vec::with_capacity(4);
-                self.line.pass(report, |e| events.push(e));
+                self.line.transmit(report, |e| events.push(e));
                 for event in events {
-                    expected += self.happen(event, at, until_us);
+                    expected += self.apply(event, at, until_us);
                 }
             }
         }
@@ -178,7 +178,7 @@ impl SimTablet {
         expected
     }
 
-    fn happen(&mut self, event: Event<Vec<u8>>, at: u64, now: u64) -> u32 {
+    fn apply(&mut self, event: Event<Vec<u8>>, at: u64, now: u64) -> u32 {
         match event {
             Event::Stall(us) => self.stalled_until_us = at + us,
             // A tablet has no clock.

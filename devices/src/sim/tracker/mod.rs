@@ -88,7 +88,7 @@ struct ClientSeen {
 }
 
 impl ClientSeen {
-    fn whole(&mut self, p: &Packet) -> u32 {
+    fn packet(&mut self, p: &Packet) -> u32 {
         if let Some((frame, stamp, _)) = self.last
             && (0..100).contains(&(frame - p.frame))
             && p.stamp <= stamp
@@ -100,7 +100,7 @@ impl ClientSeen {
     }
 
     /// The connection broke: a client reports that the hands have left.
-    fn broken(&mut self) -> u32 {
+    fn disconnected(&mut self) -> u32 {
         u32::from(self.last.take().is_some_and(|(_, _, hands)| hands > 0))
     }
 }
@@ -157,7 +157,7 @@ impl Tracker {
     /// Every client is cut off, as when the service stops.
     pub fn unplug(&mut self) -> u32 {
         self.server.cut();
-        self.seen.broken()
+        self.seen.disconnected()
     }
 
     /// Sends a message that is not this simulator's own: for trying what a broken server may say.
@@ -186,9 +186,9 @@ impl Tracker {
             let text = frame_json(&hands, stamp, self.config.rate);
             let packet = Packet { text, frame: self.frame, stamp, hands: hands.count };
             let mut events = Vec::with_capacity(4);
-            self.line.pass(packet, |e| events.push(e));
+            self.line.transmit(packet, |e| events.push(e));
             for event in events {
-                expected += self.happen(event, at);
+                expected += self.apply(event, at);
             }
         }
         if until_us >= self.stalled_until_us {
@@ -203,7 +203,7 @@ impl Tracker {
         self.jitter_state.apply(&self.script.at(at, self.frame))
     }
 
-    fn happen(&mut self, event: Event<Packet>, at: u64) -> u32 {
+    fn apply(&mut self, event: Event<Packet>, at: u64) -> u32 {
         match event {
             Event::Stall(us) => self.stalled_until_us = at + us,
             Event::ClockJump(us) => self.jumped_us = self.jumped_us.saturating_add(us),
@@ -230,7 +230,7 @@ impl Tracker {
         if self.server.send(&p.text) == 0 {
             return 0;
         }
-        self.seen.whole(p)
+        self.seen.packet(p)
     }
 
     /// Runs by itself on a clock, from now on, for as long as the result lives.

@@ -216,7 +216,7 @@ fn chained(
 }
 
 /// The mesh of one Boolean with the settings of [`boolean`], for the operators of [`Mesh`].
-pub fn made(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResult<Mesh> {
+pub fn combined(py: Python<'_>, a: &Mesh, b: &Mesh, operation: Operation) -> PyResult<Mesh> {
     let options = options(None, "as-operands", false)?;
     if matches!(operation, Operation::Union | Operation::Difference)
         && let Some(mesh) = from_state(py, a, b, operation, options)?

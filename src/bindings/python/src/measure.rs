@@ -16,7 +16,10 @@ use crate::mesh::Mesh;
 use crate::part_check::{PartRequest, checked};
 
 /// Converts a value to Python's dicts and lists, by way of JSON.
-pub fn plain<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyAny>> {
+pub fn to_python<'py, T: serde::Serialize>(
+    py: Python<'py>,
+    value: &T,
+) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|e| PyValueError::new_err(e.to_string()))?;
     py.import("json")?.call_method1("loads", (text,))
 }
@@ -62,12 +65,12 @@ fn check_mesh<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     if process.is_some() || printer.is_some() || material.is_some() {
         let request = PartRequest { process, printer, material, up, scale, orient };
-        return plain(py, &checked(py, mesh.get(), &request, &progress)?);
+        return to_python(py, &checked(py, mesh.get(), &request, &progress)?);
     }
     let poly = mesh.get().poly().clone();
     let report = watched(py, &progress, move |job| check::report(&poly, crossings, job))?
         .map_err(errors::cancelled)?;
-    plain(py, &report)
+    to_python(py, &report)
 }
 
 /// The shadow of a part along a direction.

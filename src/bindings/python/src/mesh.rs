@@ -341,15 +341,15 @@ impl Mesh {
     }
 
     fn __sub__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
-        boolean::made(py, self, other.get(), Operation::Difference)
+        boolean::combined(py, self, other.get(), Operation::Difference)
     }
 
     fn __or__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
-        boolean::made(py, self, other.get(), Operation::Union)
+        boolean::combined(py, self, other.get(), Operation::Union)
     }
 
     fn __and__(&self, py: Python<'_>, other: &Bound<'_, Mesh>) -> PyResult<Mesh> {
-        boolean::made(py, self, other.get(), Operation::Intersection)
+        boolean::combined(py, self, other.get(), Operation::Intersection)
     }
 
     /// Equal bits of positions, faces, colours, groups and attributes.

@@ -43,7 +43,7 @@ fn picture<'py>(
         let aspect = width as f32 / height as f32;
         let camera = match eye {
             Some(eye) => Camera::from_side(&part.mesh, eye, aspect),
-            None => Camera::whole(&part.mesh, aspect),
+            None => Camera::from_corner(&part.mesh, aspect),
         };
         let scale = measured.as_ref().map(|m| m.scale());
         let colours = measured.as_ref().zip(scale).map(|(m, scale)| m.colours(scale));
@@ -65,7 +65,7 @@ pub fn drawn(
 ) -> PyResult<Vec<u8>> {
     watched(py, &None, move |_| {
         let part = CentredMesh::new(&poly, 1.0);
-        let camera = Camera::whole(&part.mesh, width as f32 / height as f32);
+        let camera = Camera::from_corner(&part.mesh, width as f32 / height as f32);
         draw(&part.mesh, None, &camera, width, height).png()
     })?
     .map_err(|e| PyValueError::new_err(e.to_string()))

@@ -18,7 +18,7 @@ use sculptd_geometry::thickness::{
 use crate::array::shared;
 use crate::errors;
 use crate::job::{Progress, watched};
-use crate::measure::plain;
+use crate::measure::to_python;
 use crate::mesh::Mesh;
 use crate::part_check::wall_limits;
 
@@ -73,7 +73,7 @@ impl Thickness {
             opposite: moved(l.opposite),
             ..l
         });
-        least.map(|l| plain(py, &l)).transpose()
+        least.map(|l| to_python(py, &l)).transpose()
     }
 
     /// Compares the least wall with `limit`, in the mesh's unit: True if it reaches the limit,
@@ -130,7 +130,7 @@ impl Thickness {
 
     /// Every statistic as a dict, as `sculptd thickness --json` prints it.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.summary)
+        to_python(py, &self.summary)
     }
 
     /// The area that is thinner than `limit`: in square units, and as a share of the whole, 0 to 1.
@@ -188,7 +188,7 @@ impl Thickness {
         let found =
             watched(py, &progress, move |job| part.judge("", &settings, limits, job, seconds))?
                 .map_err(|e| errors::thickness(&e))?;
-        plain(py, &found.answer)
+        to_python(py, &found.answer)
     }
 
     /// Divides the surface into parts of equal wall. Returns uint32, one a triangle of the mesh:
@@ -211,7 +211,7 @@ impl Thickness {
         let (measured, centre) = (self.measured.clone(), self.part.mesh.centre);
         let found = watched(py, &None, move |job| measured.partition(how, job))?;
         let found = found.map_err(|e| errors::thickness(&e))?.moved(centre);
-        let facts = plain(py, &found)?;
+        let facts = to_python(py, &found)?;
         let of = Arc::new(found.of);
         Ok((shared(py, of.clone(), &of, vec![of.len()])?, facts))
     }
@@ -226,7 +226,7 @@ impl Thickness {
         self.measured_faces("medial_curve")?;
         let measured = self.measured.clone();
         let found = watched(py, &None, move |job| measured.medial_curve(job))?;
-        plain(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.mesh.centre))
+        to_python(py, &found.map_err(|e| errors::thickness(&e))?.moved(self.part.mesh.centre))
     }
 
     fn __repr__(&self) -> String {
@@ -326,7 +326,7 @@ fn thickness_of(
             judged.clone()
         } else {
             let query = WallQuery { grain: part.mesh.grain, ..WallQuery::default() };
-            let whole = part.whole();
+            let whole = part.original_mesh();
             Arc::new(thickness::measure_at_places(whole, None, &settings, query, job)?)
         };
         Ok(Some((part, measured, judged)))

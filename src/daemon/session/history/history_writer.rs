@@ -384,7 +384,7 @@ impl HistoryWriter {
         self.store.db.execute_batch("BEGIN IMMEDIATE")?;
         self.open = 0;
         // If one object remains as at the start of a session, the node records that too.
-        node.scene = (!same).then(|| scene.unwrap_or_else(|| Arc::new(StoredScene::plain())));
+        node.scene = (!same).then(|| scene.unwrap_or_else(|| Arc::new(StoredScene::one_object())));
         node.changes = match changes {
             Some(changes) => {
                 for &(i, before, after) in &changes {
@@ -392,7 +392,7 @@ impl HistoryWriter {
                 }
                 changes
             }
-            None => self.whole(work)?,
+            None => self.keep_all_pages(work)?,
         };
         self.finish_node(node, work)
     }
@@ -429,7 +429,7 @@ impl HistoryWriter {
     }
 
     /// Another work, with all its pages.
-    fn whole(&mut self, work: &Snapshot) -> Result<Vec<Change>, StoreError> {
+    fn keep_all_pages(&mut self, work: &Snapshot) -> Result<Vec<Change>, StoreError> {
         let object_id = work.object_id();
         (0..work.page_count() as u32)
             .map(|i| {
@@ -522,7 +522,7 @@ impl HistoryWriter {
         let listed = listed.map_or(vec![(ObjectId(0), ObjectSettings::default())], |s| {
             s.objects.into_iter().map(|o| (o.id, o.settings)).collect()
         });
-        let plain = StoredScene::plain();
+        let plain = StoredScene::one_object();
         let stored = self.tree.scene_at(self.tree.cursor).map_or(&plain, |s| s);
         let stored = stored.objects.iter().map(|o| (o.id, o.settings.clone()));
         if !stored.eq(listed) {

@@ -446,7 +446,7 @@ impl HistoryThread {
         let Some(node) = self.ledger.tree.node(to).cloned() else { return Ok(None) };
         let from = (self.ledger.now.object_id(), self.ledger.now.revision());
         let scene = self.ledger.tree.scene_at(to).cloned();
-        let scene = scene.unwrap_or_else(|| Arc::new(StoredScene::plain()));
+        let scene = scene.unwrap_or_else(|| Arc::new(StoredScene::one_object()));
         let base = base(&self.path.get())?;
         let (mut objects, mut clays) = (Vec::new(), Vec::new());
         for object in &scene.objects {

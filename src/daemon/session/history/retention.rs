@@ -350,7 +350,7 @@ impl<'a> RetentionRun<'a> {
 impl Store {
     /// A jump is sent that names these.
     pub fn put_pin(&self, pin: &Pin) -> Result<usize, StoreError> {
-        let data = super::store::plain(postcard::to_stdvec(pin))?;
+        let data = super::store::encoded(postcard::to_stdvec(pin))?;
         self.db.execute(
             "INSERT INTO pin (tick, data, layout) VALUES (?1, ?2, ?3)",
             (UNDER_WAY, &data, VERSION),

@@ -150,7 +150,7 @@ pub struct Store {
     layout: &'static str,
 }
 
-pub(super) fn plain(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
+pub(super) fn encoded(bytes: Result<Vec<u8>, postcard::Error>) -> Result<Vec<u8>, StoreError> {
     bytes.map_err(|e| StoreError::Sql(rusqlite::Error::ToSqlConversionFailure(Box::new(e))))
 }
 
@@ -298,7 +298,7 @@ impl Store {
     }
 
     pub fn put_side(&self, id: u64, side: &SideData) -> Result<usize, StoreError> {
-        let data = plain(match side {
+        let data = encoded(match side {
             SideData::HeldObject(t) => postcard::to_stdvec(t.as_ref()),
             SideData::Picture(p) => postcard::to_stdvec(p.as_ref()),
             SideData::Levels(l) => postcard::to_stdvec(l.as_ref()),
@@ -317,9 +317,9 @@ impl Store {
     }
 
     pub fn put_node(&self, node: &Node) -> Result<usize, StoreError> {
-        let mut data = plain(postcard::to_stdvec(node))?;
+        let mut data = encoded(postcard::to_stdvec(node))?;
         if let Some(scene) = &node.scene {
-            data = plain(postcard::to_extend(scene.as_ref(), data))?;
+            data = encoded(postcard::to_extend(scene.as_ref(), data))?;
         }
         let row = (node.id as i64, crc32fast::hash(&data), &data, VERSION);
         self.db.execute(
@@ -353,7 +353,7 @@ impl Store {
     }
 
     pub fn put_checkpoint(&self, c: &Checkpoint) -> Result<usize, StoreError> {
-        let data = plain(postcard::to_stdvec(c))?;
+        let data = encoded(postcard::to_stdvec(c))?;
         let row = (c.tick as i64, crc32fast::hash(&data), &data, VERSION);
         self.db.execute(
             "INSERT INTO checkpoint (tick, crc, data, layout) VALUES (?1, ?2, ?3, ?4)",

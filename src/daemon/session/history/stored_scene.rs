@@ -46,7 +46,7 @@ pub struct StoredClay {
 
 impl StoredScene {
     /// One object, as a session begins.
-    pub fn plain() -> StoredScene {
+    pub fn one_object() -> StoredScene {
         let settings = ObjectSettings::default();
         StoredScene {
             objects: vec![StoredObject { id: ObjectId(0), settings, clay: None }],
@@ -94,7 +94,7 @@ pub fn same_scene(a: Option<&Arc<StoredScene>>, b: Option<&Arc<StoredScene>>) ->
     match (a, b) {
         (None, None) => true,
         (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.same_as(b),
-        (Some(one), None) | (None, Some(one)) => one.same_as(&StoredScene::plain()),
+        (Some(one), None) | (None, Some(one)) => one.same_as(&StoredScene::one_object()),
     }
 }
 

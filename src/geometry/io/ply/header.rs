@@ -57,7 +57,7 @@ impl PlyScalar {
         }
     }
 
-    pub(super) fn whole(self) -> bool {
+    pub(super) fn is_integer(self) -> bool {
         !matches!(self, PlyScalar::F32 | PlyScalar::F64)
     }
 
@@ -360,7 +360,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, FileProblem> {
             }
             ["property", "list", count, kind, name] => {
                 let (Some(count), Some(kind)) =
-                    (PlyScalar::named(count).filter(|s| s.whole()), PlyScalar::named(kind))
+                    (PlyScalar::named(count).filter(|s| s.is_integer()), PlyScalar::named(kind))
                 else {
                     return Err(problem(
                         "\"property list\", a whole type for the count, a type, a name",

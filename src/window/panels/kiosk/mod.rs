@@ -93,7 +93,7 @@ pub fn ui(
     if screen.staff {
         door(&ctx, free, words, &now, screen, pad, &mut scan);
     }
-    told_staff(&ctx, free, screen, &mut scan);
+    staff_message(&ctx, free, screen, &mut scan);
     match now.stage {
         Stage::Closed => {}
         Stage::Farewell => farewell::ui(&ctx, free, words, screen, &mut scan),
@@ -198,7 +198,7 @@ fn watch(ctx: &egui::Context, free: egui::Rect, words: &Language, page: &Invitat
 }
 
 /// Shows a message of the fleet's staff to people on site, until somebody dismisses it.
-fn told_staff(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut Scan) {
+fn staff_message(ctx: &egui::Context, free: egui::Rect, screen: &Screen, scan: &mut Scan) {
     let Ok(mut message) = screen.desk.message.lock() else { return };
     let Some(text) = message.clone() else { return };
     let mut close = false;

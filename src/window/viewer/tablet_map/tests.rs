@@ -33,7 +33,7 @@ fn hover(truth: &ScreenMap, delay_us: u64, mouse: bool) -> TabletMap {
 }
 
 /// The tablet's area covers a desktop of 1280 by 720 pixels.
-fn whole() -> ScreenMap {
+fn whole_desktop() -> ScreenMap {
     ScreenMap { origin: DVec2::ZERO, across: DVec2::new(1280.0, 0.0), down: DVec2::new(0.0, 720.0) }
 }
 
@@ -157,7 +157,7 @@ fn a_pen_that_rests_now_and_then_teaches_the_map_though_the_delay_varies() {
 
 #[test]
 fn another_map_of_the_desktop_is_learned_within_a_second_of_hovering() {
-    let before = whole();
+    let before = whole_desktop();
     let after = ScreenMap {
         origin: DVec2::new(1280.0, 720.0),
         across: DVec2::new(-1280.0, 0.0),
@@ -180,7 +180,7 @@ fn another_map_of_the_desktop_is_learned_within_a_second_of_hovering() {
 
 #[test]
 fn a_touch_before_the_map_was_known_is_the_pointers() {
-    let truth = whole();
+    let truth = whole_desktop();
     let mut map = hover(&truth, 8_000, false);
     let now = map.trail.back().expect("a place").t_us;
     assert!(!map.touched_unknown(), "it has not touched");
@@ -258,10 +258,13 @@ fn a_slow_window_learns_a_turned_and_then_a_cropped_area_and_believes_neither_wr
     for noise in 0..20 {
         let mut desktop = SlowDesktop { map: TabletMap::default(), t_us: 1_000_000, noise };
         // Minutes of it, so that many pairs speak for what was before.
-        desktop.frames(&whole(), 600);
-        for (name, truth) in
-            [("turned", turned), ("cropped", cropped), ("shifted", shifted), ("whole", whole())]
-        {
+        desktop.frames(&whole_desktop(), 600);
+        for (name, truth) in [
+            ("turned", turned),
+            ("cropped", cropped),
+            ("shifted", shifted),
+            ("whole", whole_desktop()),
+        ] {
             let before = desktop.map.map;
             let mut wrong = 0;
             // As many frames as a window of sixty a second shows in one second.
@@ -278,7 +281,7 @@ fn a_slow_window_learns_a_turned_and_then_a_cropped_area_and_believes_neither_wr
 
 #[test]
 fn a_mouse_beside_a_pen_that_rests_leaves_the_map_as_it_is() {
-    let mut map = hover(&whole(), 8_000, false);
+    let mut map = hover(&whole_desktop(), 8_000, false);
     let before = *map.map().expect("a map");
     let now = map.trail.back().expect("a place").t_us;
     let rests = DVec2::new(0.5, 0.4);
@@ -288,7 +291,7 @@ fn a_mouse_beside_a_pen_that_rests_leaves_the_map_as_it_is() {
         map.pen(now + 8_000 * (i + 1), Some(share), false);
         let mouse = DVec2::new((i * 37 % 900) as f64, (i * 3) as f64);
         // The other hand goes to the mouse.
-        let at = if i < 40 { whole().at(share).round() } else { mouse };
+        let at = if i < 40 { whole_desktop().at(share).round() } else { mouse };
         map.pointer(now + 8_000 * (i + 1), at);
         let off = differs(map.map().expect("a map"), &before);
         assert!(off < 2.0, "{off} pixels");
@@ -297,7 +300,7 @@ fn a_mouse_beside_a_pen_that_rests_leaves_the_map_as_it_is() {
 
 #[test]
 fn a_map_is_not_guessed_beside_a_line() {
-    let truth = whole();
+    let truth = whole_desktop();
     let mut map = TabletMap::default();
     for i in 0..400u64 {
         let share = DVec2::new(0.3, 0.4) + DVec2::new(0.3, 0.2) * (i as f64 / 400.0);
@@ -309,7 +312,7 @@ fn a_map_is_not_guessed_beside_a_line() {
 
 #[test]
 fn a_press_that_comes_long_after_the_touch_is_the_pens_once() {
-    let mut map = hover(&whole(), 8_000, false);
+    let mut map = hover(&whole_desktop(), 8_000, false);
     let now = map.trail.back().expect("a place").t_us;
     let touch = DVec2::new(0.3, 0.3);
     for (i, tip) in [(1, false), (2, true), (3, true), (4, false)] {
@@ -320,7 +323,7 @@ fn a_press_that_comes_long_after_the_touch_is_the_pens_once() {
         map.pen(now + i * 8_000, Some(DVec2::new(0.7, 0.6)), false);
     }
     let late = now + 125 * 8_000;
-    let press = whole().at(touch);
+    let press = whole_desktop().at(touch);
     assert!(!map.owns(late, late, press));
     assert!(!map.takes_press(late, late, press + DVec2::new(200.0, 0.0)), "a mouse's elsewhere");
     assert!(map.takes_press(late, late, press));
