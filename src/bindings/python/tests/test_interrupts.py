@@ -1,7 +1,7 @@
 """Ctrl-C stops every long function within 0.3 seconds, wherever in its work it comes.
 
-Each place is tried twice and the shorter time counts, because other programs may take the
-processor for a moment. With SCULPTD_LONG each function is interrupted at ten places instead of two.
+A place that took longer is tried once more, because other programs may take the processor for a
+moment. With SCULPTD_LONG each function is interrupted at ten places instead of two.
 """
 
 import os
@@ -46,7 +46,7 @@ def interrupted(work, after):
 class Interrupts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        ball = Mesh.sphere(50.0, 240 if LONG else 60)
+        ball = Mesh.sphere(50.0, 240 if LONG else 40)
         v = ball.vertices
         bumps = 1 + 0.05 * np.sin(v[:, :1] * 0.7) * np.cos(v[:, 1:2] * 0.9)
         cls.part = Mesh(v * bumps, ball.faces)
@@ -69,11 +69,10 @@ class Interrupts(unittest.TestCase):
         took = time.perf_counter() - began
         for place in PLACES:
             with self.subTest(function=name, place=place):
-                # Twice, for another program may have the processor for a moment.
-                waits = [interrupted(work, place * took) for _ in range(2)]
-                waits = [w for w in waits if w is not None]
-                if waits:
-                    self.assertLess(min(waits), BOUND, f"{name} takes {took:.2f} s")
+                wait = interrupted(work, place * took) or 0
+                if wait >= BOUND:
+                    wait = interrupted(work, place * took) or 0
+                self.assertLess(wait, BOUND, f"{name} takes {took:.2f} s")
         if LONG:
             print(f"{name}: {took:.2f} s")
 
