@@ -296,6 +296,10 @@ topology-view = Anteil der Ansicht
 ## Mirror, pressure, masks, history
 
 mirror-heading = Spiegel
+mirror-radial = Radiale Symmetrie
+    .tip = Wiederholt jeden Strich um eine Achse durch die Mitte des Objekts.
+mirror-copies = Kopien
+mirror-axis = Achse
 
 pressure-heading = Druck
 pressure-curve = Druckkurve

@@ -296,6 +296,10 @@ topology-view = Μέρος της όψης
 ## Mirror, pressure, masks, history
 
 mirror-heading = Καθρέφτης
+mirror-radial = Ακτινική συμμετρία
+    .tip = Επαναλαμβάνει κάθε πινελιά γύρω από άξονα στο μέσο του αντικειμένου.
+mirror-copies = Αντίγραφα
+mirror-axis = Άξονας
 
 pressure-heading = Πίεση
 pressure-curve = Καμπύλη πίεσης

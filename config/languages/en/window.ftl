@@ -298,6 +298,10 @@ topology-view = Share of the view
 ## Mirror, pressure, masks, history
 
 mirror-heading = Mirror
+mirror-radial = Radial symmetry
+    .tip = Repeats each stroke around an axis through the middle of the object.
+mirror-copies = Copies
+mirror-axis = Axis
 
 pressure-heading = Pressure
 pressure-curve = Pressure curve

@@ -296,6 +296,10 @@ topology-view = Parte della vista
 ## Mirror, pressure, masks, history
 
 mirror-heading = Specchio
+mirror-radial = Simmetria radiale
+    .tip = Ripete ogni tratto attorno a un asse per il centro dell’oggetto.
+mirror-copies = Copie
+mirror-axis = Asse
 
 pressure-heading = Pressione
 pressure-curve = Curva di pressione

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::BrushKind;
 use super::alpha::Alpha;
+use super::dab::IMAGES;
 use super::falloff::{CURVE, Falloff};
 use super::options::{AutoMask, Mirror, PathSettings, TopologySettings};
 use super::stamp::Stamp;
@@ -215,9 +216,26 @@ impl BrushSettings {
         };
         let wrong = wrong
             .or_else(|| count("mirror.radial", self.mirror.radial.into(), 1, 16))
+            .or_else(|| {
+                let (radial, most) = (self.mirror.radial, self.most_copies());
+                (radial > most).then(|| {
+                    format!(
+                        "brush.mirror.radial = {radial}: expected at most {most} with these \
+                         mirrors, as a brush has at most {IMAGES} images"
+                    )
+                })
+            })
             .or_else(|| count("mirror.axis", self.mirror.axis.into(), 0, 2))
             .or_else(|| count("path.average", self.path.average.into(), 0, 64));
         wrong.map_or(Ok(()), Err)
+    }
+
+    /// The most copies about the axis, 1 to 16, beside these mirrors: a brush has at most
+    /// [`IMAGES`] images, and those beyond are left out.
+    pub fn most_copies(&self) -> u8 {
+        let planes = self.symmetry.iter().filter(|on| **on).count()
+            + usize::from(self.mirror.plane != [0.0; 3]);
+        (IMAGES >> planes).clamp(1, 16) as u8
     }
 
     /// Calls `f(key, value, least, most, default)` for each number with a plain range.

@@ -1,9 +1,13 @@
-//! Mirrors: three letters behind their icon.
+//! Mirrors: three letters behind their icon, and the copies about an axis.
 
 use super::icons::{self, Icon};
+use super::rows;
 use super::state::{Action, UiRequest, View};
 use crate::language::tr;
+use sculptd_clay::brush::BrushSettings;
 use sculptd_engine::command::Command;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
@@ -11,14 +15,48 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let colour = ui.visuals().text_color();
     icons::paint(ui.painter(), rect, Icon::FlipHorizontal2, 15.0, colour);
     icon.on_hover_text(tr!("mirror-heading"));
-    let names = [("x", Action::MirrorX), ("y", Action::MirrorY), ("z", Action::MirrorZ)];
-    for (axis, (name, action)) in brush.symmetry.iter_mut().zip(names) {
+    let actions = [Action::MirrorX, Action::MirrorY, Action::MirrorZ];
+    for ((axis, name), action) in brush.symmetry.iter_mut().zip(AXES).zip(actions) {
         let button = egui::Button::selectable(*axis, name).min_size([22.0, 22.0].into());
         if ui.add(button).on_hover_text(view.tip(action)).clicked() {
             *axis = !*axis;
         }
     }
+    copies(ui, &mut brush);
+    // A mirror more leaves room for fewer copies.
+    brush.mirror.radial = brush.mirror.radial.min(brush.most_copies());
     if brush != view.state.brush {
         out.push(UiRequest::World(Command::Brush(brush)));
     }
+}
+
+/// The button of the copies about an axis; it shows how many there are.
+fn copies(ui: &mut egui::Ui, brush: &mut BrushSettings) {
+    let on = brush.mirror.radial > 1;
+    let name = tr!("mirror-radial");
+    let icon = icons::tab(ui, Icon::Snowflake, &name, on, 22.0);
+    if on {
+        let count = format!("{}", brush.mirror.radial);
+        let at = icon.rect.right_bottom();
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let colour = ui.visuals().strong_text_color();
+        ui.painter().text(at, egui::Align2::RIGHT_BOTTOM, count, font, colour);
+    }
+    let icon = icon.on_hover_text(tr!("mirror-radial.tip"));
+    let menu =
+        egui::Popup::menu(&icon).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| {
+        ui.set_min_width(220.0);
+        let most = brush.most_copies();
+        let slider = egui::Slider::new(&mut brush.mirror.radial, 1..=most);
+        rows::slider(ui, slider, &tr!("mirror-copies"));
+        rows::named(ui, &tr!("mirror-axis"), |ui, _| {
+            let axes = ui.horizontal(|ui| {
+                for (axis, name) in (0..).zip(AXES) {
+                    ui.selectable_value(&mut brush.mirror.axis, axis, name);
+                }
+            });
+            axes.response
+        });
+    });
 }

@@ -47,6 +47,31 @@ fn the_header_begins_anew_and_undoes_and_a_brush_has_a_key() {
 }
 
 #[test]
+fn copies_about_an_axis_are_chosen_in_a_menu_and_leave_room_for_the_mirrors() {
+    let mut h = harness(Tab::Look);
+    h.get_by_label("Radial symmetry").click();
+    h.run_steps(3);
+    let mut axes: Vec<_> = h.get_all_by_label("z").collect();
+    axes.sort_by(|a, b| a.rect().top().total_cmp(&b.rect().top()));
+    axes[1].click();
+    drop(axes);
+    h.run_steps(2);
+    assert_eq!(brushes(&h).last().map(|b| b.mirror.axis), Some(2));
+    h.key_press(Key::Escape);
+    h.run_steps(3);
+    assert!(h.query_by_label("Copies").is_none());
+    // 16 copies of a brush and its mirror image are all that a brush can have.
+    h.state_mut().published.brush.symmetry = [true, false, false];
+    h.state_mut().published.brush.mirror.radial = 16;
+    h.run_steps(2);
+    h.get_by_label("y").click();
+    h.run_steps(2);
+    let brush = brushes(&h).last().copied().expect("a brush");
+    assert_eq!((brush.symmetry, brush.mirror.radial), ([true, true, false], 8));
+    assert!(brush.check().is_ok());
+}
+
+#[test]
 fn earlier_sculptures_are_offered_and_a_press_or_escape_answers() {
     let mut h = harness(Tab::Look);
     let work = |name: &str, told: Option<&str>| EarlierWork {
