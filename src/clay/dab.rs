@@ -409,7 +409,13 @@ fn collect_halo(
 
 /// Takes over the halo's new places, and computes the normals and the tree.
 #[inline(always)]
-fn turn<W: Wide>(w: W, slot: &mut PageOutput, side: &mut PageTask, old: &Page, now: fn() -> u64) {
+fn turn_normals<W: Wide>(
+    w: W,
+    slot: &mut PageOutput,
+    side: &mut PageTask,
+    old: &Page,
+    now: fn() -> u64,
+) {
     if slot.any == 0 && side.incoming.is_empty() {
         return;
     }

@@ -26,7 +26,7 @@ pub fn alpha_shape(points: &[DVec2], alpha: f64) -> (Vec<PlaneRegion>, f64) {
         }
         let [a, b, c] = face.positions().map(|p| DVec2::new(p.x, p.y));
         area += (b - a).perp_dot(c - a).abs() * 0.5;
-        let [a, b, c] = [a, b, c].map(|p| chain.whole(p));
+        let [a, b, c] = [a, b, c].map(|p| chain.grid_coordinates(p));
         chain.push(a, b);
         chain.push(b, c);
         chain.push(c, a);

@@ -97,7 +97,7 @@ fn off(map: &ScreenMap, truth: &ScreenMap, shares: &[DVec2]) -> f64 {
 fn no_map_that_is_believed_is_wrong() {
     let trials = if std::env::var_os("SCULPTD_LONG").is_some() { 1000 } else { 36 };
     let maps = [
-        whole(),
+        whole_desktop(),
         ScreenMap {
             origin: DVec2::new(3840.0, 1080.0),
             across: DVec2::new(-1920.0, 0.0),
