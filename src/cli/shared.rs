@@ -283,9 +283,7 @@ fn settings(
 ) -> SharedSettings {
     let workers = config.r#loop.worker_count();
     let begun = session_settings(config);
-    // A host's session is the file itself, from the beginning.
-    let is_taken = |path: &Path| folder.is_some() && path.exists();
-    let session = session.map(|path| SharedSession::new(path, begun, is_taken(path)));
+    let session = session.map(|path| SharedSession::new(path, begun));
     SharedSettings { workers, dumps: data_folder("differences").join(name), session, folder }
 }
 

@@ -250,13 +250,39 @@ pub fn note_departures(
 }
 
 /// Returns the number of a person's next batches that fit into one frame, so that a frame of all
-/// people fits into a message. It is at least one if there are any.
+/// people fits into a message. It is at least one if there are any. A frame's commands are stepped
+/// before its samples: a command that came after samples waits for the next frame, or a stroke
+/// would get the brush of the one after it.
 pub fn fitting<'a>(batches: impl Iterator<Item = &'a Batch>) -> usize {
-    let mut sum = 0;
+    let (mut sum, mut has_samples) = (0, false);
     let fits = |b: &&Batch| {
-        let fits = sum < PER_FRAME;
+        let fits = sum < PER_FRAME && (b.commands.is_empty() || !has_samples);
         sum += b.samples.len() + b.commands.len() + 1;
+        has_samples |= !b.samples.is_empty();
         fits
     };
     batches.take_while(fits).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sculptd_devices::{Body, DeviceId, Pen, Sample};
+    use sculptd_engine::command::Command;
+
+    #[test]
+    fn a_command_that_came_after_samples_waits_for_the_next_frame() {
+        let body = Body::Pen(Pen::default());
+        let sample = Sample { device: DeviceId(0), t_us: 0, device_t_us: None, body };
+        let batch = |commands: usize, samples: usize| Batch {
+            commands: vec![Command::Undo; commands],
+            samples: vec![sample; samples],
+            ..Batch::default()
+        };
+        let stroke = [batch(1, 0), batch(1, 1), batch(0, 1), batch(0, 1), batch(1, 0)];
+        assert_eq!(fitting(stroke.iter()), 4);
+        assert_eq!(fitting(stroke[4..].iter()), 1);
+        assert_eq!(fitting([batch(0, 1), batch(1, 1)].iter()), 1);
+        assert_eq!(fitting(std::iter::empty()), 0);
+    }
 }

@@ -228,7 +228,7 @@ impl Shared {
                     }
                 }
                 Ok(ToLoop::NobodyHosts) => return Ok(Entered::NobodyHosts),
-                Ok(ToLoop::World(world, executor, journal, _)) => {
+                Ok(ToLoop::World(mut world, executor, journal, _)) => {
                     // An obstacle to the session was reported before.
                     let told = self.told.try_iter();
                     let no_session =
@@ -237,6 +237,7 @@ impl Shared {
                         return Err(SharedError::Session(why));
                     }
                     self.link.executor = executor;
+                    self.link.show_to_own(&mut world);
                     return Ok(Entered::World((world, journal), rate));
                 }
                 Ok(ToLoop::Frame(frame)) => self.link.frames.push_back(frame),
@@ -263,6 +264,18 @@ impl Shared {
 }
 
 impl SharedLink {
+    /// Shows a world that just came to the own person: until then it has the view of somebody else.
+    /// Who never was in it looks at all of it first, as by an own command, for the view that the
+    /// world began with may be of another sculpture.
+    fn show_to_own(&mut self, world: &mut World) {
+        let person = self.executor.person();
+        let view = world.first_view_of(person);
+        world.show_to(person);
+        if let Some(view) = view {
+            self.submit(world, &mut Vec::new(), &mut vec![Command::Camera(view)]);
+        }
+    }
+
     /// Returns the input of one tick as a frame, if no host orders it any more.
     fn local_frame(&mut self, world: &World) -> Option<NumberedFrame> {
         let (samples, commands, first) = self.local.pop_front()?;
@@ -382,8 +395,9 @@ impl SharedInput for SharedLink {
                 Ok(ToLoop::Input(own, standing, bytes)) => {
                     (self.own_input, self.standing, self.waiting_bytes) = (own, standing, bytes);
                 }
-                Ok(ToLoop::World(world, executor, journal, waiting_from)) => {
+                Ok(ToLoop::World(mut world, executor, journal, waiting_from)) => {
                     self.executor = executor;
+                    self.show_to_own(&mut world);
                     self.echo.reset(self.executor.rate_hz(), self.executor.person());
                     return NextTick::World(world, journal, waiting_from);
                 }

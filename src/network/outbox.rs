@@ -4,6 +4,7 @@
 
 use std::collections::VecDeque;
 
+use crate::host_limits::{BYTES, LARGE_SHARE};
 use crate::wire::frame::{Batch, MAX_ENTRIES};
 use sculptd_devices::Sample;
 use sculptd_engine::command::Command;
@@ -19,8 +20,9 @@ const BYTE_US: u64 = 8;
 /// Acknowledged batches that are kept: at 120 a second the last two minutes, where every tick has
 /// some.
 const KEPT: usize = 14_400;
-/// Acknowledged batches that are kept although they have a mesh or the like.
-const KEPT_LARGE: usize = 2;
+/// Bytes of acknowledged batches with a mesh or the like that are kept: what a member may send in
+/// two minutes.
+const KEPT_BYTES: usize = ((BYTES.0 + 120.0 * BYTES.1) * LARGE_SHARE) as usize;
 
 /// A batch, and what became of it.
 #[derive(Debug)]
@@ -50,8 +52,8 @@ pub struct Outbox {
     next_command: u64,
     /// All up to this one are acknowledged.
     acknowledged: u64,
-    /// Kept ones that own memory.
-    large: usize,
+    /// Bytes of the acknowledged ones with a mesh or the like.
+    kept_bytes: usize,
     /// The last of each device.
     last: Vec<Sample>,
     next: u64,
@@ -164,13 +166,13 @@ impl Outbox {
     pub fn acknowledge(&mut self, through: u64) {
         while self.acknowledged < through.min(self.next) {
             self.acknowledged += 1;
-            self.large += usize::from(self.get(self.acknowledged).is_some_and(|k| k.bytes > 0));
+            self.kept_bytes += self.get(self.acknowledged).map_or(0, |k| k.bytes);
         }
         while let Some(front) = self.batches.front()
             && front.batch.number <= self.acknowledged
-            && (self.batches.len() - self.len() > KEPT || self.large > KEPT_LARGE)
+            && (self.batches.len() - self.len() > KEPT || self.kept_bytes > KEPT_BYTES)
         {
-            self.large -= usize::from(front.bytes > 0);
+            self.kept_bytes -= front.bytes;
             self.batches.pop_front();
         }
     }
@@ -190,11 +192,11 @@ impl Outbox {
         self.counts.lost += lost;
         self.next = self.next.saturating_sub(lost).max(applied);
         self.acknowledged = self.acknowledged.saturating_sub(lost).min(applied);
-        self.large = 0;
+        self.kept_bytes = 0;
         for kept in &mut self.batches {
             (kept.batch.number, kept.sent) = (kept.batch.number - lost, None);
             let is_kept = kept.batch.number <= self.acknowledged;
-            self.large += usize::from(is_kept && kept.bytes > 0);
+            self.kept_bytes += if is_kept { kept.bytes } else { 0 };
         }
         self.numbered.retain(|n| n.batch >= first);
         self.numbered.iter_mut().for_each(|n| n.batch -= lost);
@@ -345,7 +347,7 @@ mod tests {
         outbox.begin_after(100);
         outbox.push(vec![], vec![Command::Undo], 0);
         outbox.acknowledge(101);
-        (outbox.batches, outbox.large) = (VecDeque::new(), 0);
+        (outbox.batches, outbox.kept_bytes) = (VecDeque::new(), 0);
         outbox.begin_after(40);
         outbox.push(vec![], vec![Command::Undo], 0);
         assert_eq!(outbox.due(40, 0, 100, |_| true).first().map(|b| b.number), Some(41));
@@ -399,5 +401,11 @@ mod tests {
         assert_eq!(numbers(outbox.due(0, 1_000, 100, |_| true)), [1, 3]);
         outbox.acknowledge(3);
         assert_eq!(outbox.waiting_bytes(), 0);
+        // Of a network that was split, all that could be sent in two minutes is kept.
+        (4..=20).for_each(|k| outbox.push(vec![], vec![load()], k));
+        outbox.acknowledge(20);
+        assert_eq!((outbox.count_after(0), outbox.counts.lost), (20, 0));
+        outbox.begin_after(0);
+        assert_eq!(outbox.counts.lost, 0);
     }
 }

@@ -16,15 +16,13 @@ const NAMES: u32 = 10_000;
 pub struct SharedSession {
     path: PathBuf,
     settings: Settings,
-    /// The name itself is had by an earlier session.
-    taken: bool,
 }
 
 impl SharedSession {
-    /// The first session has this name, those after it `NAME-2.sculpt` and so on. `taken`: somebody
-    /// writes the first one already.
-    pub fn new(path: &Path, settings: Settings, taken: bool) -> SharedSession {
-        SharedSession { path: path.into(), settings, taken }
+    /// The first session has this name unless a file has it already: the one that a host wrote from
+    /// the beginning, or an earlier one. Those after it are `NAME-2.sculpt` and so on.
+    pub fn new(path: &Path, settings: Settings) -> SharedSession {
+        SharedSession { path: path.into(), settings }
     }
 
     /// Begins a file with a world that is at rest. The history of single steps is not kept: undo
@@ -32,18 +30,15 @@ impl SharedSession {
     ///
     /// # Errors
     /// The file cannot be created; the text says why.
-    pub fn begin(&mut self, world: &mut World, rate_hz: u32) -> Result<SharedJournal, String> {
+    pub fn begin(&self, world: &mut World, rate_hz: u32) -> Result<SharedJournal, String> {
         let start = SessionStart::of_world(world).ok_or("the world is not at rest")?;
-        let path = match self.taken {
-            false => self.path.clone(),
-            true => (2..=NAMES)
-                .map(|n| numbered(&self.path, n))
-                .find(|p| !p.exists())
-                .ok_or_else(|| format!("{}: too many of that name", self.path.display()))?,
-        };
+        let names = (2..=NAMES).map(|n| numbered(&self.path, n));
+        let path = std::iter::once(self.path.clone())
+            .chain(names)
+            .find(|p| !p.exists())
+            .ok_or_else(|| format!("{}: too many of that name", self.path.display()))?;
         let settings = Settings { rate_hz, ..self.settings.clone() };
         let journal = session::create(&path, start, &settings).map_err(|e| e.to_string())?;
-        self.taken = true;
         tracing::info!("recorded from here on in {}", path.display());
         Ok(Box::new(journal))
     }

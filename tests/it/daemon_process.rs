@@ -37,7 +37,13 @@ impl Daemon {
     /// Another command that sculpts, without a screen.
     pub fn of_command(home: tempfile::TempDir, args: &[&str]) -> Daemon {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
-        command.args(args).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        command.args(args);
+        Daemon::of(home, command)
+    }
+
+    /// The daemon that a command starts, by itself or through another program.
+    pub fn of(home: tempfile::TempDir, mut command: Command) -> Daemon {
+        command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
         for name in ["XDG_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_STATE_HOME", "HOME"] {
             command.env(name, home.path());
         }

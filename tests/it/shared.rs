@@ -11,6 +11,11 @@ use crate::daemon_process::{Daemon, free_endpoint};
 use crate::seeded::Random;
 use crate::waiting::{comes, until};
 
+mod answers;
+mod computers;
+mod faults;
+mod meanwhile;
+
 impl Daemon {
     fn hash(&self) -> Option<String> {
         self.ctl("hash", None)?["hash"].as_str().map(String::from)
@@ -124,10 +129,10 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
 }
 
 /// Sends a request: its reply, or the reason for its refusal.
-fn ask(of: &Daemon, method: &str, params: &str) -> Result<Value, String> {
+fn ask(home: &Path, method: &str, params: &str) -> Result<Value, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     command.args(["--json", "ctl", method, params]);
-    let out = command.env("XDG_RUNTIME_DIR", of.home.path()).output().expect("runs");
+    let out = command.env("XDG_RUNTIME_DIR", home).output().expect("runs");
     match out.status.success() {
         true => Ok(serde_json::from_slice(&out.stdout).expect("JSON")),
         false => Err(String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned()),
@@ -138,7 +143,7 @@ const STROKE: &str =
     r#"{"space":"view","points":[[0.45,0.5,0.7,0],[0.5,0.5,0.7,80],[0.55,0.5,0.7,160]]}"#;
 
 fn link_of(of: &Daemon) -> Value {
-    ask(of, "people", "{}").expect("people")["link"].clone()
+    ask(of.home.path(), "people", "{}").expect("people")["link"].clone()
 }
 
 #[test]
@@ -165,7 +170,7 @@ fn what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn() {
     for (method, params) in
         [("stroke", STROKE), ("layers.add", "{}"), ("undo", "{}"), ("brush", r#"{"radius":0.1}"#)]
     {
-        let why = ask(&wall, method, params).expect_err(method);
+        let why = ask(wall.home.path(), method, params).expect_err(method);
         assert!(why.contains("a viewer of a shared sculpture changes nothing"), "{method}: {why}");
     }
     assert_eq!(link_of(&ada)["state"], "hosts");
@@ -175,7 +180,7 @@ fn what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn() {
     });
     // An answered stroke is in everybody's order: the host has it as soon as it hears of it.
     let before = ada.hash().expect("a hash");
-    ask(&bob, "stroke", STROKE).expect("made");
+    ask(bob.home.path(), "stroke", STROKE).expect("made");
     assert_ne!(bob.hash().as_deref(), Some(&*before), "it is made when the answer comes");
     bob.follows(&ada, &before);
     let both = ada.hash().expect("a hash");
@@ -186,11 +191,14 @@ fn what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn() {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     until("Bob is sent away", || link_of(&bob)["state"] == "sent-away");
     assert!(link_of(&bob)["reason"].as_str().is_some_and(|r| r.contains("withdrawn")));
-    ask(&bob, "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made alone");
+    ask(bob.home.path(), "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made alone");
     let alone = bob.hash().expect("a hash");
     assert_ne!(alone, both, "he goes on alone");
     assert_eq!(ada.hash(), Some(both));
-    assert_eq!(ask(&bob, "status", "{}").expect("status")["shared"]["state"], "sent-away");
+    assert_eq!(
+        ask(bob.home.path(), "status", "{}").expect("status")["shared"]["state"],
+        "sent-away"
+    );
     assert_eq!(end(&mut bob), Some(1));
     assert!(bob.has_told("was sent away: the invitation was withdrawn"));
     assert_eq!(replayed(&file), Some(alone), "his own file has it");
@@ -215,11 +223,11 @@ fn the_same_command_again_joins_the_sculpture_that_is_there() {
     of_bob.extend(["--listen", &at_bob]);
     let bob = Daemon::run(&of_bob);
     until("Bob is there", || bob.hash().is_some());
-    ask(&bob, "stroke", STROKE).expect("made");
+    ask(bob.home.path(), "stroke", STROKE).expect("made");
     bob.follows(&ada, "");
     ada.child.kill().expect("killed");
     until("Bob takes over", || link_of(&bob)["state"] == "hosts");
-    ask(&bob, "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made");
+    ask(bob.home.path(), "stroke", &STROKE.replace("0.5,0.7", "0.4,0.7")).expect("made");
     let mut again = host.to_vec();
     again.extend(["--connect", &at_bob]);
     let ada = Daemon::run(&again);
@@ -240,7 +248,7 @@ fn the_same_command_again_joins_the_sculpture_that_is_there() {
 
 /// Ends a daemon as a person does; its exit code.
 fn end(daemon: &mut Daemon) -> Option<i32> {
-    ask(daemon, "shutdown", "{}").expect("it ends");
+    ask(daemon.home.path(), "shutdown", "{}").expect("it ends");
     let mut code = None;
     until("it has ended", || {
         code = daemon.child.try_wait().expect("waited for");
@@ -382,7 +390,7 @@ fn guests_join_by_a_link_see_each_other_and_take_back_their_own_steps() {
     ada.stroke(0.35);
     bob.follows(&ada, &both);
     let over = ada.hash().expect("a hash");
-    let why = ask(&bob, "undo", "{}").expect_err("Ada's step is in the way");
+    let why = ask(bob.home.path(), "undo", "{}").expect_err("Ada's step is in the way");
     assert!(why.contains("somebody else changed the same place since"), "{why}");
     until("Bob is told whose step is in the way", || people(&bob)["undo_refused"]["by"] == 1);
     assert_eq!((bob.hash(), ada.hash()), (Some(over.clone()), Some(over)));
@@ -463,9 +471,9 @@ fn a_broken_link_is_refused_by_what_is_wrong_and_nothing_of_it_is_shown() {
 }
 
 /// One of the commands that change a sculpture, with parameters that mean something mostly.
-fn any_command(r: &mut Random, of: &Daemon, file: &Path) -> (&'static str, Value) {
+fn any_command(r: &mut Random, home: &Path, file: &Path) -> (&'static str, Value) {
     let of_list = |method: &str, list: &str| {
-        let reply = ask(of, method, "{}").unwrap_or_default();
+        let reply = ask(home, method, "{}").unwrap_or_default();
         let all = reply[list].as_array().cloned().unwrap_or_default();
         all.into_iter().map(|o| o["id"].clone()).collect::<Vec<_>>()
     };
@@ -516,7 +524,7 @@ fn every_command_of_each_gives_one_clay_here_there_and_in_every_file() {
     let host = ["--host", &*name, "--keys", &keys_text, "--listen", &at, "--as", "Ada"];
     let mut ada = Daemon::run(&[&host[..], &["--session", &texts[0]]].concat());
     until("the host answers", || ada.hash().is_some());
-    ask(&ada, "load", &json!({ "path": small }).to_string()).expect("loaded");
+    ask(ada.home.path(), "load", &json!({ "path": small }).to_string()).expect("loaded");
     let sculptor = key(&keys, "sculptor");
     let of_bob = [&join(&name, &sculptor, &at, "Bob")[..], &["--session", &texts[1]]].concat();
     let mut bob = Daemon::run(&of_bob);
@@ -526,8 +534,8 @@ fn every_command_of_each_gives_one_clay_here_there_and_in_every_file() {
     let steps = steps.unwrap_or(24);
     for step in 0..steps {
         let by = if r.below(2) == 0 { &ada } else { &bob };
-        let (method, params) = any_command(&mut r, by, &small);
-        let done = ask(by, method, &params.to_string());
+        let (method, params) = any_command(&mut r, by.home.path(), &small);
+        let done = ask(by.home.path(), method, &params.to_string());
         refused += usize::from(done.is_err());
         until(&format!("step {step}, {method} {params}: one clay ({done:?})"), || {
             let (a, b) = (ada.hash(), bob.hash());

@@ -4,6 +4,7 @@ mod claims;
 mod guide_promises;
 mod languages;
 mod map;
+mod network_promises;
 mod picture;
 mod use_graph;
 mod words;

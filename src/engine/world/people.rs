@@ -117,6 +117,19 @@ impl World {
         }
     }
 
+    /// The first view of a person who has no settings here yet: all of the active object. `None`:
+    /// the person has a view, or the world is of one person.
+    pub fn first_view_of(&self, person: u8) -> Option<Camera> {
+        let people = &self.people;
+        if people.is_nobody() || people.current == person || people.other(person).is_some() {
+            return None;
+        }
+        let mut view = people.other(0).map_or(self.camera, |first| first.camera);
+        let (lo, hi) = self.active_bounds()?;
+        view.frame(lo, hi);
+        Some(view)
+    }
+
     /// Returns true if the device belongs to the person that the world is shown to.
     pub(super) fn is_shown(&self, device: DeviceId) -> bool {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown

@@ -417,11 +417,16 @@ impl World {
 
     /// Turns the camera to the active object as a whole.
     pub(super) fn frame(&mut self) {
-        let active = self.scene.active();
-        let (lo, hi) = active.settings.transform.bounds(active.clay.bounds());
-        if lo.cmple(hi).all() {
+        if let Some((lo, hi)) = self.active_bounds() {
             self.camera.frame(lo, hi);
         }
+    }
+
+    /// The box of the active object in the world; `None`: it has no vertices.
+    pub(super) fn active_bounds(&self) -> Option<(glam::Vec3, glam::Vec3)> {
+        let active = self.scene.active();
+        let (lo, hi) = active.settings.transform.bounds(active.clay.bounds());
+        lo.cmple(hi).all().then_some((lo, hi))
     }
 
     /// Another command, where the clay that it was computed for is the active one.
