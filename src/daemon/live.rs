@@ -317,8 +317,8 @@ impl Ticking {
                 edits |= begins;
                 if let Some(shared) = &mut self.shared {
                     let answer = queued.answer.take();
-                    if let Some(refused) = shared.refusal(&queued) {
-                        now.answer(answer, tick, Err(refused));
+                    if let Some(result) = shared.result_here(&mut self.world, &queued) {
+                        now.answer(answer, tick, result);
                         continue;
                     }
                     now.senders.push(answer);

@@ -8,8 +8,8 @@ use crate::people::{OwnInput, PeopleHere, SharedEnd, SharedStanding};
 use crate::session::SessionWriter;
 use crate::session::writer::WriterThread;
 use sculptd_devices::Sample;
+use sculptd_engine::answer::CommandResult;
 use sculptd_engine::command::Command;
-use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
 
 /// The ordered input of one tick.
@@ -46,8 +46,9 @@ pub enum NextTick {
 
 /// A sculpture shared by several daemons. The tick thread calls it; no method waits.
 pub trait SharedInput: Send + std::fmt::Debug {
-    /// Why a command of this daemon is not submitted; `None`: it is.
-    fn refusal(&mut self, command: &QueuedCommand) -> Option<SceneError>;
+    /// The result of a command of this daemon that is not submitted: it is refused, or it is a
+    /// viewer's own view of `world`. `None`: it is submitted.
+    fn result_here(&mut self, world: &mut World, command: &QueuedCommand) -> Option<CommandResult>;
     /// Submits the local input of one tick, once a tick, and empties both lists. Returns the number
     /// of the first command; the others' follow. `world`: the loop's.
     fn submit(

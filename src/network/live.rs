@@ -31,6 +31,7 @@ use sculptd_daemon::command_queue::QueuedCommand;
 use sculptd_daemon::people::{OwnInput, PeopleHere, PersonRole, SharedEnd, SharedStanding};
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
+use sculptd_engine::answer::CommandResult;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
@@ -272,6 +273,8 @@ impl SharedLink {
         let view = world.first_view_of(person);
         world.show_to(person);
         if let Some(view) = view {
+            // At once, as it is before any stroke, and for a viewer, whose commands nobody orders.
+            let _sane = world.look_from(view);
             self.submit(world, &mut Vec::new(), &mut vec![Command::Camera(view)]);
         }
     }
@@ -295,24 +298,29 @@ impl Shared {
 }
 
 impl SharedInput for SharedLink {
-    fn refusal(&mut self, command: &QueuedCommand) -> Option<SceneError> {
+    fn result_here(&mut self, world: &mut World, command: &QueuedCommand) -> Option<CommandResult> {
         let person = self.people.person(self.people.own);
         if person.is_some_and(|p| p.role == PersonRole::Viewer) {
-            return Some(SceneError::LooksOn);
+            let Command::Camera(view) = command.command else {
+                return Some(Err(SceneError::LooksOn));
+            };
+            return Some(world.look_from(view));
         }
         if let Some(why) = policy::refused_command(&command.command) {
             tracing::warn!("not done in a shared sculpture: {why}");
-            return Some(SceneError::NotShared);
+            return Some(Err(SceneError::NotShared));
         }
         if self.alone || !command.command.owns_memory() {
             return None;
         }
-        let Some(bytes) = policy::size(&command.command) else { return Some(SceneError::TooLarge) };
+        let Some(bytes) = policy::size(&command.command) else {
+            return Some(Err(SceneError::TooLarge));
+        };
         self.waiting_bytes += bytes;
         let is_much = self.waiting_bytes as f64 > BYTES.0 * LARGE_SHARE;
         is_much.then(|| {
             self.waiting_bytes -= bytes;
-            SceneError::Congested
+            Err(SceneError::Congested)
         })
     }
 

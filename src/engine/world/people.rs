@@ -130,6 +130,16 @@ impl World {
         Some(view)
     }
 
+    /// Changes the view of the person that the world is shown to, beside the ordered input: of one
+    /// who sculpts nothing, or as a command says that comes before any stroke.
+    ///
+    /// # Errors
+    /// As [`Command::Camera`].
+    pub fn look_from(&mut self, view: Camera) -> CommandResult {
+        self.act_as_shown();
+        self.apply_command(&Command::Camera(view))
+    }
+
     /// Returns true if the device belongs to the person that the world is shown to.
     pub(super) fn is_shown(&self, device: DeviceId) -> bool {
         self.people.is_nobody() || self.people.of_device(device) == self.people.shown

@@ -85,7 +85,11 @@ impl Cases<'_> {
                 let home = self.people[2].home.path().to_owned();
                 let (method, params) = any_command(&mut self.r, &home, self.small);
                 if method == "camera" {
-                    return "a viewer's view".into();
+                    let view = ask(&home, method, &params.to_string()).expect("a viewer may turn");
+                    let (yaw, asked) = (view["yaw"].as_f64(), params["yaw"].as_f64());
+                    let near = yaw.zip(asked).is_some_and(|(a, b)| (a - b).abs() < 1e-4);
+                    assert!(near, "case {n}: {view} for {params}");
+                    return "a viewer's view: turned".into();
                 }
                 let why = ask(&home, method, &params.to_string()).expect_err(method);
                 assert!(!why.is_empty());

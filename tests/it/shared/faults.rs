@@ -20,7 +20,7 @@ use super::computers::{PEOPLE, Switch, Table, link, together};
 use super::{any_command, ask, end, replayed};
 use crate::daemon_process::Daemon;
 use crate::seeded::Random;
-use crate::waiting::{pause, until};
+use crate::waiting::{comes, pause, until};
 
 /// Vertices of the ball.
 pub(super) const VERTICES: usize = 20_000;
@@ -178,7 +178,7 @@ fn session(seed: u64) -> Option<()> {
 
     let hash =
         |d: &Daemon| ask(d.home.path(), "hash", "{}").ok()?["hash"].as_str().map(String::from);
-    until(&format!("{what}: one clay, and nothing waits"), || {
+    let level = comes(|| {
         let all: Option<Vec<_>> = people.iter().map(|d| link(d.home.path())).collect();
         let quiet = all.is_some_and(|all| {
             all.iter().all(|(link, own)| link["waiting"] == 0 && own["batches"] == own["ordered"])
@@ -186,6 +186,13 @@ fn session(seed: u64) -> Option<()> {
         let clays: BTreeSet<_> = people.iter().map(hash).collect();
         quiet && clays.len() == 1 && !clays.contains(&None)
     });
+    let state = |d: &Daemon| {
+        let told = d.told.lock().expect("no panic");
+        let last = told.iter().rev().take(12).rev().cloned().collect::<Vec<_>>().join("\n");
+        format!("{:?} {:?}\n{last}", hash(d), link(d.home.path()))
+    };
+    let states = || people.iter().map(state).collect::<Vec<_>>().join("\n\n");
+    assert!(level, "{what}: no one clay, or something waits:\n{}", states());
     for d in &people {
         let (link, own) = link(d.home.path()).expect("an answer");
         assert_eq!((&own["lost"], &link["undelivered"]), (&json!(0), &json!(0)), "{what}");
