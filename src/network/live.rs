@@ -155,7 +155,7 @@ impl Shared {
         let (workers, session) = (settings.workers, settings.session);
         std::thread::Builder::new()
             .name("sculptd-replica".into())
-            .spawn(move || work_on(&work, &finished, workers, session))
+            .spawn(move || work_on(&work, &finished, workers, session.as_ref()))
             .map_err(failed)?;
         let (stop, hosting) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicBool::new(false)));
         let (ended, hosts) = (stop.clone(), hosting.clone());

@@ -44,7 +44,7 @@ pub fn work_on(
     jobs: &cc::Receiver<Job>,
     done: &cc::Sender<Done>,
     workers: usize,
-    session: Option<SharedSession>,
+    session: Option<&SharedSession>,
 ) {
     let mut known = KnownHashes::default();
     let mut restoring = Ok(Restoring::default());
@@ -75,7 +75,7 @@ pub fn work_on(
                 let whole = std::mem::replace(&mut restoring, Ok(Restoring::default()));
                 let world = whole.and_then(|some| some.finish(Workers::new(workers)));
                 Done::Restored(world.ok().map(|mut world| {
-                    let journal = session.as_ref().map(|s| s.begin(&mut world, rate_hz));
+                    let journal = session.map(|s| s.begin(&mut world, rate_hz));
                     (Box::new(world), journal.transpose())
                 }))
             }

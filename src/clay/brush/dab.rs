@@ -12,9 +12,6 @@ use super::stamp::Lens;
 use super::weights::{facing, ln};
 use crate::Reach;
 
-/// Images of a dab at most, itself counted.
-pub const IMAGES: usize = 32;
-
 /// The greatest share of the way to its goal that a brush goes over a fifth of the radius.
 pub const FASTEST: f32 = 0.97;
 

@@ -3,6 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Images of a brush at most, itself counted.
+pub const IMAGES: usize = 32;
+
 /// Images of the brush beside the three planes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

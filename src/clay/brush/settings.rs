@@ -7,9 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::BrushKind;
 use super::alpha::Alpha;
-use super::dab::IMAGES;
 use super::falloff::{CURVE, Falloff};
-use super::options::{AutoMask, Mirror, PathSettings, TopologySettings};
+use super::options::{AutoMask, IMAGES, Mirror, PathSettings, TopologySettings};
 use super::stamp::Stamp;
 use sculptd_geometry::portable::PortableMath;
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3, Vec4};
 
 use super::alpha::Picture;
-use super::dab::{Dab, IMAGES};
+use super::dab::Dab;
+use super::options::IMAGES;
 use super::triples::Triples;
 use super::weights::BLOCK;
 use crate::brush::found_path::FoundPath;

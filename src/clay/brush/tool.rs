@@ -3,8 +3,9 @@
 use glam::Vec3;
 
 use super::brush_trait::{BlockContext, Brush, RunKernel, VertexChange, VertexContext};
-use super::dab::{Dab, Grip, IMAGES};
+use super::dab::{Dab, Grip};
 use super::footprint::Footprint;
+use super::options::IMAGES;
 use super::smooth::SmoothBrush;
 use super::stamp::StampBy;
 use super::triples::Triples;

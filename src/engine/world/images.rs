@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 
 use sculptd_clay::brush::BrushSettings;
-use sculptd_clay::brush::dab::IMAGES;
+use sculptd_clay::brush::options::IMAGES;
 use sculptd_geometry::portable::turn_matrix;
 
 /// A map from the brush to one of its images: `m * p + t`.

@@ -8,7 +8,8 @@ use super::images::Images;
 use super::local_camera::LocalCamera;
 use crate::stroke::{Flow, Laid, PenPoint, StrokeMethod, Surface};
 use crate::topology_work::TopologyWork;
-use sculptd_clay::brush::dab::{HEADING, IMAGES, SHARPEST};
+use sculptd_clay::brush::dab::{HEADING, SHARPEST};
+use sculptd_clay::brush::options::IMAGES;
 use sculptd_clay::brush::restore::Restore;
 use sculptd_clay::brush::{
     BrushKind, BrushSettings, Dab, Grip, Measure, Method, Scratch, Tool, draw_face_sets,

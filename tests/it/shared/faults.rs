@@ -3,7 +3,8 @@
 //! every file gives it, replayed and opened.
 //!
 //! `SCULPTD_SHARED_SESSIONS`: how many sessions (1), of which four run at once;
-//! `SCULPTD_SHARED_SEED`: the seed of the first one. Without root or `ip` it says that it is skipped.
+//! `SCULPTD_SHARED_SEED`: the seed of the first one. Without root or `ip` it says that it is
+//! skipped.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
