@@ -316,6 +316,9 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
                 eprintln!("sculptd: the preview has ended; nothing was kept");
                 return Ok(());
             }
+            // Not where the program begins anew: to the manager that would be an end that hangs.
+            #[cfg(unix)]
+            sculptd_daemon::systemd::Notifier::from_env().send("STOPPING=1");
             report(&summary, args.stats.as_deref(), json)
         };
         return live::run(options, &shown, &config, begun, catalogue, begun_run, then);

@@ -66,7 +66,7 @@ fn later(old: &Config, new: &Config) -> Vec<String> {
         .collect()
 }
 
-/// Runs until dropped; then tells the manager that the daemon stops.
+/// Runs until dropped.
 #[derive(Debug)]
 pub struct Service {
     stop: Option<cc::Sender<()>>,
@@ -88,7 +88,7 @@ impl Service {
 }
 
 impl Drop for Service {
-    /// Waits until the manager has been notified.
+    /// Waits until the thread has ended.
     fn drop(&mut self) {
         self.stop = None;
         let _ = self.thread.take().map(JoinHandle::join);
@@ -117,5 +117,4 @@ fn watch(watched: &Watched, mut reload: Reload, hangup: &AtomicBool, stopped: &c
             trouble = now;
         }
     }
-    notifier.send("STOPPING=1");
 }

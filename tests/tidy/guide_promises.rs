@@ -99,7 +99,7 @@ const KIOSK_PROMISES: [Promise; 64] = [
     ("When the X server ends, its programs end too", AGAIN, SCREENS),
     ("the next start continues the visit", AGAIN, SCREENS),
     ("enter this PIN to open the staff page", KEYPAD, VIEWER),
-    ("*End for good* ends the installation", CARVES, "tests/window/exhibits.rs"),
+    ("*End for good*, pressed twice, ends the installation", CARVES, "tests/window/exhibits.rs"),
     ("`sculptd ctl shutdown` and SIGTERM to the program end it", AGAIN, SCREENS),
     ("`seated = true` for buttons in the lower half of the screen", SWITCH, VIEWER),
     ("the switch presses the lit one", SWITCH, VIEWER),
@@ -119,7 +119,7 @@ const KIOSK_PROMISES: [Promise; 64] = [
     ("While it is open the visit's time stands still", STAFF_WAITS, CYCLE),
     ("it closes by itself after three minutes", STAFF_WAITS, CYCLE),
     ("After three wrong PINs the keypad is locked", GUESSING, CYCLE),
-    ("It kills the program, ends the X server, fills the disk", TRIED, TRIAL),
+    ("It kills the program, ends the X server, fills for some seconds the disk", TRIED, TRIAL),
     (
         "It ends with 1 if the installation did not do what this page promises",
         "a_trial_fails_where_nothing_comes_back",

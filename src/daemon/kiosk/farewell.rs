@@ -36,7 +36,12 @@ impl Farewell {
         if config.share.is_empty() {
             return Ok(Farewell::default());
         }
-        let at = crate::metrics::address(&config.share).map_err(|e| format!("share: {e}"))?;
+        // Visitors' telephones are in the network: a port alone is one of all addresses.
+        let port = config.share.trim().trim_start_matches(':').parse::<u16>();
+        let at = match port {
+            Ok(port) => std::net::SocketAddr::from(([0, 0, 0, 0], port)),
+            Err(_) => crate::metrics::address(&config.share).map_err(|e| format!("share: {e}"))?,
+        };
         share::remove_leftovers(&config.gallery)
             .map_err(|e| format!("{}: {e}", config.gallery.display()))?;
         let deleted: share::Deleted = match spool {

@@ -128,6 +128,9 @@ pub fn start(
         tracing::error!("kiosk: no calendar, so there are no opening hours: {e}");
     });
     let form = start.interrupted.map_or(Some(0), |visit| visit.form);
+    let now = calendar.as_ref().ok().and_then(|c| Some((c.midnight(), c.now()?.day)));
+    let resumed = |(since, day)| VisitFigures::resumed(day, &config.gallery, since);
+    let figures = now.map(resumed).unwrap_or_default();
     let mut keeping = KioskThread {
         config,
         start,
@@ -141,7 +144,7 @@ pub fn start(
         wall: None,
         cleaning: false,
         looked_us: 0,
-        figures: VisitFigures::default(),
+        figures,
         unstored: false,
         goals,
         exported: cc::unbounded(),

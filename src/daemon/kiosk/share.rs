@@ -22,6 +22,7 @@ use crate::http::answer::{permitted, permitted_post, permitted_to_page};
 use crate::http::{Answer, HttpServer, Refusal};
 use crate::qr_code::Code;
 use crate::random_token::random_token;
+use crate::web::own_address;
 use sculptd_devices::Clock;
 use sculptd_geometry::io::{read_mesh, write_mesh};
 use sculptd_geometry::job::Job;
@@ -121,9 +122,7 @@ impl Share {
                 answer(request, (at, &known), (&good, now_us), &texts).unwrap_or_else(Answer::from)
             }
         })?;
-        let ip = || server.address().ip().to_string();
-        let name = if name.is_empty() { ip() } else { name.to_owned() };
-        Ok(Share { server, name, lasts, links, clock })
+        Ok(Share { server, name: name.to_owned(), lasts, links, clock })
     }
 
     /// Returns the address of the listening socket.
@@ -142,9 +141,15 @@ impl Share {
         if let Err(e) = written {
             tracing::error!("share: {}: no STL file of it: {e}", file.display());
         }
-        let host = match self.name.parse::<IpAddr>() {
+        let ip = match self.server.address().ip() {
+            // It listens everywhere: visitors come by the address that this machine has now.
+            all if all.is_unspecified() => own_address().unwrap_or(all),
+            ip => ip,
+        };
+        let name = if self.name.is_empty() { ip.to_string() } else { self.name.clone() };
+        let host = match name.parse::<IpAddr>() {
             Ok(IpAddr::V6(ip)) => format!("[{ip}]"),
-            _ => self.name.clone(),
+            _ => name,
         };
         let url = format!("http://{host}:{}/{token}", self.server.address().port());
         let code = Code::of(&url)

@@ -29,7 +29,8 @@ pub enum StaffRequest {
 /// Content of the staff page.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StaffFacts {
-    /// Visits that ended today and since the start, and works that were kept today.
+    /// Visits that ended today and since the start, and works that were kept today. Of those before
+    /// the start only visits that left a work are counted.
     pub visits_today: u64,
     pub visits: u64,
     pub kept_today: u64,
@@ -60,6 +61,14 @@ pub struct VisitFigures {
 }
 
 impl VisitFigures {
+    /// Goes on after a restart on the date `day`, which began at `since` (seconds since 1970): each
+    /// work in the gallery that is of that day ended a visit.
+    pub fn resumed(day: i64, gallery: &Path, since: u64) -> VisitFigures {
+        let of_today = |name: &&String| written_since(&gallery.join(name.as_str()), since);
+        let kept = works(gallery).map_or(0, |all| all.iter().filter(of_today).count() as u64);
+        VisitFigures { day: Some(day), today: kept, kept_today: kept, ..VisitFigures::default() }
+    }
+
     /// Counts a visit that ended on the date `day`.
     pub fn ended(&mut self, day: Option<i64>, seconds: u64, kept: bool) {
         self.turn(day);
@@ -186,5 +195,9 @@ mod tests {
         let kept = std::fs::read(dir.path().join("work-000003.glb")).expect("read");
         assert_eq!(packed, kept);
         assert_eq!(works(dir.path()).expect("listed").len(), 3);
+        // A program that starts on that day knows of both.
+        let mut facts = StaffFacts::default();
+        VisitFigures::resumed(7, dir.path(), 2_000_000).show(Some(7), &mut facts);
+        assert_eq!((facts.visits_today, facts.kept_today, facts.visits), (2, 2, 0));
     }
 }

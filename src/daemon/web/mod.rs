@@ -153,7 +153,7 @@ impl Web {
 
 /// Returns the address that this machine has in its network, by asking the system for the way to
 /// an address that is never reached; no packet is sent.
-fn own_address() -> Option<IpAddr> {
+pub(crate) fn own_address() -> Option<IpAddr> {
     let socket = std::net::UdpSocket::bind("0.0.0.0:0").ok()?;
     socket.connect("192.0.2.1:9").ok()?;
     Some(socket.local_addr().ok()?.ip()).filter(|ip| !ip.is_unspecified())

@@ -1,7 +1,7 @@
 //! Fonts for languages whose letters egui's own fonts lack: the program brings none along and looks
 //! for one among those of the system.
 
-use egui::{FontData, FontFamily, FontId};
+use egui::{FontData, FontDefinitions, FontFamily, FontId};
 
 use super::icons;
 use super::state::UiState;
@@ -36,59 +36,44 @@ const PREFERRED: [(&str, &[&str]); 2] = [
     ),
 ];
 
-/// From here on Unicode has the characters of Chinese and Japanese.
-const IDEOGRAPHS: char = '\u{2e80}';
-
 /// Makes this thread speak the language that the preferences ask for, with a font that has its
-/// letters; English where the system has none.
-pub fn speak(ctx: &egui::Context, translations: &Translations, ui_state: &mut UiState) {
+/// letters; English where the system has none. `offered`: own names of other languages, whose texts
+/// are shown too.
+pub fn speak(
+    ctx: &egui::Context,
+    translations: &Translations,
+    offered: &[&str],
+    ui_state: &mut UiState,
+) {
     let wanted = translations.choose(&ui_state.prefs.language);
     let shown = &mut ui_state.shown_language;
     if shown.chosen.as_deref() != Some(wanted.code()) {
         shown.chosen = Some(wanted.code().to_owned());
-        shown.fontless = !prepare(ctx, wanted);
+        let mut fonts = icons::fonts();
+        shown.fontless = !add_for(&mut fonts, wanted);
+        for other in translations.all().iter().filter(|t| offered.contains(&t.names().0.as_str())) {
+            // Without a font that language is not offered.
+            add_for(&mut fonts, other);
+        }
+        ctx.set_fonts(fonts);
     }
     language::set_current(if shown.fontless { translations.english() } else { wanted });
 }
 
-/// Gives the context what it needs to draw a language; `false`: there is no such font.
-fn prepare(ctx: &egui::Context, translation: &Translation) -> bool {
-    let letters = translation.letters();
-    // The font of another such language may be in use, and has other forms of the same characters.
-    let lacking = match PREFERRED.iter().any(|p| p.0 == translation.code()) {
-        true => letters.chars().filter(|c| *c >= IDEOGRAPHS).collect(),
-        false => missing(ctx, letters),
-    };
+/// Adds a font of the system that has the letters of a language which the others lack; `false`:
+/// there is none.
+fn add_for(fonts: &mut FontDefinitions, translation: &Translation) -> bool {
+    let lacking = lacking(fonts, translation.letters());
     if lacking.is_empty() {
-        ctx.set_fonts(icons::fonts());
         return true;
     }
-    let Some(font) = system_font(translation.code(), &lacking) else {
-        ctx.set_fonts(icons::fonts());
-        return false;
-    };
-    let mut fonts = icons::fonts();
+    let Some(font) = system_font(translation.code(), &lacking) else { return false };
     let name = translation.code().to_owned();
     fonts.font_data.insert(name.clone(), font.into());
     for family in [FontFamily::Proportional, FontFamily::Monospace] {
         fonts.families.entry(family).or_default().push(name.clone());
     }
-    ctx.set_fonts(fonts);
     true
-}
-
-/// Loads fonts of the system for languages whose own names the fonts in use cannot draw.
-pub fn load_for<'a>(
-    ctx: &egui::Context,
-    translations: &Translations,
-    names: impl Iterator<Item = &'a str>,
-) {
-    let all = translations.all();
-    for name in names.filter(|name| !can_draw(ctx, name)) {
-        if let Some(translation) = all.iter().find(|t| t.names().0 == name) {
-            prepare(ctx, translation);
-        }
-    }
 }
 
 /// Returns true if the fonts in use have every letter of a text.
@@ -96,10 +81,16 @@ pub fn can_draw(ctx: &egui::Context, text: &str) -> bool {
     ctx.fonts_mut(|f| f.has_glyphs(&FontId::proportional(14.0), text))
 }
 
-/// The letters that the fonts in use lack.
-fn missing(ctx: &egui::Context, letters: &str) -> Vec<char> {
-    let mut buffer = [0; 4];
-    letters.chars().filter(|c| !can_draw(ctx, c.encode_utf8(&mut buffer))).collect()
+/// The letters that none of the fonts for texts has.
+fn lacking(fonts: &FontDefinitions, letters: &str) -> Vec<char> {
+    let names = fonts.families.get(&FontFamily::Proportional).map_or(&[][..], Vec::as_slice);
+    let faces: Vec<_> = names
+        .iter()
+        .filter_map(|name| fonts.font_data.get(name))
+        .filter_map(|data| ttf_parser::Face::parse((*data.font).as_ref(), data.index).ok())
+        .collect();
+    let has = |c: char| faces.iter().any(|face| face.glyph_index(c).is_some());
+    letters.chars().filter(|c| !has(*c)).collect()
 }
 
 /// A font of the system that has all of these letters.

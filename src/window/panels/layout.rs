@@ -29,7 +29,7 @@ pub fn all(
     out: &mut Vec<UiRequest>,
 ) -> egui::Rect {
     let ctx = ui.ctx().clone();
-    fonts::speak(&ctx, view.translations, ui_state);
+    fonts::speak(&ctx, view.translations, &[], ui_state);
     let wanted = (ui_state.prefs.light, (ui_state.prefs.scale * 100.0).round() as u32);
     if ui_state.applied != Some(wanted) {
         theme::apply(&ctx, ui_state.prefs.light);

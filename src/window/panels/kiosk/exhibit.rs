@@ -58,7 +58,7 @@ pub(super) fn choice(
     });
 }
 
-/// A picture with the title below it; whether it was pressed.
+/// A picture with the title below it; whether one of them was pressed.
 fn card(
     ui: &mut egui::Ui,
     (words, exhibit): (&Language, &Exhibit),
@@ -69,11 +69,12 @@ fn card(
     let picture = texture(ui.ctx(), exhibit);
     let [width, height] = picture.size();
     let size = vec2(CARD, CARD * height as f32 / width.max(1) as f32);
-    ui.add(egui::Image::new((picture.id(), size)).corner_radius(10));
+    let image = egui::Image::new((picture.id(), size)).corner_radius(10);
+    let pressed = ui.add(image.sense(egui::Sense::click())).clicked();
     let length = text_size(ui, title, 18.0).x;
     let room = CARD - 16.0;
     let size = if length > room { 18.0 * room / length } else { 18.0 };
-    scan.button(ui, true, large(title, size, CARD).selected(shown))
+    scan.button(ui, true, large(title, size, CARD).selected(shown)) || pressed
 }
 
 /// The picture of an exhibit on the card, sent once.

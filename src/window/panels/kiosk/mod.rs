@@ -44,7 +44,6 @@ pub fn ui(
         if screen.show.contrast {
             theme::strong(&ctx);
         }
-        fonts::load_for(&ctx, view.translations, screen.words.iter().map(|w| w.name.as_str()));
         ui_state.applied = Some((ui_state.prefs.light, 100));
     }
     // A wall of a screen is seen from further away.
@@ -57,7 +56,8 @@ pub fn ui(
     let all = view.translations.all();
     let spoken = chosen.and_then(|words| all.iter().find(|t| t.names().0 == words.name));
     ui_state.prefs.language = spoken.map_or(ENGLISH, |t| t.code()).to_owned();
-    fonts::speak(&ctx, view.translations, ui_state);
+    let offered: Vec<&str> = screen.words.iter().map(|w| w.name.as_str()).collect();
+    fonts::speak(&ctx, view.translations, &offered, ui_state);
     let Some(now) = screen.desk.view.lock().ok().and_then(|v| *v) else { return };
     let pad = &mut ui_state.pad;
     // The farewell speaks the visitor's language.
