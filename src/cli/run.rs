@@ -316,7 +316,7 @@ pub fn run(args: &RunArgs, json: bool) -> Outcome {
                 eprintln!("sculptd: the preview has ended; nothing was kept");
                 return Ok(());
             }
-            // Not where the program begins anew: to the manager that would be an end that hangs.
+            // A restart in place sends nothing: the manager would wait for an end.
             #[cfg(unix)]
             sculptd_daemon::systemd::Notifier::from_env().send("STOPPING=1");
             report(&summary, args.stats.as_deref(), json)

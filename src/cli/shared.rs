@@ -202,7 +202,7 @@ impl SharedArgs {
             false => Station::join(identity, self.sculpture, clock.now_us()),
         };
         let link = Box::new(self.link(name, &connect)?);
-        let settings = settings(config, name, session, folder);
+        let settings = settings(config, name, session, folder, role);
         let shared = Shared::start(station, link, clock, settings);
         let mut shared = shared.map_err(|e| Fail::Check(e.to_string()))?;
         if !is_host {
@@ -280,11 +280,13 @@ fn settings(
     name: &str,
     session: Option<&Path>,
     folder: Option<OwnerFolder>,
+    role: Role,
 ) -> SharedSettings {
     let workers = config.r#loop.worker_count();
     let begun = session_settings(config);
     let session = session.map(|path| SharedSession::new(path, begun));
-    SharedSettings { workers, dumps: data_folder("differences").join(name), session, folder }
+    let (dumps, is_viewer) = (data_folder("differences").join(name), role == Role::Viewer);
+    SharedSettings { workers, dumps, session, folder, is_viewer }
 }
 
 /// A folder in the user's data folder.

@@ -28,10 +28,11 @@ use crate::transport::Transport;
 use crate::wire::frame::{Batch, Frame};
 use crate::wire::samples::rounded;
 use sculptd_daemon::command_queue::QueuedCommand;
-use sculptd_daemon::people::{OwnInput, PeopleHere, PersonRole, SharedEnd, SharedStanding};
+use sculptd_daemon::people::{OwnInput, PeopleHere, SharedEnd, SharedStanding};
 use sculptd_daemon::shared_input::{NextTick, SharedInput, SharedJournal, SharedTick};
 use sculptd_devices::{Clock, DeviceId, Sample};
 use sculptd_engine::answer::CommandResult;
+use sculptd_engine::camera::Camera;
 use sculptd_engine::command::Command;
 use sculptd_engine::scene::SceneError;
 use sculptd_engine::world::World;
@@ -42,6 +43,8 @@ const WAITING: usize = 4096;
 const MAX_DEVICES: usize = 16;
 /// Time without an entry after which a host's refusal of the key is accepted.
 const ENOUGH: Duration = Duration::from_secs(3);
+/// A number that no person has.
+const NOBODY: u8 = u8::MAX;
 /// A world of the others, and the session that records it.
 pub type EnteredWorld = (Box<World>, Option<SharedJournal>);
 
@@ -67,6 +70,8 @@ pub struct SharedSettings {
     pub session: Option<SharedSession>,
     /// The invitations, if this daemon's person owns the sculpture.
     pub folder: Option<OwnerFolder>,
+    /// This daemon's person looks on.
+    pub is_viewer: bool,
 }
 
 /// The tick thread's end.
@@ -76,6 +81,10 @@ pub struct SharedLink {
     from: cc::Receiver<ToLoop>,
     executor: Executor,
     echo: LocalEcho,
+    /// The commands of a viewer are refused.
+    is_viewer: bool,
+    /// The camera of a viewer, once it is known.
+    view: Option<Camera>,
     /// The own devices, by their number on the wire.
     devices: Vec<DeviceId>,
     frames: VecDeque<NumberedFrame>,
@@ -153,6 +162,7 @@ impl Shared {
         let (jobs, work) = cc::unbounded();
         let (finished, done) = cc::bounded(64);
         let (workers, session) = (settings.workers, settings.session);
+        let is_viewer = settings.is_viewer;
         std::thread::Builder::new()
             .name("sculptd-replica".into())
             .spawn(move || work_on(&work, &finished, workers, session.as_ref()))
@@ -171,6 +181,8 @@ impl Shared {
             from,
             executor: Executor::new(1, 0),
             echo: LocalEcho::new(1, 0),
+            is_viewer,
+            view: None,
             devices: Vec::new(),
             frames: VecDeque::new(),
             next_command: 0,
@@ -265,14 +277,18 @@ impl Shared {
 }
 
 impl SharedLink {
-    /// Shows a world that just came to the own person: until then it has the view of somebody else.
-    /// Who never was in it looks at all of it first, as by an own command, for the view that the
-    /// world began with may be of another sculpture.
+    /// Shows a received world to this daemon's person: it arrives with another person's view. A
+    /// newcomer gets a view of the whole object, because the initial view of the world may belong to
+    /// another sculpture.
     fn show_to_own(&mut self, world: &mut World) {
         let person = self.executor.person();
         let view = world.first_view_of(person);
         world.show_to(person);
-        if let Some(view) = view {
+        if self.is_viewer {
+            // The view is no part of the world, which may know the person by an earlier visit.
+            let view = self.view.or_else(|| world.first_view_of(NOBODY));
+            self.view = view.filter(|view| world.look_from(*view).is_ok());
+        } else if let Some(view) = view {
             // At once, as it is before any stroke, and for a viewer, whose commands nobody orders.
             let _sane = world.look_from(view);
             self.submit(world, &mut Vec::new(), &mut vec![Command::Camera(view)]);
@@ -299,12 +315,13 @@ impl Shared {
 
 impl SharedInput for SharedLink {
     fn result_here(&mut self, world: &mut World, command: &QueuedCommand) -> Option<CommandResult> {
-        let person = self.people.person(self.people.own);
-        if person.is_some_and(|p| p.role == PersonRole::Viewer) {
+        if self.is_viewer {
             let Command::Camera(view) = command.command else {
                 return Some(Err(SceneError::LooksOn));
             };
-            return Some(world.look_from(view));
+            let looks = world.look_from(view);
+            self.view = looks.is_ok().then_some(view).or(self.view);
+            return Some(looks);
         }
         if let Some(why) = policy::refused_command(&command.command) {
             tracing::warn!("not done in a shared sculpture: {why}");

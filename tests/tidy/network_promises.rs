@@ -85,7 +85,7 @@ const TOGETHER_PROMISES: [Promise; 39] = [
     ("Undo reverts your newest step, even if others have sculpted since", GUESTS, SHARED),
     ("undo restores the previous bits exactly", GUESTS, SHARED),
     ("changed the same place since, undo is refused", GUESTS, SHARED),
-    ("A viewer's commands are refused, except for the own view", ANSWERED, ANSWERS),
+    ("A viewer's commands are refused, except for the camera", ANSWERED, ANSWERS),
     ("Nobody gets in without an invitation", "a_stranger_is_not_let_in_and_both_are_told", KEYS),
     ("can neither read nor forge them", "forged_messages_change_nothing", MEMBERS),
     ("nor repeat a recorded one", "recorded_messages_stop_no_election_and_change_nothing", MEMBERS),

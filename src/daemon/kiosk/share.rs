@@ -143,10 +143,13 @@ impl Share {
         }
         let ip = match self.server.address().ip() {
             // It listens everywhere: visitors come by the address that this machine has now.
-            all if all.is_unspecified() => own_address().unwrap_or(all),
-            ip => ip,
+            all if all.is_unspecified() => own_address(),
+            ip => Some(ip),
         };
-        let name = if self.name.is_empty() { ip.to_string() } else { self.name.clone() };
+        let known = if self.name.is_empty() { None } else { Some(self.name.clone()) };
+        let name = known.or(ip.map(|ip| ip.to_string())).ok_or_else(|| {
+            std::io::Error::other("this machine has no way into a network; set share_name")
+        })?;
         let host = match name.parse::<IpAddr>() {
             Ok(IpAddr::V6(ip)) => format!("[{ip}]"),
             _ => name,

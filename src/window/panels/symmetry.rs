@@ -8,6 +8,8 @@ use sculptd_clay::brush::BrushSettings;
 use sculptd_engine::command::Command;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// Room for the button of the copies and for the end of the header, points.
+const ROOM: f32 = 150.0;
 
 pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     let mut brush = view.state.brush;
@@ -22,7 +24,10 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
             *axis = !*axis;
         }
     }
-    copies(ui, &mut brush);
+    // Where there is room for the buttons that follow, too.
+    if ui.available_width() >= ROOM {
+        copies(ui, &mut brush);
+    }
     // A mirror more leaves room for fewer copies.
     brush.mirror.radial = brush.mirror.radial.min(brush.most_copies());
     if brush != view.state.brush {

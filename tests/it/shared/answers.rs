@@ -1,4 +1,4 @@
-//! What a person is told is so: random commands by a sculptor and a viewer, with their computers
+//! Answers are true: random commands by a sculptor and a viewer, with their computers
 //! connected, cut off, overloaded, ended and sent away.
 //!
 //! `SCULPTD_SHARED_CASES`: how many cases (40); `SCULPTD_SHARED_SEED`: their seed. Without root or
@@ -43,9 +43,9 @@ impl Cases<'_> {
         stroke(places[self.r.below(places.len() as u64) as usize])
     }
 
-    /// Waits until all have one clay and nothing waits.
+    /// Waits until all have one clay and the queues are empty.
     fn level(&self, what: &str) {
-        until(&format!("{what}: one clay, and nothing waits"), || {
+        until(&format!("{what}: one clay, and empty queues"), || {
             let (_, own) = link(self.people[1].home.path()).unwrap_or_default();
             let all: Vec<_> = self
                 .people

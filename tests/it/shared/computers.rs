@@ -58,7 +58,7 @@ fn endpoint(k: usize) -> String {
     format!("tcp/10.88.0.{}:7447", k + 1)
 }
 
-/// What one session needs to start a daemon of a person.
+/// The parts of a session that start a daemon of a person.
 pub(super) struct Table<'a> {
     pub(super) switch: &'a Switch,
     folder: &'a Path,
@@ -111,7 +111,7 @@ pub(super) fn together(table: &Table, people: &[Daemon], after: &str) {
         states.sort_unstable();
         states == ["follows", "follows", "hosts"]
     });
-    // Who is new looks at the whole ball, whose radius is 1, once the first own command is stepped.
+    // A newcomer sees the whole ball (radius 1) after the first command.
     until(&format!("{}: all see the ball after: {after}", table.name), || {
         let view = |d: &Daemon| ask(d.home.path(), "camera", "{}").ok()?["distance"].as_f64();
         people.iter().all(|d| view(d).is_some_and(|distance| distance < 20.0))

@@ -25,8 +25,8 @@ use crate::waiting::{comes, pause, until};
 
 /// Vertices of the ball.
 pub(super) const VERTICES: usize = 20_000;
-/// Places on the ball, of which those that face the camera get strokes. Two are farther apart than
-/// a stroke reaches.
+/// Places on the ball. Those that face the camera get strokes. The distance between two exceeds the
+/// reach of a stroke.
 const PLACES: usize = 600;
 const RADIUS: f64 = 0.06;
 /// From the ball's middle to the eye, at the first view.
@@ -60,8 +60,8 @@ pub(super) fn stroke(i: usize) -> Value {
     json!({ "space": "world", "points": [point(-1), point(0), point(1)], "brush": brush })
 }
 
-/// Sculpts until `stop`: strokes at places that nobody else takes. Returns those that were answered
-/// as made.
+/// Sculpts until `stop`, each stroke at a separate place. Returns the places whose stroke was
+/// answered as made.
 pub(super) fn strokes(
     home: &Path,
     mut r: Random,

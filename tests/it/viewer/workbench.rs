@@ -51,10 +51,11 @@ fn copies_about_an_axis_are_chosen_in_a_menu_and_leave_room_for_the_mirrors() {
     let mut h = harness(Tab::Look);
     h.get_by_label("Radial symmetry").click();
     h.run_steps(3);
-    let mut axes: Vec<_> = h.get_all_by_label("z").collect();
-    axes.sort_by(|a, b| a.rect().top().total_cmp(&b.rect().top()));
-    axes[1].click();
-    drop(axes);
+    // The mirrors' buttons and others have the same letters.
+    let above = h.get_by_role_and_label(Role::Slider, "Copies").rect().bottom();
+    let below = |z: &egui_kittest::Node<'_>| z.rect().top() - above;
+    let axes = h.get_all_by_label("z").filter(|z| below(z) > 0.0);
+    axes.min_by(|a, b| below(a).total_cmp(&below(b))).expect("an axis").click();
     h.run_steps(2);
     assert_eq!(brushes(&h).last().map(|b| b.mirror.axis), Some(2));
     h.key_press(Key::Escape);

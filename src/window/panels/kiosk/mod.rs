@@ -41,6 +41,8 @@ pub fn ui(
     if ui_state.applied.is_none() {
         theme::apply(&ctx, ui_state.prefs.light);
         theme::clear(&ctx);
+        // Visitors press for as long as they like.
+        ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
         if screen.show.contrast {
             theme::strong(&ctx);
         }
