@@ -278,8 +278,8 @@ impl Shared {
 
 impl SharedLink {
     /// Shows a received world to this daemon's person: it arrives with another person's view. A
-    /// newcomer gets a view of the whole object, because the initial view of the world may belong to
-    /// another sculpture.
+    /// newcomer gets a view of the whole object, because the initial view of the world may belong
+    /// to another sculpture.
     fn show_to_own(&mut self, world: &mut World) {
         let person = self.executor.person();
         let view = world.first_view_of(person);

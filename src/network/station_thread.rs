@@ -181,12 +181,17 @@ impl StationThread {
     /// The run ends once all input is delivered, or cannot be.
     fn close(&mut self) {
         let Some(until_us) = self.closing_us else { return };
-        let waiting = if self.station.has_ended() { 0 } else { self.station.waiting() };
+        let waiting = match &self.station {
+            ended if ended.has_ended() => 0,
+            // A host has ordered its own input: what counts is that somebody else has it.
+            host if host.hosts() => host.outbox().len() as u64,
+            member => member.waiting(),
+        };
         if waiting > 0 && self.ends.clock.now_us() < until_us {
             return;
         }
         if waiting > 0 {
-            self.go_on_alone();
+            self.go_on_alone(waiting);
         }
         let end = SharedEnd { sent_away: self.sent_away.clone(), undelivered: self.undelivered };
         let _ = self.ends.to_loop.send(ToLoop::Closed(end));
@@ -194,8 +199,8 @@ impl StationThread {
     }
 
     /// What nobody has ordered is stepped here.
-    fn go_on_alone(&mut self) {
-        self.undelivered += self.station.waiting();
+    fn go_on_alone(&mut self, undelivered: u64) {
+        self.undelivered += undelivered;
         let _ = self.ends.to_loop.send(ToLoop::Alone(self.station.take_unstepped()));
     }
 
@@ -212,7 +217,7 @@ impl StationThread {
                 let now_us = self.ends.clock.now_us();
                 self.station.submit_numbered(samples, commands, first, now_us);
                 if self.station.has_ended() && self.station.person() != 0 {
-                    self.go_on_alone();
+                    self.go_on_alone(self.station.waiting());
                 }
             }
             FromLoop::Host { rate_hz, tick } => {
@@ -362,7 +367,7 @@ impl StationThread {
                         );
                         self.sent_away = Some(why.clone());
                         people = true;
-                        self.go_on_alone();
+                        self.go_on_alone(self.station.waiting());
                     }
                     let _ = self.ends.tell.try_send(Told::Refused(why));
                 }

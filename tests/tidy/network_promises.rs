@@ -42,7 +42,7 @@ const TOGETHER_PROMISES: [Promise; 39] = [
         SIMULATED,
     ),
     ("The same command again joins the sculpture", AGAIN, SHARED),
-    ("share a sculpture of the same name, the command is refused", AGAIN, SHARED),
+    ("share a sculpture of the same name, yours is another one", AGAIN, SHARED),
     (
         "valid only for that name",
         "a_key_gives_its_role_and_less_to_its_person_and_in_its_time",
