@@ -299,7 +299,6 @@ mirror-heading = Spiegel
 mirror-radial = Radiale Symmetrie
     .tip = Wiederholt jeden Strich um eine Achse durch die Mitte des Objekts.
 mirror-copies = Kopien
-mirror-axis = Achse
 
 pressure-heading = Druck
 pressure-curve = Druckkurve

@@ -299,7 +299,6 @@ mirror-heading = Καθρέφτης
 mirror-radial = Ακτινική συμμετρία
     .tip = Επαναλαμβάνει κάθε πινελιά γύρω από άξονα στο μέσο του αντικειμένου.
 mirror-copies = Αντίγραφα
-mirror-axis = Άξονας
 
 pressure-heading = Πίεση
 pressure-curve = Καμπύλη πίεσης

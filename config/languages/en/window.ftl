@@ -301,7 +301,6 @@ mirror-heading = Mirror
 mirror-radial = Radial symmetry
     .tip = Repeats each stroke around an axis through the middle of the object.
 mirror-copies = Copies
-mirror-axis = Axis
 
 pressure-heading = Pressure
 pressure-curve = Pressure curve

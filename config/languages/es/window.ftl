@@ -299,7 +299,6 @@ mirror-heading = Simetría
 mirror-radial = Simetría radial
     .tip = Repite cada trazo alrededor de un eje por el centro del objeto.
 mirror-copies = Copias
-mirror-axis = Eje
 
 pressure-heading = Presión
 pressure-curve = Curva de presión

@@ -299,7 +299,6 @@ mirror-heading = Miroir
 mirror-radial = Symétrie radiale
     .tip = Répète chaque trait autour d’un axe passant par le milieu de l’objet.
 mirror-copies = Copies
-mirror-axis = Axe
 
 pressure-heading = Pression
 pressure-curve = Courbe de pression

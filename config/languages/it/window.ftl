@@ -299,7 +299,6 @@ mirror-heading = Specchio
 mirror-radial = Simmetria radiale
     .tip = Ripete ogni tratto attorno a un asse per il centro dell’oggetto.
 mirror-copies = Copie
-mirror-axis = Asse
 
 pressure-heading = Pressione
 pressure-curve = Curva di pressione

@@ -299,7 +299,6 @@ mirror-heading = 対称
 mirror-radial = 放射対称
     .tip = オブジェクトの中心を通る軸のまわりで、ストロークを繰り返します。
 mirror-copies = 個数
-mirror-axis = 軸
 
 pressure-heading = 筆圧
 pressure-curve = 筆圧カーブ

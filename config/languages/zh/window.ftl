@@ -299,7 +299,6 @@ mirror-heading = 镜像
 mirror-radial = 径向对称
     .tip = 围绕穿过物体中心的轴重复每一笔。
 mirror-copies = 份数
-mirror-axis = 轴
 
 pressure-heading = 压力
 pressure-curve = 压力曲线

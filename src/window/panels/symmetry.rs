@@ -1,4 +1,4 @@
-//! Mirrors: three letters behind their icon, and the copies about an axis.
+//! Mirrors: three letters behind their icon, and the copies about the vertical axis.
 
 use super::icons::{self, Icon};
 use super::rows;
@@ -35,7 +35,8 @@ pub fn ui(ui: &mut egui::Ui, view: &View<'_>, out: &mut Vec<UiRequest>) {
     }
 }
 
-/// The button of the copies about an axis; it shows how many there are.
+/// The button of the copies about the axis of the settings, at first the vertical one. It shows
+/// their number.
 fn copies(ui: &mut egui::Ui, brush: &mut BrushSettings) {
     let on = brush.mirror.radial > 1;
     let name = tr!("mirror-radial");
@@ -55,13 +56,5 @@ fn copies(ui: &mut egui::Ui, brush: &mut BrushSettings) {
         let most = brush.most_copies();
         let slider = egui::Slider::new(&mut brush.mirror.radial, 1..=most);
         rows::slider(ui, slider, &tr!("mirror-copies"));
-        rows::named(ui, &tr!("mirror-axis"), |ui, _| {
-            let axes = ui.horizontal(|ui| {
-                for (axis, name) in (0..).zip(AXES) {
-                    ui.selectable_value(&mut brush.mirror.axis, axis, name);
-                }
-            });
-            axes.response
-        });
     });
 }
