@@ -289,7 +289,7 @@ impl SharedLink {
             let view = self.view.or_else(|| world.first_view_of(NOBODY));
             self.view = view.filter(|view| world.look_from(*view).is_ok());
         } else if let Some(view) = view {
-            // At once, as it is before any stroke, and for a viewer, whose commands nobody orders.
+            // At once, for whoever asks before the command is stepped; no stroke comes before it.
             let _sane = world.look_from(view);
             self.submit(world, &mut Vec::new(), &mut vec![Command::Camera(view)]);
         }

@@ -15,7 +15,7 @@ use hidreport::{Field, ReportDescriptor};
 
 pub use bits::Bits;
 pub use error::DescriptorError;
-pub use pad::{PadFields, Turn};
+pub use pad::{PadAxis, PadFields};
 pub use pen::{PenLayout, Selector};
 pub use usage::CollectionKind;
 

@@ -10,7 +10,7 @@ const MAX_KEYS: u32 = 32;
 
 /// A control that turns or slides.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Turn {
+pub struct PadAxis {
     /// Position of its value.
     pub bits: Bits,
     /// The value is a number of steps since the last report, and not a position.
@@ -25,7 +25,7 @@ pub struct PadFields {
     /// Key number, from 0, and its bit.
     pub keys: Vec<(u32, Bits)>,
     /// Rings, strips, dials and wheels, in the order of the descriptor.
-    pub turns: Vec<Turn>,
+    pub turns: Vec<PadAxis>,
     /// A finger is on the ring or strip, where the report says it.
     pub touched: Option<Bits>,
 }
@@ -59,11 +59,11 @@ impl PadFields {
             }
             // Wacom's own page: strips, rings, finger wheels.
             (0xff0d, 0x136..=0x138 | 0xd03) => {
-                self.turns.push(Turn { bits: Bits::of(f), relative: f.is_relative() });
+                self.turns.push(PadAxis { bits: Bits::of(f), relative: f.is_relative() });
             }
             // Dial, wheel, and the horizontal wheel of the consumer page.
             (0x01, 0x37 | 0x38) | (0x0c, 0x238) => {
-                self.turns.push(Turn { bits: Bits::of(f), relative: f.is_relative() });
+                self.turns.push(PadAxis { bits: Bits::of(f), relative: f.is_relative() });
             }
             _ => {}
         }
