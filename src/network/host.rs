@@ -20,7 +20,7 @@ use crate::host_limits::{
     ALONE_US, BUSY_US, GONE_US, HERE_ALREADY, MAX_MEMBERS, MEMBERS_US, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, JoinedMember, PER_MESSAGE, bounded, drop_silent, fitting, not_admitted,
+    BatchQueue, JoinedMember, PER_MESSAGE, bounded, comings, drop_silent, fitting, not_admitted,
     note_departures, number_for, until_next,
 };
 use crate::keyring::fresh;
@@ -261,11 +261,11 @@ impl Host {
         self.members.retain(|_, m| m.name != name);
         core.note(format!("'{name}' joins as {}", role.name()));
         let arrival = Arrival { person, name: name.clone(), role, here: true };
+        let resumes = reached.is_some_and(|r| core.log.continues(r));
         self.arrivals.retain(|a| a.person != person);
-        if core.log.person(person) != Some(&arrival) {
-            self.arrivals.push(arrival);
-        }
-        let resumes = role == Role::Device || reached.is_some_and(|r| core.log.continues(r));
+        self.arrivals.extend(comings(core.log.person(person), arrival, resumes));
+        self.waiting.entry(person).or_default().early.clear();
+        let resumes = resumes || role == Role::Device;
         let first = reached.map_or(core.log.last(), |r| r.1);
         let who = (person, name, role);
         // The answer to its greeting had the list.

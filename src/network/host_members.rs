@@ -249,6 +249,19 @@ pub fn note_departures(
     arrivals.extend(gone);
 }
 
+/// What the log says of a person who joins, after `known`. Who `resumes` continues what is under way.
+/// Another process of somebody who is here takes the place of the one before it, which is gone, and
+/// whose pens must not stay on the clay.
+pub fn comings(known: Option<&Arrival>, arrival: Arrival, resumes: bool) -> Vec<Arrival> {
+    match known {
+        Some(known) if known.here && !resumes => {
+            vec![Arrival { here: false, ..known.clone() }, arrival]
+        }
+        Some(known) if *known == arrival => Vec::new(),
+        _ => vec![arrival],
+    }
+}
+
 /// Returns the number of a person's next batches that fit into one frame, so that a frame of all
 /// people fits into a message. It is at least one if there are any. A frame's commands are stepped
 /// before its samples: a command that came after samples waits for the next frame, or a stroke

@@ -44,6 +44,30 @@ fn everybody_knows_who_is_here_and_who_has_gone() {
     }
 }
 
+#[test]
+fn who_was_killed_in_a_stroke_and_is_back_has_no_pen_on_the_clay() {
+    let mut s = Simulation::new(64, GOOD);
+    let bob = s.join_sculptor();
+    s.run(2.0, |_| false);
+    s.stroke_s = 1e6;
+    s.run(0.5, |i| i == bob);
+    s.replicas[bob].alive = false;
+    // The newest checkpoint is given to whoever comes within the next seconds: none is made.
+    s.run(2.5, |_| false);
+    let rests = |s: &Simulation| s.replicas[0].world.as_ref().is_some_and(|w| w.is_at_rest());
+    assert!(!rests(&s));
+    let key = s.invitations[0].clone();
+    let again = s.join("person 1", sculptd_network::wire::frame::Role::Sculptor, key);
+    s.run(1.0, |_| false);
+    assert!(s.replicas[again].station.follows());
+    assert!(rests(&s), "the pen of the process that was killed is lifted");
+    assert_eq!(here(&s, 0), ["person 0", "person 1"]);
+    s.stroke_s = 0.3;
+    s.run(2.0, |i| i == again);
+    s.run(2.0, |_| false);
+    s.verify();
+}
+
 /// Strokes, undo and redo of four people, of whom one comes late.
 fn taken_back(faults: Faults, seed: u64) {
     let mut s = Simulation::new(seed, faults);
