@@ -3,8 +3,8 @@
 //!
 //! The command that starts a hold ends every open stroke. Until the holder lets go, the loop takes
 //! no samples and no commands but the holder's; they wait in their channels, in order, and nothing
-//! of them is lost. Ticks go on. The loop itself ends a hold after [`LONGEST_HOLD`], whatever the
-//! holder does: it never waits for anyone.
+//! of them is lost. Ticks go on. The loop itself ends a hold after [`LONGEST_HOLD`], at a shared
+//! sculpture after [`SHARED_HOLD`], whatever the holder does: it never waits for anyone.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -13,6 +13,9 @@ use std::time::Duration;
 /// The longest hold, and the shortest time between two. A pen that stands still for a tenth of
 /// a second is noticed but not lost; its samples, 1,000 a second at most, fit the channel.
 pub const LONGEST_HOLD: Duration = Duration::from_millis(100);
+/// The longest hold at a shared sculpture, where the holder's commands come back by way of the
+/// host, which holds the input of the others for as long.
+pub const SHARED_HOLD: Duration = Duration::from_millis(300);
 
 /// A hold as the loop and the commands of the holder know it.
 #[derive(Debug, Clone, Default)]
@@ -50,8 +53,9 @@ impl Drop for HoldGuard {
 /// The loop's side: the hold under way, and the figures of all holds.
 #[derive(Debug, Default)]
 pub struct LoopHold {
-    /// The hold, and when it began.
+    /// The hold, and its end at the latest.
     now: Option<(InputHold, u64)>,
+    begun_us: u64,
     /// Before this time no other hold begins.
     rests_until_us: u64,
     /// Number of holds.
@@ -66,11 +70,13 @@ impl LoopHold {
         self.now.as_ref().map(|(hold, _)| hold)
     }
 
-    /// Begins a hold. Returns false, and begins none, during another and for a while after it.
-    pub fn begin(&mut self, hold: InputHold, now_us: u64) -> bool {
+    /// Begins a hold of this length at most. Returns false, and begins none, during another and for
+    /// a while after it.
+    pub fn begin(&mut self, hold: InputHold, now_us: u64, longest: Duration) -> bool {
         let free = self.now.is_none() && now_us >= self.rests_until_us;
         if free {
-            self.now = Some((hold, now_us));
+            self.now = Some((hold, now_us + longest.as_micros() as u64));
+            self.begun_us = now_us;
             self.count += 1;
         }
         free
@@ -78,12 +84,10 @@ impl LoopHold {
 
     /// Ends the hold if the holder has let go, if its time is over, or if the loop `stops`.
     pub fn end(&mut self, now_us: u64, stops: bool) {
-        let longest_us = LONGEST_HOLD.as_micros() as u64;
-        let Some((hold, since_us)) = &self.now else { return };
-        let held_us = now_us.saturating_sub(*since_us);
-        if stops || hold.is_released() || held_us >= longest_us {
-            self.longest_us = self.longest_us.max(held_us);
-            self.rests_until_us = now_us + longest_us;
+        let Some((hold, until_us)) = &self.now else { return };
+        if stops || hold.is_released() || now_us >= *until_us {
+            self.longest_us = self.longest_us.max(now_us.saturating_sub(self.begun_us));
+            self.rests_until_us = now_us + LONGEST_HOLD.as_micros() as u64;
             self.now = None;
         }
     }
@@ -97,25 +101,31 @@ mod tests {
     fn a_hold_ends_when_it_is_dropped_or_after_its_time_and_the_next_one_waits() {
         let mut held = LoopHold::default();
         let guard = HoldGuard::default();
-        assert!(held.begin(guard.hold(), 1_000_000));
+        assert!(held.begin(guard.hold(), 1_000_000, LONGEST_HOLD));
         held.end(1_050_000, false);
         assert!(held.now().is_some_and(|h| h.is(&guard.hold())));
         // A second one has to wait.
         let second = HoldGuard::default();
-        assert!(!held.begin(second.hold(), 1_050_000));
+        assert!(!held.begin(second.hold(), 1_050_000, LONGEST_HOLD));
         drop(guard);
         held.end(1_060_000, false);
-        assert!(held.now().is_none() && !held.begin(second.hold(), 1_159_999));
+        assert!(held.now().is_none() && !held.begin(second.hold(), 1_159_999, LONGEST_HOLD));
         // A holder that forgets to let go.
-        assert!(held.begin(second.hold(), 1_160_000));
+        assert!(held.begin(second.hold(), 1_160_000, LONGEST_HOLD));
         std::mem::forget(second);
         held.end(1_259_999, false);
         assert!(held.now().is_some());
         held.end(1_260_000, false);
         assert!(held.now().is_none());
         assert_eq!((held.count, held.longest_us), (2, 100_000));
+        // At a shared sculpture the way is longer.
+        assert!(held.begin(InputHold::default(), 1_400_000, SHARED_HOLD));
+        held.end(1_699_999, false);
+        assert!(held.now().is_some());
+        held.end(1_700_000, false);
+        assert!(held.now().is_none());
         // A loop that stops holds nothing back.
-        assert!(held.begin(InputHold::default(), 2_000_000));
+        assert!(held.begin(InputHold::default(), 2_000_000, LONGEST_HOLD));
         held.end(2_000_001, true);
         assert!(held.now().is_none());
     }

@@ -20,7 +20,7 @@ use crate::boolean_jobs::{BooleanJobs, HandRequest};
 use crate::command_queue::{CommandAnswer, CommandSender, QueuedCommand, command_queue};
 use crate::config::LoopConfig;
 use crate::garbage_thread::{GarbageThread, discard_commands};
-use crate::input_hold::LoopHold;
+use crate::input_hold::{LONGEST_HOLD, LoopHold, SHARED_HOLD};
 use crate::kiosk::visit_door::{VisitDoor, WaitingVisitor};
 use crate::pen_trail::{PenTrail, PenTrailSender, pen_trail};
 use crate::people::{PeopleHere, SharedEnd};
@@ -299,14 +299,10 @@ impl Ticking {
                 if let Some(hold) = queued.hold.take()
                     && matches!(queued.command, Command::LiftAll)
                 {
-                    // What others at a shared sculpture do is not held back.
-                    let refused = match self.shared.is_some() {
-                        true => Some(SceneError::NotShared),
-                        false if now.hold.begin(hold, self.clock.now_us()) => None,
-                        false => Some(SceneError::Busy),
-                    };
-                    if let Some(refused) = refused {
-                        now.answer(queued.answer.take(), tick, Err(refused));
+                    // At a shared sculpture the host holds what others do, see `order_hold` there.
+                    let longest = if self.shared.is_some() { SHARED_HOLD } else { LONGEST_HOLD };
+                    if !now.hold.begin(hold, self.clock.now_us(), longest) {
+                        now.answer(queued.answer.take(), tick, Err(SceneError::Busy));
                         continue;
                     }
                     // These are stepped after the hold.

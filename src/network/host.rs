@@ -20,11 +20,12 @@ use crate::host_limits::{
     ALONE_US, BUSY_US, GONE_US, HERE_ALREADY, MAX_MEMBERS, MEMBERS_US, PATIENCE, REST_US,
 };
 use crate::host_members::{
-    BatchQueue, JoinedMember, PER_MESSAGE, bounded, comings, drop_silent, fitting, not_admitted,
+    BatchQueue, JoinedMember, PER_MESSAGE, bounded, comings, drop_silent, fill, not_admitted,
     note_departures, number_for, until_next,
 };
 use crate::keyring::fresh;
 use crate::membership::SignedMembership;
+use crate::order_hold::OrderHold;
 use crate::wire::frame::{Arrival, Batch, Frame, Mark, PersonId, Role};
 use crate::wire::greeting::Greeting;
 use crate::wire::message::{
@@ -42,6 +43,7 @@ pub struct Host {
     door: Door,
     members: BTreeMap<Address, JoinedMember>,
     waiting: BTreeMap<PersonId, BatchQueue>,
+    hold: OrderHold,
     arrivals: Vec<Arrival>,
     looked_us: u64,
     acknowledgements: Acknowledgements,
@@ -77,6 +79,7 @@ impl Host {
             door: Door::new(now_us),
             members: BTreeMap::new(),
             waiting: BTreeMap::new(),
+            hold: OrderHold::default(),
             arrivals: Vec::new(),
             looked_us: now_us,
             acknowledgements: Acknowledgements::default(),
@@ -505,7 +508,7 @@ impl Host {
                 frame.mark = Mark::Compare;
                 (self.compare_us, self.input_since_compare) = (now_us, false);
             }
-            self.fill(core, &mut frame);
+            fill(&mut frame, core, &mut self.waiting, &mut self.hold, now_us);
         }
         self.input_since_compare |= frame.has_input();
         self.last_frame_us = now_us;
@@ -513,22 +516,6 @@ impl Host {
             self.acknowledgements.expect(index, batch.person, batch.number);
         }
         core.append(Arc::new(frame));
-    }
-
-    /// Everybody's next batch; of those who are behind, more.
-    fn fill(&mut self, core: &mut Core, frame: &mut Frame) {
-        let (own, person) = (self.waiting.entry(core.person).or_default(), core.person);
-        let count = 1 + core.outbox.count_after(own.received) / 8;
-        let count = fitting(core.outbox.after(own.received, count));
-        for batch in core.outbox.after(own.received, count) {
-            frame.batches.push(Batch { person, ..batch.clone() });
-        }
-        own.received = frame.batches.last().map_or(own.received, |last| last.number);
-        for waiting in self.waiting.values_mut() {
-            let count = 1 + waiting.ready.len() / 8;
-            let count = fitting(waiting.ready.iter().take(count));
-            frame.batches.extend(waiting.ready.drain(..count));
-        }
     }
 
     /// Those who have a world.

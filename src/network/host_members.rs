@@ -7,6 +7,7 @@ use crate::core::{Core, IDLE_US, RoundTrip, SEND_US};
 use crate::door::Greeted;
 use crate::host_limits::{BYTES, ENTRIES, GONE_US, MAX_WAITING, MAX_WANTED};
 use crate::membership::MemberKey;
+use crate::order_hold::OrderHold;
 use crate::rate_limit::RateLimit;
 use crate::replica_log::ReplicaLog;
 use crate::seal::Seal;
@@ -262,11 +263,37 @@ pub fn comings(known: Option<&Arrival>, arrival: Arrival, resumes: bool) -> Vec<
     }
 }
 
+/// Puts everybody's next batch into a frame; of those who are behind, more. During a hold, only the
+/// holder's.
+pub fn fill(
+    frame: &mut Frame,
+    core: &Core,
+    waiting: &mut BTreeMap<PersonId, BatchQueue>,
+    hold: &mut OrderHold,
+    now_us: u64,
+) {
+    let (own, person) = (waiting.entry(core.person).or_default(), core.person);
+    if hold.admits(person, now_us) {
+        let count = 1 + core.outbox.count_after(own.received) / 8;
+        let count = fitting(core.outbox.after(own.received, count));
+        for batch in core.outbox.after(own.received, count) {
+            frame.batches.push(Batch { person, ..batch.clone() });
+        }
+        own.received = frame.batches.last().map_or(own.received, |last| last.number);
+    }
+    for (_, waiting) in waiting.iter_mut().filter(|(person, _)| hold.admits(**person, now_us)) {
+        let count = 1 + waiting.ready.len() / 8;
+        let count = fitting(waiting.ready.iter().take(count));
+        frame.batches.extend(waiting.ready.drain(..count));
+    }
+    frame.batches.iter().for_each(|batch| hold.ordered(batch, now_us));
+}
+
 /// Returns the number of a person's next batches that fit into one frame, so that a frame of all
 /// people fits into a message. It is at least one if there are any. A frame's commands are stepped
 /// before its samples: a command that came after samples waits for the next frame, or a stroke
 /// would get the brush of the one after it.
-pub fn fitting<'a>(batches: impl Iterator<Item = &'a Batch>) -> usize {
+fn fitting<'a>(batches: impl Iterator<Item = &'a Batch>) -> usize {
     let (mut sum, mut has_samples) = (0, false);
     let fits = |b: &&Batch| {
         let fits = sum < PER_FRAME && (b.commands.is_empty() || !has_samples);

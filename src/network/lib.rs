@@ -46,6 +46,7 @@ pub mod local_echo;
 mod loop_messages;
 pub mod member;
 pub mod membership;
+pub mod order_hold;
 pub mod outbox;
 #[cfg(feature = "zenoh")]
 pub mod people_here;

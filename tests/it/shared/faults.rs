@@ -1,6 +1,6 @@
 //! Random sessions of three people, each in a network namespace: daemons are killed, paused and cut
-//! off while all three sculpt. In the end all have one clay, each answered stroke is in it, and
-//! every file gives it, replayed and opened.
+//! off while all three sculpt. In the end all have one clay, each answered stroke is in it, nothing is
+//! raised where nobody sculpted, and every file gives it, replayed and opened.
 //!
 //! `SCULPTD_SHARED_SESSIONS`: how many sessions (1), of which four run at once;
 //! `SCULPTD_SHARED_SEED`: the seed of the first one. Without root or `ip` it says that it is
@@ -215,28 +215,33 @@ fn session(seed: u64) -> Option<()> {
         until("it opens", || hash(&again).is_some());
         assert_eq!(hash(&again), clay, "{what}: {text}, opened");
     }
-    let missing = missing(&last_file(&table.file(0, runs[0])), &made);
-    assert!(missing.is_empty(), "{what}: answered as made, and not there: {missing:?}");
+    if !everything {
+        let asked = &places()[..next.into_inner().min(places().len())];
+        let (missing, elsewhere) = raised(&last_file(&table.file(0, runs[0])), &made, asked);
+        assert!(missing.is_empty(), "{what}: answered as made, and not there: {missing:?}");
+        assert!(elsewhere.is_empty(), "{what}: clay that nobody raised: {elsewhere:?}");
+    }
     assert!(everything || made.len() > 8, "{what}");
     println!("{what}");
     Some(())
 }
 
-/// The places whose stroke cannot be seen in the clay that a file gives.
-fn missing(file: &Path, made: &BTreeSet<usize>) -> Vec<usize> {
-    if made.is_empty() {
-        return Vec::new();
-    }
+/// Of the clay that a file gives: the places of `made` where it is not raised, and vertices that
+/// are raised where no stroke was `asked` for.
+fn raised(file: &Path, made: &BTreeSet<usize>, asked: &[usize]) -> (Vec<usize>, Vec<DVec3>) {
     let mesh = file.with_extension("ply");
     let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
     let out = command.arg("replay").arg(file).arg("--export").arg(&mesh).output().expect("runs");
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let mesh = sculptd_geometry::io::read_mesh(&mesh, &Job::default()).expect("a mesh");
-    let raised = |i: &usize| {
-        let near = |p: &DVec3| p.normalize().distance(place(*i)) < RADIUS / 2.0;
-        mesh.mesh.positions.iter().filter(|p| near(p)).any(|p| p.length() > 1.002)
-    };
-    made.iter().filter(|i| !raised(i)).copied().collect()
+    let mut raised = mesh.mesh.positions;
+    raised.retain(|p| p.length() > 1.002);
+    let near = |p: &DVec3, i: usize, reach: f64| p.normalize().distance(place(i)) < reach;
+    let there = |i: &usize| raised.iter().any(|p| near(p, *i, RADIUS / 2.0));
+    let missing = made.iter().filter(|i| !there(i)).copied().collect();
+    // A stroke raises clay so far from its middle.
+    let by_nobody = |p: &DVec3| !asked.iter().any(|i| near(p, *i, RADIUS * 2.5));
+    (missing, raised.iter().filter(|p| by_nobody(p)).copied().collect())
 }
 
 #[test]

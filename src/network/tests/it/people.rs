@@ -2,6 +2,8 @@
 
 use crate::simulated::{BAD, Faults, GOOD, Random, Simulation};
 use sculptd_engine::command::Command;
+use sculptd_network::wire::frame::Frame;
+use std::sync::Arc;
 
 /// Returns the names of the people present, from a replica's log.
 fn here(s: &Simulation, replica: usize) -> Vec<String> {
@@ -66,6 +68,39 @@ fn who_was_killed_in_a_stroke_and_is_back_has_no_pen_on_the_clay() {
     s.run(2.0, |i| i == again);
     s.run(2.0, |_| false);
     s.verify();
+}
+
+#[test]
+fn a_result_that_was_computed_among_strokes_of_others_still_fits() {
+    let mut s = Simulation::new(65, GOOD);
+    let (bob, cyd) = (s.join_sculptor(), s.join_sculptor());
+    s.run(2.0, |_| false);
+    s.stroke_s = 1e6;
+    s.run(0.5, |i| i != bob);
+    let from = s.replicas[0].station.log().last() + 1;
+    let now_us = s.now_us;
+    s.replicas[bob].station.submit(vec![], vec![Command::LiftAll], now_us);
+    s.run(0.2, |i| i != bob);
+    let now_us = s.now_us;
+    s.replicas[bob].station.submit(vec![], vec![Command::Undo], now_us);
+    s.run(0.3, |i| i != bob);
+    let person = s.replicas[bob].station.person();
+    let frames = s.replicas[0].station.log().from(from, 1000).expect("kept");
+    let of_bob = |f: &Arc<Frame>| f.batches.iter().any(|b| b.person == person);
+    let at: Vec<usize> = (0..frames.len()).filter(|k| of_bob(&frames[*k])).collect();
+    assert_eq!(at.len(), 2, "the command that holds, and the result");
+    assert!(at[1] > at[0] + 10, "a network takes its time");
+    let others = |frames: &[_]| {
+        let batches = |f: &Arc<Frame>| f.batches.len();
+        frames.iter().map(batches).sum::<usize>()
+    };
+    assert_eq!(others(&frames[at[0] + 1..at[1]]), 0, "what the others do waits");
+    assert!(others(&frames[..at[0]]) > 5 && others(&frames[at[1] + 1..]) > 30);
+    s.run(2.0, |_| false);
+    s.verify();
+    for i in [0, cyd] {
+        assert_eq!(s.replicas[i].station.waiting(), 0, "and none of it is lost");
+    }
 }
 
 /// Strokes, undo and redo of four people, of whom one comes late.
