@@ -37,6 +37,7 @@ pub mod held_checkpoint;
 pub mod host;
 pub mod host_limits;
 pub mod host_members;
+pub mod host_search;
 pub mod join_link;
 pub mod keyring;
 #[cfg(feature = "zenoh")]

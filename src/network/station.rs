@@ -15,6 +15,7 @@ use crate::core::{Core, DOWN, Event, GREETING, HEIRS, LOST_US, OtherSculpture, O
 use crate::handshake::is_genuine;
 use crate::heirs::{Among, Election, better};
 use crate::host::Host;
+use crate::host_search::HostSearch;
 use crate::keyring::{Entropy, Invitation};
 use crate::member::Member;
 use crate::membership::SignedMembership;
@@ -33,8 +34,6 @@ pub const DECIDE_US: (u64, u64) = (450_000, 620_000);
 const CANDIDATE_US: u64 = 60_000;
 /// A winner that is not heard of by then did not win.
 const AGAIN_US: u64 = 1_500_000;
-/// Time for which a station that wants to host looks for a host.
-const LOOK_US: u64 = 1_500_000;
 /// Between two questions who hosts.
 const ASK_US: u64 = 200_000;
 
@@ -64,14 +63,6 @@ enum StationPhase {
     Follows(Box<Member>),
 }
 
-/// The search of a station that wants to host.
-#[derive(Debug)]
-struct Look {
-    until_us: u64,
-    /// It found nobody, and [`Event::NobodyHosts`] was reported.
-    claimed: bool,
-}
-
 /// One daemon's part in a shared sculpture.
 #[derive(Debug)]
 pub struct Station {
@@ -79,7 +70,7 @@ pub struct Station {
     phase: StationPhase,
     election: Option<Election>,
     among: Among,
-    look: Option<Look>,
+    look: Option<HostSearch>,
     known: u32,
     heard_host_us: u64,
 }
@@ -147,7 +138,7 @@ impl Station {
     /// [`Event::NobodyHosts`], and [`Station::begin_to_host`] may follow.
     pub fn join_or_host(identity: Identity, now_us: u64) -> Station {
         let mut station = Station::of(identity, now_us);
-        station.look = Some(Look { until_us: now_us + LOOK_US, claimed: false });
+        station.look = Some(HostSearch::begin(now_us));
         station
     }
 
@@ -365,7 +356,7 @@ impl Station {
                 let own = Invitation::member_key(&core.invitation);
                 let is_own = hello.key == own.key.name() && is_genuine(hello, from, &own);
                 if is_own && (hello.claims || from < core.address) {
-                    look.until_us = now_us + LOOK_US;
+                    look.sees_a_sign(now_us);
                 }
             }
             Greeting::Refused(refusal) if member.is_in_no_list(core, from, refusal, now_us) => {
@@ -379,7 +370,11 @@ impl Station {
     }
 
     fn among_heirs(&mut self, sealed: &[u8], now_us: u64) {
-        let Some(group) = &self.core.group else { return };
+        let Some(group) = &self.core.group else {
+            // Not for this station yet, but somebody hosts, or is about to take over.
+            self.look.iter_mut().for_each(|look| look.sees_a_sign(now_us));
+            return;
+        };
         let opened = sealed.split_first_chunk::<8>().and_then(|(stream, sealed)| {
             group.heirs_seal(u64::from_le_bytes(*stream)).open(sealed)
         });
@@ -481,8 +476,7 @@ impl Station {
                 self.look = None;
                 self.core.events.push_back(Event::Hosting(false));
             }
-        } else if now_us >= look.until_us && !look.claimed {
-            look.claimed = true;
+        } else if look.ends(now_us) {
             member.claim(&mut self.core, now_us);
             self.core.events.push_back(Event::NobodyHosts);
         }

@@ -25,17 +25,24 @@ const KILLS_AND_CUTS: &str = "three_people_have_one_sculpture_after_kills_pauses
 const STAFF: &str = "staff_see_ask_and_roll_out_over_real_processes";
 const THOUSAND: &str =
     "the_list_of_a_thousand_installations_is_right_within_ten_seconds_of_every_change";
+const STILL_FITS: &str = "a_result_that_was_computed_among_strokes_of_others_still_fits";
 const TWO: &str = "two_sculptures_of_one_name_are_told_apart_and_a_newcomer_is_asked";
 const WITHDRAWN: &str =
     "who_is_withdrawn_is_out_within_two_seconds_and_stays_out_under_a_successor";
 const WITHDRAWN_PROCESS: &str = "what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn";
 
-const TOGETHER_PROMISES: [Promise; 39] = [
+const TOGETHER_PROMISES: [Promise; 41] = [
     (
         "so has the same clay, to the bit",
         "every_command_of_each_gives_one_clay_here_there_and_in_every_file",
         SHARED,
     ),
+    (
+        "goes on while the others sculpt",
+        "whole_object_work_lands_while_two_others_sculpt",
+        "tests/it/shared/meanwhile.rs",
+    ),
+    ("wait for 0.3 seconds at most", STILL_FITS, PEOPLE),
     (
         "A mesh is sent only when a person joins",
         "eight_people_over_a_bad_network_have_one_sculpture",

@@ -25,6 +25,8 @@ struct Cases<'a> {
     small: &'a Path,
     large: &'a Path,
     r: Random,
+    /// What the sculptor asked for, and whether it was done.
+    asked: Vec<String>,
 }
 
 impl Cases<'_> {
@@ -36,6 +38,11 @@ impl Cases<'_> {
     /// The sculptor asks.
     fn bob(&self, method: &str, params: &serde_json::Value) -> Result<(), String> {
         ask(self.people[1].home.path(), method, &params.to_string()).map(drop)
+    }
+
+    /// The end of what the sculptor asked for.
+    fn before(&self) -> String {
+        self.asked[self.asked.len().saturating_sub(40)..].join("\n")
     }
 
     fn stroke(&mut self) -> serde_json::Value {
@@ -71,10 +78,19 @@ impl Cases<'_> {
         let before = self.hash(0);
         match kind {
             0..45 => {
+                // What is masked does not change.
+                self.bob("mask", &json!({ "action": "clear" })).expect("unmasked");
+                self.level(&format!("case {n}, unmasked"));
+                let before = self.hash(0);
                 let stroke = self.stroke();
                 let answer = self.bob("stroke", &stroke);
                 if answer.is_ok() {
-                    assert_ne!(self.hash(1), before, "case {n}: made, and not there");
+                    let asked = self.before();
+                    assert_ne!(
+                        self.hash(1),
+                        before,
+                        "case {n}: made, and not there after\n{asked}"
+                    );
                     until("the others see the stroke", || self.hash(0) != before);
                 } else {
                     assert_eq!(self.hash(0), before, "case {n}: {answer:?}, and it is there");
@@ -99,7 +115,9 @@ impl Cases<'_> {
             65..82 => {
                 let home = self.people[1].home.path().to_owned();
                 let (method, params) = any_command(&mut self.r, &home, self.small);
-                match self.bob(method, &params) {
+                let answer = self.bob(method, &params);
+                self.asked.push(format!("{method} {params}: {answer:?}"));
+                match answer {
                     Ok(()) => "a command: done".into(),
                     Err(why) => {
                         assert_eq!(self.hash(0), before, "case {n}: {method} {params}: {why}");
@@ -189,7 +207,8 @@ fn what_is_answered_is_so_whatever_happens_to_the_network() {
     people.extend([1, 2].map(|k| table.start(k, 1, home())));
     together(&table, &people, "the start");
     let r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let mut all = Cases { table, people, runs: 1, small: &small, large: &large, r };
+    let mut all =
+        Cases { table, people, runs: 1, small: &small, large: &large, r, asked: Vec::new() };
     let mut counts = BTreeMap::new();
     for n in 0..cases {
         let told = all.one(n);

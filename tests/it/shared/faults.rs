@@ -60,11 +60,11 @@ pub(super) fn stroke(i: usize) -> Value {
     json!({ "space": "world", "points": [point(-1), point(0), point(1)], "brush": brush })
 }
 
-/// Sculpts until `stop`, each stroke at a separate place. Returns the places whose stroke was
-/// answered as made.
+/// Sculpts until `stop`, each stroke at a separate place, with rests of up to `rest_ms`. Returns the
+/// places whose stroke was answered as made.
 pub(super) fn strokes(
     home: &Path,
-    mut r: Random,
+    (mut r, rest_ms): (Random, u64),
     stop: &AtomicBool,
     next: &AtomicUsize,
 ) -> Vec<usize> {
@@ -74,7 +74,7 @@ pub(super) fn strokes(
         if ask(home, "stroke", &stroke(i).to_string()).is_ok() {
             made.push(i);
         }
-        pause(r.below(600));
+        pause(r.below(rest_ms));
     }
     made
 }
@@ -157,7 +157,7 @@ fn session(seed: u64) -> Option<()> {
             scope.spawn(move || match everything {
                 true => commands(home, r, stop, small),
                 false => {
-                    let strokes = strokes(home, r, stop, next);
+                    let strokes = strokes(home, (r, 600), stop, next);
                     made.lock().expect("no panic").extend(strokes);
                 }
             });

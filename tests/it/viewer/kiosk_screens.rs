@@ -1,4 +1,4 @@
-//! Every screen of an installation in every language and at three sizes: no text is cut or covers
+//! Every screen of an installation in every language and at four sizes: no text is cut or covers
 //! another one, and each has a contrast of at least 7:1. `SCULPTD_SCREENS=FOLDER` writes pictures.
 
 use std::sync::atomic::Ordering::Relaxed;
@@ -15,9 +15,14 @@ use sculptd_daemon::qr_code::{Code, Invitation};
 use super::kiosk::{exhibits, harness, screen};
 use super::panels::State;
 
-/// Width and height in points, and pixels a point, as the window sets them for its pixels.
-const SIZES: [([f32; 2], f32); 3] =
-    [([1080.0, 1920.0], 1.0), ([1920.0, 1080.0], 1.0), ([1920.0, 1080.0], 2.0)];
+/// Width and height in points, pixels a point, as the window sets them for its pixels, and the size
+/// of the text: on the small screen larger than there is room for.
+const SIZES: [([f32; 2], f32, f32); 4] = [
+    ([1080.0, 1920.0], 1.0, 1.0),
+    ([1920.0, 1080.0], 1.0, 1.0),
+    ([1920.0, 1080.0], 2.0, 1.0),
+    ([1280.0, 720.0], 1.0, 1.5),
+];
 /// WCAG 2, enhanced.
 const CONTRAST: f32 = 7.0;
 /// The middle of the clay's ground, where no panel lies.
@@ -278,13 +283,14 @@ fn picture(h: &Harness<'_, State>, size: [f32; 2]) -> image::RgbImage {
 }
 
 #[test]
-fn every_screen_in_every_language_at_three_sizes_has_whole_clear_texts() {
+fn every_screen_in_every_language_at_four_sizes_has_whole_clear_texts() {
     let folder = std::env::var_os("SCULPTD_SCREENS").map(std::path::PathBuf::from);
     let mut wrong = Vec::new();
     let mut looked = 0;
-    for (size, scale) in SIZES {
+    for (size, scale, text) in SIZES {
         for (name, set) in CASES {
             let mut screen = screen();
+            screen.show.text = text;
             screen.show.hints = vec![Hint::Pen, Hint::Touch, Hint::OneHand, Hint::TwoHands];
             // The harness has a copy of the screen: it is made after the case is set.
             let mut first = super::panels::state(sculptd_window::panels::Tab::Look);
@@ -293,6 +299,8 @@ fn every_screen_in_every_language_at_three_sizes_has_whole_clear_texts() {
             // The size is in points, and a new scale changes it once.
             h.set_pixels_per_point(scale);
             h.run_steps(1);
+            let zoom = h.ctx.zoom_factor();
+            let size = size.map(|side| side / zoom);
             h.set_size(size.into());
             std::mem::swap(&mut h.state_mut().published, &mut first.published);
             h.state_mut().devices = first.devices;
@@ -310,7 +318,7 @@ fn every_screen_in_every_language_at_three_sizes_has_whole_clear_texts() {
                     disabled.extend(["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "OK"]);
                 }
                 let found = faults(&all, size, &disabled);
-                let pixels = size.map(|side| side * scale);
+                let pixels = size.map(|side| (side * scale * zoom).round());
                 let at = format!("{name}-{}-{}x{}", words.code, pixels[0], pixels[1]);
                 wrong.extend(found.into_iter().map(|fault| format!("{at}: {fault}")));
                 let drawn = ["de", "el", "en", "ja"].contains(&words.code.as_str());

@@ -23,7 +23,7 @@ const TMPFS: FsWord = 0x0102_1994;
 /// Kills the program. Another process must show the same sculpture.
 pub(super) fn kill_program(running: &mut Running) -> Result<String, TrialEnd> {
     let before = running.sculpt()?;
-    let (pid, window) = (running.pid, window(running));
+    let (pid, window) = (running.pid, settled_window(running));
     kill(pid)?;
     comes_back(running, &before, &window)
 }
@@ -39,7 +39,7 @@ pub(super) fn screen(running: &mut Running) -> Result<String, TrialEnd> {
     let server = server.filter(|pid| is_x_server(*pid));
     let server = server.ok_or_else(|| none(&format!("{lock} names no X server")))?;
     let before = running.sculpt()?;
-    let window = window(running);
+    let window = settled_window(running);
     kill(server)?;
     comes_back(running, &before, &window)
 }
@@ -52,6 +52,12 @@ fn is_x_server(pid: i32) -> bool {
 fn window(running: &Running) -> String {
     let status = running.status().unwrap_or_default();
     status["window"].as_str().unwrap_or("unknown").to_owned()
+}
+
+/// The state of the window once it is no longer opening.
+fn settled_window(running: &mut Running) -> String {
+    let settled = running.within(|r| Some(window(r)).filter(|state| state != "opening"));
+    settled.unwrap_or_else(|| window(running))
 }
 
 /// Waits until another process shows the same sculpture, in a window if there was one.

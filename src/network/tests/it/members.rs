@@ -143,6 +143,26 @@ fn a_host_that_is_started_again_joins_its_own_sculpture() {
 }
 
 #[test]
+fn a_host_that_is_started_again_at_once_joins_its_own_sculpture() {
+    for step in 0..20 {
+        let faults = if step % 2 == 0 { GOOD } else { BAD };
+        let mut s = Simulation::new(670 + step, faults);
+        s.join_sculptor();
+        s.join_sculptor();
+        s.run(8.0, |_| true);
+        s.replicas[0].alive = false;
+        s.run(0.1 * step as f64, |_| true);
+        let again = s.join_or_host("person 0");
+        s.run(10.0, |_| true);
+        s.run(8.0, |_| false);
+        let hosts = s.replicas.iter().filter(|r| r.alive && r.station.hosts()).count();
+        assert_eq!(hosts, 1, "step {step}: {}", told(&s, again));
+        assert!(s.replicas[again].station.follows(), "step {step}: {}", told(&s, again));
+        s.verify_worlds();
+    }
+}
+
+#[test]
 fn of_two_who_begin_at_once_one_hosts() {
     for seed in 0..long("SCULPTD_NETWORK_HOSTS", 4) {
         let mut s = Simulation::new(700 + seed, if seed % 2 == 0 { GOOD } else { BAD });

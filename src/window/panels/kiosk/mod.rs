@@ -28,6 +28,10 @@ pub use parts::TARGET;
 
 /// Digits that are taken at most.
 const DIGITS: usize = 12;
+/// The shorter side of the screen in which everything has room, points: the text grows no further.
+const ROOM: f32 = 640.0;
+/// Languages that are all shown during a visit; of more the chosen one alone, until it is pressed.
+const FEW: usize = 3;
 
 /// Everything over the clay of an installation. Call once a frame.
 pub fn ui(
@@ -49,7 +53,9 @@ pub fn ui(
         ui_state.applied = Some((ui_state.prefs.light, 100));
     }
     // A wall of a screen is seen from further away.
-    let zoom = screen.show.text * ui_state.screen_scale.clamp(1.0, 4.0);
+    let short = ctx.content_rect().size().min_elem() * ctx.zoom_factor();
+    let scale = ui_state.screen_scale.clamp(1.0, 4.0);
+    let zoom = (screen.show.text * scale).min((short / ROOM).max(1.0));
     if (ctx.zoom_factor() - zoom).abs() > 1e-3 {
         ctx.set_zoom_factor(zoom);
     }
@@ -88,8 +94,9 @@ pub fn ui(
     if now.stage == Stage::Closed {
         closed::ui(&ctx, whole, words, &now);
     } else {
-        // During a visit to an exhibit its form needs the room.
-        let folded = now.stage == Stage::Working && now.exhibit.is_some() && !pad.unfolded;
+        // During a visit the work needs the room, and an exhibit's form too.
+        let many = now.exhibit.is_some() || screen.words.len() > FEW;
+        let folded = now.stage == Stage::Working && many && !pad.unfolded;
         languages(&ctx, free, (screen, folded), pad, &mut scan);
     }
     if screen.staff {
