@@ -15,6 +15,7 @@ const WINDOW: &str = "tests/it/viewer/people.rs";
 
 const AGAIN: &str = "the_same_command_again_joins_the_sculpture_that_is_there";
 const ANSWERED: &str = "what_is_answered_is_so_whatever_happens_to_the_network";
+const AT_ONCE: &str = "a_host_that_is_started_again_at_once_joins_its_own_sculpture";
 const BROKEN_LINK: &str = "a_broken_link_is_refused_by_what_is_wrong_and_nothing_of_it_is_shown";
 const CANARY: &str = "a_roll_out_is_stopped_by_a_canary_that_fails_and_reaches_nobody_else";
 const FILES: &str = "everybody_has_a_file_that_gives_the_same_clay";
@@ -22,6 +23,7 @@ const FOLLOWED: &str =
     "a_host_that_dies_is_followed_within_two_seconds_and_nothing_acknowledged_is_lost";
 const GUESTS: &str = "guests_join_by_a_link_see_each_other_and_take_back_their_own_steps";
 const KILLS_AND_CUTS: &str = "three_people_have_one_sculpture_after_kills_pauses_and_cuts";
+const PEN_LIFTED: &str = "who_was_killed_in_a_stroke_and_is_back_has_no_pen_on_the_clay";
 const STAFF: &str = "staff_see_ask_and_roll_out_over_real_processes";
 const THOUSAND: &str =
     "the_list_of_a_thousand_installations_is_right_within_ten_seconds_of_every_change";
@@ -31,7 +33,7 @@ const WITHDRAWN: &str =
     "who_is_withdrawn_is_out_within_two_seconds_and_stays_out_under_a_successor";
 const WITHDRAWN_PROCESS: &str = "what_a_daemon_answers_is_so_for_a_viewer_and_for_who_is_withdrawn";
 
-const TOGETHER_PROMISES: [Promise; 41] = [
+const TOGETHER_PROMISES: [Promise; 43] = [
     (
         "so has the same clay, to the bit",
         "every_command_of_each_gives_one_clay_here_there_and_in_every_file",
@@ -43,6 +45,8 @@ const TOGETHER_PROMISES: [Promise; 41] = [
         "tests/it/shared/meanwhile.rs",
     ),
     ("wait for 0.3 seconds at most", STILL_FITS, PEOPLE),
+    ("also if it is started again at once", AT_ONCE, MEMBERS),
+    ("of others who were killed had begun", PEN_LIFTED, PEOPLE),
     (
         "A mesh is sent only when a person joins",
         "eight_people_over_a_bad_network_have_one_sculpture",
