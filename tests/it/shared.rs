@@ -5,11 +5,12 @@ use std::path::Path;
 
 use std::process::{Command, Output, Stdio};
 
+use sculptd_control::client::call;
 use serde_json::{Value, json};
 
 use crate::daemon_process::{Daemon, free_endpoint};
 use crate::seeded::Random;
-use crate::waiting::{comes, until};
+use crate::waiting::{PATIENCE, comes, until};
 
 mod answers;
 mod computers;
@@ -130,13 +131,9 @@ fn two_processes_have_one_sculpture_and_one_goes_on_when_the_other_is_killed() {
 
 /// Sends a request: its reply, or the reason for its refusal.
 fn ask(home: &Path, method: &str, params: &str) -> Result<Value, String> {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sculptd"));
-    command.args(["--json", "ctl", method, params]);
-    let out = command.env("XDG_RUNTIME_DIR", home).output().expect("runs");
-    match out.status.success() {
-        true => Ok(serde_json::from_slice(&out.stdout).expect("JSON")),
-        false => Err(String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned()),
-    }
+    let params = serde_json::from_str(params).expect("JSON");
+    let reply = call(&home.join("sculptd.sock"), method, &params, PATIENCE);
+    reply.map_err(|e| e.to_string())
 }
 
 const STROKE: &str =
