@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::{ask, join, key};
 use crate::daemon_process::Daemon;
-use crate::waiting::until;
+use crate::waiting::{comes, until};
 
 pub(super) const PEOPLE: [&str; 3] = ["Ada", "Bob", "Cy"];
 
@@ -105,12 +105,20 @@ pub(super) fn link(home: &Path) -> Option<(Value, Value)> {
 
 /// One hosts, the others follow, and all see the ball.
 pub(super) fn together(table: &Table, people: &[Daemon], after: &str) {
-    until(&format!("{}: all are together after: {after}", table.name), || {
+    let are_together = comes(|| {
         let state = |d: &Daemon| Some(link(d.home.path())?.0["state"].as_str()?.to_owned());
         let mut states: Vec<_> = people.iter().filter_map(state).collect();
         states.sort_unstable();
         states == ["follows", "follows", "hosts"]
     });
+    let told = |d: &Daemon| {
+        let told = d.told.lock().expect("no panic");
+        let last = told.iter().rev().take(20).rev().cloned().collect::<Vec<_>>().join("\n");
+        format!("{:?}\n{last}", link(d.home.path()))
+    };
+    let name = &table.name;
+    let all = || people.iter().map(told).collect::<Vec<_>>().join("\n\n");
+    assert!(are_together, "{name}: not together after: {after}:\n{}", all());
     // A newcomer sees the whole ball (radius 1) after the first command.
     until(&format!("{}: all see the ball after: {after}", table.name), || {
         let view = |d: &Daemon| ask(d.home.path(), "camera", "{}").ok()?["distance"].as_f64();
