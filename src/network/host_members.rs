@@ -250,9 +250,9 @@ pub fn note_departures(
     arrivals.extend(gone);
 }
 
-/// What the log says of a person who joins, after `known`. Who `resumes` continues what is under way.
-/// Another process of somebody who is here takes the place of the one before it, which is gone, and
-/// whose pens must not stay on the clay.
+/// Returns the log entries for a person who joins; `known` is the last one. A process that
+/// `resumes` continues its strokes. Another process of somebody who is here replaces the one before
+/// it, whose pens must not stay on the clay.
 pub fn comings(known: Option<&Arrival>, arrival: Arrival, resumes: bool) -> Vec<Arrival> {
     match known {
         Some(known) if known.here && !resumes => {

@@ -1,6 +1,6 @@
 //! Random sessions of three people, each in a network namespace: daemons are killed, paused and cut
-//! off while all three sculpt. In the end all have one clay, each answered stroke is in it, nothing is
-//! raised where nobody sculpted, and every file gives it, replayed and opened.
+//! off while all three sculpt. In the end all have one clay, each answered stroke is in it, nothing
+//! is raised where nobody sculpted, and every file gives it, replayed and opened.
 //!
 //! `SCULPTD_SHARED_SESSIONS`: how many sessions (1), of which four run at once;
 //! `SCULPTD_SHARED_SEED`: the seed of the first one. Without root or `ip` it says that it is
@@ -60,8 +60,8 @@ pub(super) fn stroke(i: usize) -> Value {
     json!({ "space": "world", "points": [point(-1), point(0), point(1)], "brush": brush })
 }
 
-/// Sculpts until `stop`, each stroke at a separate place, with rests of up to `rest_ms`. Returns the
-/// places whose stroke was answered as made.
+/// Sculpts until `stop`, each stroke at a separate place, with rests of up to `rest_ms`. Returns
+/// the places whose stroke was answered as made.
 pub(super) fn strokes(
     home: &Path,
     (mut r, rest_ms): (Random, u64),
