@@ -4,9 +4,9 @@
 //!
 //! If somebody sculpts on meanwhile, the result follows: see `rebase`. Since a pen that does not
 //! rest is always a little ahead, the loop's input is held for a moment at the end, see
-//! [`crate::input_hold`]; at a shared sculpture everybody's. A result that cannot follow is computed
-//! again, [`TRIES`] times at most, then refused with the reason. It never overwrites a newer stroke,
-//! and it is never dropped without a word.
+//! [`crate::input_hold`]; at a shared sculpture everybody's. A result that cannot follow is
+//! computed again, [`TRIES`] times at most, then refused with the reason. It never overwrites a
+//! newer stroke, and it is never dropped without a word.
 
 pub mod basis;
 mod computed;
