@@ -524,12 +524,14 @@ impl Host {
     }
 
     fn acknowledge(&mut self, core: &mut Core, now_us: u64) {
-        let through = match self.replicas().filter_map(|m| m.have).max() {
+        // What a viewer has is given up with this host: only a sculptor takes over.
+        let heirs = || self.members.values().filter(|m| m.role == Role::Sculptor);
+        let through = match heirs().filter_map(|m| m.have).max() {
             Some(have) => {
                 self.alone_since_us = None;
                 have
             }
-            None if self.replicas().next().is_some() => 0,
+            None if heirs().next().is_some() => 0,
             None => {
                 let since = *self.alone_since_us.get_or_insert(now_us);
                 if since == 0 || now_us >= since + ALONE_US { core.log.last() } else { 0 }

@@ -166,8 +166,13 @@ impl VirtualPen {
                 return Ok(shown.tick);
             }
             let now_us = self.clock.now_us();
-            if link.stopped() || now_us > give_up {
+            if link.stopped() {
                 return Err(not_taken());
+            }
+            if now_us > give_up {
+                let text = "not finished after a minute: the stroke waits, and is made as soon as \
+                            the loop comes to it";
+                return Err(RpcError::failed(text));
             }
             if shown.standing.state == SharedState::CutOff && now_us > cut_off {
                 let text = "cut off from the others: the stroke waits, and is made as soon as the \

@@ -155,6 +155,22 @@ fn what_each_part_of_a_split_network_acknowledged_is_in_the_one_sculpture() {
 }
 
 #[test]
+fn what_only_a_viewer_has_is_not_acknowledged() {
+    let mut s = together(2, GOOD, 1.0, 14);
+    let key = s.invitations[0].clone();
+    let viewer = s.join("wall", sculptd_network::wire::frame::Role::Viewer, key);
+    s.run(4.0, |_| false);
+    let acknowledged = |s: &Simulation| s.replicas[0].station.outbox().acknowledged();
+    let before = acknowledged(&s);
+    assert_eq!(before, s.replicas[0].station.outbox().last());
+    s.replicas[1].part = 1;
+    s.run(1.0, |i| i == 0);
+    let applied = s.replicas[viewer].station.log().applied(1);
+    assert!(applied > before + 60, "the viewer has it: {applied}");
+    assert_eq!(acknowledged(&s), before, "nobody who could take over has it");
+}
+
+#[test]
 fn who_was_killed_and_is_back_at_once_is_let_in() {
     let mut s = together(3, GOOD, 1.0, 12);
     s.replicas[2].alive = false;
