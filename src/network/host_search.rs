@@ -25,6 +25,11 @@ impl HostSearch {
         self.until_us = (now_us + QUIET_US).min(self.latest_us);
     }
 
+    /// Whoever hosts does not know the own key: signs of that sculpture count no more.
+    pub fn is_refused(&mut self) {
+        self.latest_us = self.until_us;
+    }
+
     /// Returns true once nobody is found, the first time.
     pub fn ends(&mut self, now_us: u64) -> bool {
         let ends = !self.claimed && now_us >= self.until_us;

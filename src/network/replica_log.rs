@@ -46,6 +46,11 @@ impl ReplicaLog {
         (self.turn_of(self.last), self.last)
     }
 
+    /// The world of a checkpoint is at this tick: the next frame is after it.
+    pub fn begin_at(&mut self, tick: u64) {
+        self.tick = self.tick.max(tick);
+    }
+
     /// The turn in which a frame was made.
     fn turn_of(&self, index: u64) -> Term {
         let turn = self.turns.iter().rev().find(|t| t.1 <= index);

@@ -365,6 +365,7 @@ impl Station {
                      key in the folder was withdrawn: ask its owner for an invitation",
                 );
             }
+            Greeting::Refused(_) => look.is_refused(),
             _ => {}
         }
     }
@@ -558,6 +559,11 @@ impl Station {
         if let StationPhase::Hosts(host) = &mut self.phase {
             host.checkpoint_failed(index, now_us);
         }
+    }
+
+    /// The own world was made of a checkpoint, and is at this tick.
+    pub fn restored(&mut self, tick: u64) {
+        self.core.log.begin_at(tick);
     }
 
     /// The own world could not be made of a checkpoint: another is asked for.

@@ -265,6 +265,7 @@ impl StationThread {
                 self.station.restore_failed(self.ends.clock.now_us());
             }
             Done::Restored(Some((mut world, journal))) => {
+                self.station.restored(world.tick());
                 if let Some(index) = self.differs.take() {
                     let (scene, active) = (world.scene_view(), world.snapshot());
                     let view = HashView { index, tick: world.tick(), scene, active };

@@ -299,7 +299,7 @@ fn every_screen_in_every_language_at_four_sizes_has_whole_clear_texts() {
             // The size is in points, and a new scale changes it once.
             h.set_pixels_per_point(scale);
             h.run_steps(1);
-            let zoom = h.ctx.zoom_factor();
+            let zoom = h.ctx.pixels_per_point() / scale;
             let size = size.map(|side| side / zoom);
             h.set_size(size.into());
             std::mem::swap(&mut h.state_mut().published, &mut first.published);

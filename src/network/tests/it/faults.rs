@@ -155,6 +155,24 @@ fn what_each_part_of_a_split_network_acknowledged_is_in_the_one_sculpture() {
 }
 
 #[test]
+fn a_successor_that_has_seen_no_frame_yet_goes_on_at_the_tick_of_its_checkpoint() {
+    let mut s = Simulation::new(15, GOOD);
+    s.run(5.0, |i| i == 0);
+    let bob = s.join_sculptor();
+    while s.replicas[bob].restored == 0 {
+        s.run(0.004, |_| false);
+    }
+    s.replicas[0].alive = false;
+    let tick = |s: &Simulation| s.replicas[bob].world.as_ref().map_or(0, |w| w.tick());
+    let before = tick(&s);
+    s.run(3.0, |i| i == bob);
+    assert!(s.replicas[bob].station.hosts());
+    let (world, log) = (tick(&s), s.replicas[bob].station.log().tick());
+    assert!(before > 500 && world > before + 60, "{world} after {before}");
+    assert_eq!(world, log, "the world and the order have one time");
+}
+
+#[test]
 fn what_only_a_viewer_has_is_not_acknowledged() {
     let mut s = together(2, GOOD, 1.0, 14);
     let key = s.invitations[0].clone();

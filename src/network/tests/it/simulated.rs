@@ -380,6 +380,7 @@ impl Simulation {
                     let whole = std::mem::take(&mut replica.restoring);
                     let world = whole.finish(Workers::new(1)).expect("whole");
                     world.verify_invariants().expect("sound");
+                    replica.station.restored(world.tick());
                     replica.world = Some(world);
                     replica.executor = Executor::new(RATE, replica.station.person());
                     if let Some(echo) = &mut replica.echo {
