@@ -524,7 +524,7 @@ impl Host {
     }
 
     fn acknowledge(&mut self, core: &mut Core, now_us: u64) {
-        // What a viewer has is given up with this host: only a sculptor takes over.
+        // A viewer's replica is given up with this host: only a sculptor takes over.
         let heirs = || self.members.values().filter(|m| m.role == Role::Sculptor);
         let through = match heirs().filter_map(|m| m.have).max() {
             Some(have) => {

@@ -25,7 +25,7 @@ impl HostSearch {
         self.until_us = (now_us + QUIET_US).min(self.latest_us);
     }
 
-    /// Whoever hosts does not know the own key: signs of that sculpture count no more.
+    /// The host does not know this station's key: signs of that sculpture count no more.
     pub fn is_refused(&mut self) {
         self.latest_us = self.until_us;
     }

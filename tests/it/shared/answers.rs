@@ -25,7 +25,7 @@ struct Cases<'a> {
     small: &'a Path,
     large: &'a Path,
     r: Random,
-    /// What the sculptor asked for, and whether it was done.
+    /// The sculptor's requests, each with its answer.
     asked: Vec<String>,
     /// Triangles may be larger than a stroke, which then moves none.
     coarse: bool,
@@ -73,7 +73,7 @@ impl Cases<'_> {
         assert_eq!((&own["lost"], &link["undelivered"]), (&json!(0), &json!(0)), "{what}");
     }
 
-    /// What each says of itself, and its last lines.
+    /// Status and last log lines of each daemon.
     fn states(&self) -> String {
         let of = |d: &Daemon| {
             let status = ask(d.home.path(), "status", "{}");
@@ -97,7 +97,7 @@ impl Cases<'_> {
         let before = self.hash(0);
         match kind {
             0..45 => {
-                // What is masked does not change.
+                // A stroke does not change masked clay.
                 self.bob("mask", &json!({ "action": "clear" })).expect("unmasked");
                 self.level(&format!("case {n}, unmasked"));
                 let before = self.hash(0);
