@@ -1,5 +1,4 @@
-//! Work on the whole object by one of three people lands while the other two sculpt almost without
-//! a rest.
+//! Work on the whole object by one of three people lands while the other two sculpt.
 //!
 //! `SCULPTD_SHARED_ROUNDS`: how many times (3).
 
@@ -52,7 +51,7 @@ fn whole_object_work_lands_while_two_others_sculpt() {
         let (done, made) = std::thread::scope(|scope| {
             let others = (0..3).filter(|k| *k != by).map(|k| {
                 let (home, stop, next) = (all[k].home.path(), &stop, &next);
-                scope.spawn(move || strokes(home, (Random(k as u64 + 7), 60), stop, next))
+                scope.spawn(move || strokes(home, (Random(k as u64 + 7), 600), stop, next))
             });
             let others: Vec<_> = others.collect();
             until("they sculpt", || next.load(Ordering::Relaxed) > 4);
