@@ -46,7 +46,7 @@ const TOGETHER_PROMISES: [Promise; 43] = [
     ),
     ("wait for 0.3 seconds at most", STILL_FITS, PEOPLE),
     ("also if it is started again at once", AT_ONCE, MEMBERS),
-    ("of others who were killed had begun", PEN_LIFTED, PEOPLE),
+    ("Strokes that a killed daemon had begun end", PEN_LIFTED, PEOPLE),
     (
         "A mesh is sent only when a person joins",
         "eight_people_over_a_bad_network_have_one_sculpture",
